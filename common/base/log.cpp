@@ -1,0 +1,48 @@
+#include "log.hpp"
+
+#include <spdlog/sinks/stdout_color_sinks.h>
+#include <spdlog/spdlog.h>
+
+namespace prehend::log {
+namespace {
+
+spdlog::logger& logger() {
+  static const std::shared_ptr<spdlog::logger> instance = [] {
+    auto made = spdlog::stderr_color_mt("prehend");
+    made->set_pattern("%H:%M:%S.%e %^%l%$ %v");
+    return made;
+  }();
+  return *instance;
+}
+
+std::string& name() {
+  static std::string instance;
+  return instance;
+}
+
+std::string line(std::string_view text) {
+  return name().empty() ? std::string(text) : fmt::format("[{}] {}", name(), text);
+}
+
+}  // namespace
+
+void set_name(std::string given) {
+  name() = std::move(given);
+}
+void set_verbose(bool verbose) {
+  logger().set_level(verbose ? spdlog::level::debug : spdlog::level::info);
+}
+void write_info(std::string_view text) {
+  logger().info(line(text));
+}
+void write_warning(std::string_view text) {
+  logger().warn(line(text));
+}
+void write_error(std::string_view text) {
+  logger().error(line(text));
+}
+void write_debug(std::string_view text) {
+  logger().debug(line(text));
+}
+
+}  // namespace prehend::log

@@ -1,0 +1,14 @@
+#pragma once
+
+#include <filesystem>
+
+namespace prehend {
+
+/// Folder with models, trained networks and the default configuration: $PREHEND_SHARE, else
+/// ../share/prehend beside the folder of the running program.
+std::filesystem::path share_directory();
+
+/// Folder of the running program, where the other programs of the lab lie too.
+std::filesystem::path program_directory();
+
+}  // namespace prehend

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <prehend/idl/Geometry.h>
+
+#include <prehend/base/pose.hpp>
+#include <string>
+#include <vector>
+
+/// Between messages and values. Reading checks what came from outside.
+namespace prehend::dds {
+
+v1::Vector3 to_message(const Eigen::Vector3d& v);
+v1::Pose to_message(const Pose& X);
+Eigen::Vector3d from_message(const v1::Vector3& v);
+/// Refuses poses that are not finite or whose quaternion has no norm.
+Expected<Pose> from_message(const v1::Pose& X);
+
+std::vector<double> to_message(const Eigen::VectorXd& v);
+Eigen::VectorXd from_message(const std::vector<double>& v);
+
+}  // namespace prehend::dds

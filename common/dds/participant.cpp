@@ -1,0 +1,153 @@
+#include "participant.hpp"
+
+#include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
+
+#include <algorithm>
+#include <fastdds/dds/domain/DomainParticipant.hpp>
+#include <fastdds/dds/domain/DomainParticipantFactory.hpp>
+#include <fastdds/dds/publisher/Publisher.hpp>
+#include <fastdds/dds/subscriber/Subscriber.hpp>
+#include <fastdds/dds/topic/Topic.hpp>
+#include <map>
+#include <mutex>
+
+namespace prehend::dds {
+
+namespace fdds = eprosima::fastdds::dds;
+
+namespace {
+
+eprosima::fastrtps::Duration_t duration(std::chrono::milliseconds time) {
+  return {static_cast<int32_t>(time.count() / 1000),
+          static_cast<uint32_t>(time.count() % 1000) * 1'000'000u};
+}
+
+/// What a writer and a reader of one topic set alike.
+template <class Qos>
+void apply(Qos& qos, const TopicQos& topic, int depth, bool lockstep) {
+  const bool all = depth == 0 || lockstep;
+  qos.reliability().kind = topic.reliable || lockstep ? fdds::RELIABLE_RELIABILITY_QOS
+                                                      : fdds::BEST_EFFORT_RELIABILITY_QOS;
+  // In lockstep nothing may be missed by a service that is still being discovered.
+  qos.durability().kind = topic.transient_local || lockstep ? fdds::TRANSIENT_LOCAL_DURABILITY_QOS
+                                                            : fdds::VOLATILE_DURABILITY_QOS;
+  qos.history().kind = all ? fdds::KEEP_ALL_HISTORY_QOS : fdds::KEEP_LAST_HISTORY_QOS;
+  if (!all) qos.history().depth = depth;
+  // Unlimited, allocated as needed: instances come and go, pictures are large.
+  qos.resource_limits().max_samples = 0;
+  qos.resource_limits().max_instances = 0;
+  qos.resource_limits().max_samples_per_instance = 0;
+  qos.resource_limits().allocated_samples = 1;
+  qos.endpoint().history_memory_policy =
+      eprosima::fastrtps::rtps::PREALLOCATED_WITH_REALLOC_MEMORY_MODE;
+  // Data sharing fails between users and containers and delays restarts by seconds.
+  qos.data_sharing().off();
+  if (lockstep) return;
+  if (topic.exclusive) qos.ownership().kind = fdds::EXCLUSIVE_OWNERSHIP_QOS;
+  if (topic.deadline.count() > 0) qos.deadline().period = duration(topic.deadline);
+}
+
+}  // namespace
+
+std::uint64_t instance_hash(const eprosima::fastrtps::rtps::InstanceHandle_t& handle) {
+  std::uint64_t hash = 0xcbf29ce484222325ULL;  // FNV-1a
+  for (int i = 0; i < 16; ++i) hash = (hash ^ handle.value[i]) * 0x100000001b3ULL;
+  return hash;
+}
+
+struct Participant::State {
+  ParticipantOptions options;
+  fdds::DomainParticipant* participant = nullptr;
+  fdds::Publisher* publisher = nullptr;
+  fdds::Subscriber* subscriber = nullptr;
+  std::map<std::string, fdds::Topic*, std::less<>> topics;
+
+  ~State() {
+    if (!participant) return;
+    participant->delete_contained_entities();
+    fdds::DomainParticipantFactory::get_instance()->delete_participant(participant);
+  }
+
+  Expected<fdds::Topic*> topic(std::string_view name, fdds::TypeSupport& type) {
+    if (const auto found = topics.find(name); found != topics.end()) return found->second;
+    type.get()->auto_fill_type_object(false);
+    type.get()->auto_fill_type_information(false);
+    if (type.register_type(participant) != ReturnCode_t::RETCODE_OK)
+      return fail("type of the topic cannot be registered", std::string(name));
+    fdds::Topic* made =
+        participant->create_topic(std::string(name), type.get_type_name(), fdds::TOPIC_QOS_DEFAULT);
+    if (!made)
+      return fail("topic cannot be created", std::string(name), "was it made with another type?");
+    topics.emplace(std::string(name), made);
+    return made;
+  }
+};
+
+Participant::Participant(std::unique_ptr<State> state) : state_(std::move(state)) {}
+Participant::Participant(Participant&&) noexcept = default;
+Participant& Participant::operator=(Participant&&) noexcept = default;
+Participant::~Participant() = default;
+
+Expected<Participant> Participant::create(const ParticipantOptions& options) {
+  if (options.domain < 0 || options.domain > 232)
+    return fail("domain must lie in 0 to 232", "lab.domain");
+  auto state = std::make_unique<State>();
+  state->options = options;
+  auto* factory = fdds::DomainParticipantFactory::get_instance();
+  fdds::DomainParticipantQos qos = factory->get_default_participant_qos();
+  qos.name(options.name);
+  // UDP only: shared memory hides peers of other users and containers and outlives killed
+  // processes.
+  qos.transport().use_builtin_transports = false;
+  auto udp = std::make_shared<eprosima::fastdds::rtps::UDPv4TransportDescriptor>();
+  udp->sendBufferSize = 1 << 21;
+  udp->receiveBufferSize = 1 << 21;
+  qos.transport().user_transports.push_back(udp);
+  state->participant = factory->create_participant(options.domain, qos);
+  if (!state->participant)
+    return fail("cannot join the domain", "dds", "is a network interface up, at least loopback?");
+
+  fdds::PublisherQos publisher_qos = fdds::PUBLISHER_QOS_DEFAULT;
+  fdds::SubscriberQos subscriber_qos = fdds::SUBSCRIBER_QOS_DEFAULT;
+  if (!options.rig.empty()) {
+    publisher_qos.partition().push_back(options.rig.c_str());
+    subscriber_qos.partition().push_back(options.rig.c_str());
+  }
+  state->publisher = state->participant->create_publisher(publisher_qos);
+  state->subscriber = state->participant->create_subscriber(subscriber_qos);
+  if (!state->publisher || !state->subscriber) return fail("cannot join the rig", options.rig);
+  return Participant(std::move(state));
+}
+
+Expected<fdds::DataWriter*> Participant::make_writer(std::string_view name,
+                                                     fdds::TypeSupport type) {
+  const TopicQos* topic = find_topic(name);
+  if (!topic) return fail("is not in the table of topics", std::string(name));
+  const auto handle = state_->topic(name, type);
+  if (!handle) return tl::unexpected(handle.error());
+  fdds::DataWriterQos qos = state_->publisher->get_default_datawriter_qos();
+  apply(qos, *topic, topic->writer_depth, state_->options.lockstep);
+  if (topic->lifespan.count() > 0 && !state_->options.lockstep)
+    qos.lifespan().duration = duration(topic->lifespan);
+  // With the default of 3 s a lost single sample is noticed very late.
+  qos.reliable_writer_qos().times.heartbeatPeriod = duration(std::chrono::milliseconds(100));
+  qos.reliability().max_blocking_time = duration(std::chrono::milliseconds(100));
+  fdds::DataWriter* writer = state_->publisher->create_datawriter(*handle, qos);
+  if (!writer) return fail("writer cannot be created", std::string(name));
+  return writer;
+}
+
+Expected<fdds::DataReader*> Participant::make_reader(std::string_view name,
+                                                     fdds::TypeSupport type) {
+  const TopicQos* topic = find_topic(name);
+  if (!topic) return fail("is not in the table of topics", std::string(name));
+  const auto handle = state_->topic(name, type);
+  if (!handle) return tl::unexpected(handle.error());
+  fdds::DataReaderQos qos = state_->subscriber->get_default_datareader_qos();
+  apply(qos, *topic, topic->reader_depth, state_->options.lockstep);
+  fdds::DataReader* reader = state_->subscriber->create_datareader(*handle, qos);
+  if (!reader) return fail("reader cannot be created", std::string(name));
+  return reader;
+}
+
+}  // namespace prehend::dds

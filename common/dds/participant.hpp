@@ -1,0 +1,127 @@
+#pragma once
+
+#include <fastdds/dds/core/condition/WaitSet.hpp>
+#include <fastdds/dds/publisher/DataWriter.hpp>
+#include <fastdds/dds/subscriber/DataReader.hpp>
+#include <functional>
+#include <map>
+#include <memory>
+#include <prehend/base/error.hpp>
+#include <prehend/base/time.hpp>
+#include <string>
+#include <vector>
+
+#include "topics.hpp"
+
+namespace prehend::dds {
+
+struct ParticipantOptions {
+  std::string name;  // shown to others at discovery
+  int domain = 0;    // 0..232
+  std::string rig;   // partition: samples stay within a rig
+  /// All topics reliable and complete, without deadlines: for recordings in lockstep.
+  bool lockstep = false;
+};
+
+/// Provenance of a received sample.
+struct SampleInfo {
+  Time sent;                   // the writer's clock
+  std::uint64_t instance = 0;  // hash of the key, the same for all samples of an instance
+  bool gone = false;  // the instance was disposed or lost its last writer: only its key is set
+};
+
+std::uint64_t instance_hash(const eprosima::fastrtps::rtps::InstanceHandle_t& handle);
+
+template <class T>
+struct Sample {
+  T data;
+  SampleInfo info;
+};
+
+/// Writes one topic. Not copied; lives no longer than its Participant.
+template <class T>
+class Writer {
+ public:
+  explicit Writer(eprosima::fastdds::dds::DataWriter* writer) : writer_(writer) {}
+  /// False when the sample could not be queued (it timed out on a full history).
+  bool write(const T& sample) { return writer_->write(const_cast<T*>(&sample)); }
+  /// Tells readers that the instance with this sample's key is gone.
+  bool dispose(const T& key) {
+    auto* sample = const_cast<T*>(&key);
+    return writer_->dispose(sample, writer_->lookup_instance(sample)) == ReturnCode_t::RETCODE_OK;
+  }
+  eprosima::fastdds::dds::DataWriter& raw() { return *writer_; }
+
+ private:
+  eprosima::fastdds::dds::DataWriter* writer_;
+};
+
+/// Reads one topic. Not copied; lives no longer than its Participant.
+template <class T>
+class Reader {
+ public:
+  explicit Reader(eprosima::fastdds::dds::DataReader* reader) : reader_(reader) {}
+
+  /// Everything that has come since the last call, in the order of arrival.
+  std::vector<Sample<T>> take() {
+    std::vector<Sample<T>> samples;
+    while (true) {
+      Sample<T> sample;
+      eprosima::fastdds::dds::SampleInfo info;
+      if (reader_->take_next_sample(&sample.data, &info) != ReturnCode_t::RETCODE_OK) break;
+      sample.info.gone = !info.valid_data;
+      sample.info.sent = from_ns(info.source_timestamp.to_ns());
+      sample.info.instance = instance_hash(info.instance_handle);
+      if (info.valid_data) {
+        first_.try_emplace(sample.info.instance, sample.data);
+      } else {
+        if (info.instance_state == eprosima::fastdds::dds::ALIVE_INSTANCE_STATE) continue;
+        const auto known = first_.extract(sample.info.instance);
+        if (!known) continue;  // came and went before we saw it
+        sample.data = known.mapped();
+      }
+      samples.push_back(std::move(sample));
+    }
+    return samples;
+  }
+  eprosima::fastdds::dds::DataReader& raw() { return *reader_; }
+
+ private:
+  eprosima::fastdds::dds::DataReader* reader_;
+  /// The first sample of each living instance: the end of an instance does not bring its key.
+  std::map<std::uint64_t, T> first_;
+};
+
+/// A place in the DDS domain. QoS comes from topic_table, transport from the profile. Every call is
+/// safe from one thread at a time; each writer and reader likewise.
+class Participant {
+ public:
+  static Expected<Participant> create(const ParticipantOptions& options);
+  Participant(Participant&&) noexcept;
+  Participant& operator=(Participant&&) noexcept;
+  ~Participant();
+
+  template <class P>
+  Expected<Writer<typename P::type>> writer(const Topic<P>& topic) {
+    auto made = make_writer(topic.name, eprosima::fastdds::dds::TypeSupport(new P()));
+    if (!made) return tl::unexpected(made.error());
+    return Writer<typename P::type>(*made);
+  }
+  template <class P>
+  Expected<Reader<typename P::type>> reader(const Topic<P>& topic) {
+    auto made = make_reader(topic.name, eprosima::fastdds::dds::TypeSupport(new P()));
+    if (!made) return tl::unexpected(made.error());
+    return Reader<typename P::type>(*made);
+  }
+
+ private:
+  struct State;
+  explicit Participant(std::unique_ptr<State> state);
+  Expected<eprosima::fastdds::dds::DataWriter*> make_writer(
+      std::string_view topic, eprosima::fastdds::dds::TypeSupport type);
+  Expected<eprosima::fastdds::dds::DataReader*> make_reader(
+      std::string_view topic, eprosima::fastdds::dds::TypeSupport type);
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace prehend::dds

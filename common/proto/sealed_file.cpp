@@ -1,0 +1,73 @@
+#include "sealed_file.hpp"
+
+#include <fmt/format.h>
+#include <openssl/sha.h>
+#include <unistd.h>
+
+#include <array>
+#include <fstream>
+#include <iterator>
+
+namespace prehend::proto {
+namespace {
+
+constexpr std::string_view version = "1";
+
+}  // namespace
+
+std::string digest(std::string_view bytes) {
+  std::array<unsigned char, SHA256_DIGEST_LENGTH> hash;
+  SHA256(reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size(), hash.data());
+  return fmt::format("{:02x}", fmt::join(hash, ""));
+}
+
+std::string seal(std::string_view kind, std::string_view bytes) {
+  const std::string head = fmt::format("prehend {} {}\n", kind, version);
+  // The digest covers the head too, so that no byte of the file can change unseen.
+  return head + digest(head + std::string(bytes)) + "\n" + std::string(bytes);
+}
+
+Expected<std::string> unseal(std::string_view sealed, std::string_view kind) {
+  const std::size_t first = sealed.find('\n');
+  const std::string head = fmt::format("prehend {} {}\n", kind, version);
+  if (first == std::string_view::npos || first > 128 || !sealed.starts_with("prehend "))
+    return fail("is no file of this program");
+  if (sealed.substr(0, first + 1) != head)
+    return fail(fmt::format("holds '{}', not '{}'", sealed.substr(0, first),
+                            std::string_view(head).substr(0, head.size() - 1)));
+  const std::size_t body = first + 1 + 2 * SHA256_DIGEST_LENGTH + 1;
+  if (sealed.size() < body || sealed[body - 1] != '\n') return fail("is cut short");
+  const std::string bytes(sealed.substr(body));
+  if (digest(head + bytes) != sealed.substr(first + 1, 2 * SHA256_DIGEST_LENGTH))
+    return fail("is damaged: its digest does not fit");
+  return bytes;
+}
+
+Expected<void> write_sealed(const std::filesystem::path& file, std::string_view kind,
+                            std::string_view bytes) {
+  std::error_code ignored;
+  if (file.has_parent_path()) std::filesystem::create_directories(file.parent_path(), ignored);
+  // Written beside and renamed, so that nobody ever reads half a file.
+  const std::filesystem::path beside = file.string() + fmt::format(".{}", getpid());
+  {
+    std::ofstream stream(beside, std::ios::binary);
+    stream << seal(kind, bytes);
+    if (!stream.flush())
+      return fail("cannot be written", file.string(), "check the folder and the disk");
+  }
+  std::filesystem::rename(beside, file, ignored);
+  if (ignored) return fail("cannot be written: " + ignored.message(), file.string());
+  return {};
+}
+
+Expected<std::string> read_sealed(const std::filesystem::path& file, std::string_view kind) {
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream) return fail("cannot be read", file.string(), "is the path right?");
+  const std::string sealed((std::istreambuf_iterator<char>(stream)),
+                           std::istreambuf_iterator<char>());
+  auto bytes = unseal(sealed, kind);
+  if (!bytes) return fail(bytes.error().what, file.string(), "make it again");
+  return bytes;
+}
+
+}  // namespace prehend::proto
