@@ -1,0 +1,86 @@
+#include "catalogue.hpp"
+
+#include <toml++/toml.h>
+
+#include <algorithm>
+#include <optional>
+
+namespace prehend::model {
+namespace {
+
+std::optional<Eigen::Vector3d> three_numbers(const toml::node_view<const toml::node>& node) {
+  const toml::array* array = node.as_array();
+  if (!array || array->size() != 3) return std::nullopt;
+  Eigen::Vector3d v;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const auto number = array->at(i).value<double>();
+    if (!number) return std::nullopt;
+    v[static_cast<Eigen::Index>(i)] = *number;
+  }
+  return v;
+}
+
+Expected<CatalogueObject> read_object(const toml::table& table) {
+  CatalogueObject object;
+  object.name = table["name"].value_or("");
+  if (object.name.empty() || object.name.size() > 64) return fail("needs a name of 1 to 64 bytes");
+  const auto kind = shape_from_string(table["shape"].value_or(""));
+  if (!kind) return fail("shape is none of cylinder, box, sphere");
+  object.shape.kind = *kind;
+  const auto size = three_numbers(table["size"]);
+  if (!size) return fail("size needs three numbers in metres");
+  object.shape.size = *size;
+  if (!is_valid(object.shape)) return fail("every size must be positive");
+  object.mass = table["mass"].value_or(0.0);
+  if (!(object.mass > 0)) return fail("mass must be positive, in kg");
+  object.material = table["material"].value_or("");
+  if (object.material.empty()) return fail("needs a material");
+
+  object.appearance.pattern = table["appearance"]["pattern"].value_or("plain");
+  object.appearance.seed = table["appearance"]["seed"].value_or(0u);
+  if (const toml::array* colours = table["appearance"]["colours"].as_array())
+    for (const toml::node& entry : *colours) {
+      const auto colour = three_numbers(toml::node_view<const toml::node>(entry));
+      if (!colour) return fail("a colour needs three numbers, 0 to 1");
+      object.appearance.colours.push_back(*colour);
+    }
+  if (object.appearance.colours.empty()) object.appearance.colours.emplace_back(0.6, 0.6, 0.6);
+  return object;
+}
+
+}  // namespace
+
+Expected<Catalogue> Catalogue::load(const std::filesystem::path& file) {
+  toml::table root;
+  try {
+    root = toml::parse_file(file.string());
+  } catch (const toml::parse_error& error) {
+    return fail(std::string(error.description()), file.string(), "an object catalogue is TOML");
+  }
+  const toml::array* entries = root["object"].as_array();
+  if (!entries || entries->empty())
+    return fail("has no [[object]]", file.string(), "list at least one object");
+  Catalogue catalogue;
+  for (const toml::node& entry : *entries) {
+    const toml::table* table = entry.as_table();
+    if (!table) return fail("object is no table", file.string());
+    auto object = read_object(*table);
+    if (!object)
+      return fail(
+          "object " + std::to_string(catalogue.objects_.size() + 1) + ": " + object.error().what,
+          file.string());
+    if (catalogue.find(object->name))
+      return fail("two objects named " + object->name, file.string());
+    catalogue.objects_.push_back(std::move(*object));
+  }
+  return catalogue;
+}
+
+const CatalogueObject* Catalogue::find(std::string_view name) const {
+  const auto found =
+      std::find_if(objects_.begin(), objects_.end(),
+                   [&](const CatalogueObject& object) { return object.name == name; });
+  return found == objects_.end() ? nullptr : &*found;
+}
+
+}  // namespace prehend::model

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <filesystem>
+#include <prehend/base/error.hpp>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "shape.hpp"
+
+namespace prehend::model {
+
+/// How an object looks, for rendering: bands of colour around it and a printed label.
+struct Appearance {
+  std::vector<Eigen::Vector3d> colours;  // sRGB, 0..1; at least one
+  std::string pattern;                   // plain, bands, checks, blobs, label
+  unsigned seed = 0;                     // of the pattern's details
+};
+
+/// An everyday object, standing upright: z of its frame is up.
+struct CatalogueObject {
+  std::string name;
+  Shape shape;
+  double mass = 0;       // kg
+  std::string material;  // one of the friction table (see grasping/materials.hpp)
+  Appearance appearance;
+};
+
+/// The objects that the lab knows, from models/objects/catalogue.toml.
+class Catalogue {
+ public:
+  static Expected<Catalogue> load(const std::filesystem::path& file);
+
+  const std::vector<CatalogueObject>& objects() const { return objects_; }
+  /// nullptr if there is none of that name.
+  const CatalogueObject* find(std::string_view name) const;
+
+ private:
+  std::vector<CatalogueObject> objects_;
+};
+
+}  // namespace prehend::model

@@ -1,0 +1,95 @@
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <prehend/base/error.hpp>
+#include <prehend/base/pose.hpp>
+#include <string>
+#include <vector>
+
+#include "placement.hpp"
+#include "shape.hpp"
+
+namespace prehend::model {
+
+/// A collision primitive of a link. L: the link's frame, S: the primitive's.
+struct CollisionShape {
+  Shape shape;
+  Pose X_LS;
+};
+
+struct HandLink {
+  std::string name;
+  int joint = -1;             // the joint that moves it; -1: the base
+  double mass = 0;            // kg
+  Eigen::Vector3d com_L;      // centre of mass
+  Eigen::Matrix3d inertia_L;  // kg m², about the centre of mass, along the axes of L
+  std::vector<CollisionShape> collision;
+  std::string material;  // of the friction table
+};
+
+/// A revolute joint; its frame is that of the child link at q = 0. q = multiplier * dof + offset.
+struct HandJoint {
+  std::string name;
+  int parent = 0;  // index of the parent link
+  int child = 0;
+  Pose X_PJ;                    // joint in the parent link's frame at q = 0
+  Eigen::Vector3d axis_J;       // unit
+  double lower = 0, upper = 0;  // rad
+  int dof = 0;
+  double multiplier = 1, offset = 0;
+  double max_torque = 1;  // N m
+};
+
+struct HandDof {
+  std::string name;
+  double lower = 0, upper = 0;  // rad
+  double max_velocity = 1;      // rad/s
+  /// Which way closes the hand: +1, -1, or 0 (spread, abduction).
+  int closing = 0;
+};
+
+struct HandFingertip {
+  std::string name;  // finger
+  int link = 0;
+  Eigen::Vector3d p_LT;  // tip in the link's frame
+};
+
+/// A robot hand as data: kinematics and collision shapes from hand.urdf, the rest from hand.toml.
+/// B: base frame (the root link). Values are checked when loaded, so users need not.
+class HandModel {
+ public:
+  /// Loads models/hands/<name>/{hand.urdf,hand.toml}. Errors name the file and the element.
+  static Expected<HandModel> load(const std::filesystem::path& directory);
+
+  const std::string& name() const { return name_; }
+  const std::vector<HandDof>& dofs() const { return dofs_; }
+  const std::vector<HandJoint>& joints() const { return joints_; }  // parents before children
+  const std::vector<HandLink>& links() const { return links_; }     // [0] is the base
+  const std::vector<HandFingertip>& fingertips() const { return fingertips_; }
+  /// Named postures, dof values in rad; always has "open".
+  const std::map<std::string, Eigen::VectorXd>& postures() const { return postures_; }
+  const Pose& X_BG() const { return X_BG_; }  // grasp frame, see placement.hpp
+  const Reach& reach() const { return reach_; }
+
+  /// Joint angles of given dof values. Sizes: dofs() -> joints().
+  Eigen::VectorXd joint_angles(const Eigen::VectorXd& dof) const;
+  Eigen::VectorXd clamp(const Eigen::VectorXd& dof) const;
+  /// X_BL of every link at the given joint angles.
+  std::vector<Pose> link_poses(const Eigen::VectorXd& joint_angles) const;
+  /// p_BT of every fingertip at the given dof values.
+  std::vector<Eigen::Vector3d> fingertip_positions(const Eigen::VectorXd& dof) const;
+
+ private:
+  friend class HandLoader;
+  std::string name_;
+  std::vector<HandDof> dofs_;
+  std::vector<HandJoint> joints_;
+  std::vector<HandLink> links_;
+  std::vector<HandFingertip> fingertips_;
+  std::map<std::string, Eigen::VectorXd> postures_;
+  Pose X_BG_ = Pose::Identity();
+  Reach reach_;
+};
+
+}  // namespace prehend::model

@@ -1,0 +1,58 @@
+#pragma once
+
+#include <array>
+#include <prehend/base/pose.hpp>
+#include <vector>
+
+#include "shape.hpp"
+
+namespace prehend::model {
+
+enum class Finger { thumb, index, middle, ring, little };
+inline constexpr int finger_count = 5;
+inline constexpr int human_dof_count = 20;
+
+/// Joint angles of a human hand, rad: four a finger, index, middle, ring, little, thumb:
+/// abduction, MCP, PIP, DIP (thumb: CMC rotation, CMC flexion, MCP, IP).
+using HumanPosture = Eigen::Matrix<double, human_dof_count, 1>;
+
+/// A straight piece of a finger as a capsule, in frame H.
+struct Capsule {
+  Eigen::Vector3d a, b;  // ends of the axis, m
+  double radius = 0;     // m
+};
+
+/// Kinematics of a right human hand of a given size (20 DoF).
+/// Frame H: on the back of the hand, above the middle finger's metacarpal; x towards the fingers,
+/// z out of the back of the hand, y towards the thumb.
+class HumanHand {
+ public:
+  /// scale: length relative to an average adult hand, 0.7 to 1.4.
+  explicit HumanHand(double scale);
+
+  double scale() const { return scale_; }
+  /// Frame of the last segment of every finger; its origin is the fingertip (pad side of the tip),
+  /// x along the segment.
+  std::array<Pose, finger_count> fingertip_poses(const HumanPosture& posture) const;
+  /// The segments of all fingers.
+  std::vector<Capsule> segments(const HumanPosture& posture) const;
+  /// Joint angles forced into the limits of a hand.
+  HumanPosture clamp(const HumanPosture& posture) const;
+
+  /// Grasp frame (see placement.hpp) in H.
+  Pose X_HG() const;
+
+  static HumanPosture open_posture();
+  static HumanPosture fist_posture();
+  /// Every finger on its own between open (0) and closed (1); values outside are clamped.
+  static HumanPosture posture(const std::array<double, finger_count>& closure);
+
+  /// Closes every finger from open until one of its segments touches the object (or it is closed).
+  /// Returns the closure of each finger, for posture().
+  std::array<double, finger_count> close_on(const Shape& shape, const Pose& X_HO) const;
+
+ private:
+  double scale_;
+};
+
+}  // namespace prehend::model

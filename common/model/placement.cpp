@@ -1,0 +1,114 @@
+#include "placement.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace prehend::model {
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+
+/// Frame from the approach (z) and the closing direction (y).
+Matrix3d frame(const Vector3d& approach, const Vector3d& closing) {
+  Matrix3d R;
+  R.col(2) = approach;
+  R.col(1) = closing;
+  R.col(0) = closing.cross(approach);
+  return R;
+}
+
+/// Keeps the better of the candidates: turned least, then moved least.
+struct Nearest {
+  const Pose& X_OG;
+  std::optional<Pose> best;
+  double cost = std::numeric_limits<double>::infinity();
+
+  void offer(const Matrix3d& R, const Vector3d& p) {
+    const double candidate =
+        angle_between(X_OG.linear(), R) + (X_OG.translation() - p).norm();  // 1 rad weighs as 1 m
+    if (candidate < cost) {
+      cost = candidate;
+      best = make_pose(p, R);
+    }
+  }
+};
+
+/// Height of G over the bottom of the object when it comes from above.
+double height_from_above(double height, const Reach& reach) {
+  return std::max(height - reach.engage, reach.clearance);
+}
+
+/// Horizontal direction of v, or `otherwise` when v is vertical.
+Vector3d horizontal(const Vector3d& v, const Vector3d& otherwise) {
+  const Vector3d flat(v.x(), v.y(), 0);
+  return flat.norm() < 1e-9 ? otherwise : Vector3d(flat.normalized());
+}
+
+void offer_cylinder(const Shape& shape, const Reach& reach, Nearest& nearest) {
+  const double radius = shape.size.x(), height = shape.size.z();
+  if (2 * radius > reach.opening) return;
+  const Matrix3d& R = nearest.X_OG.linear();
+  const Vector3d p = nearest.X_OG.translation();
+  const Vector3d down = -Vector3d::UnitZ();
+
+  const double above = height_from_above(height, reach) - 0.5 * height;
+  nearest.offer(frame(down, horizontal(R.col(1), Vector3d::UnitY())), Vector3d(0, 0, above));
+  // From the side the palm's width must find room above the table and some of the object to hold.
+  const double lowest = reach.half_width - 0.5 * height;
+  const double highest = 0.5 * height - 0.03;
+  if (lowest > highest) return;
+  const Vector3d toward_axis = horizontal(R.col(2), Vector3d::UnitX());
+  const Vector3d sideways = Vector3d::UnitZ().cross(toward_axis);
+  const double level = std::clamp(p.z(), lowest, highest);
+  for (const double sign : {1.0, -1.0})
+    nearest.offer(frame(toward_axis, sign * sideways), Vector3d(0, 0, level));
+}
+
+void offer_box(const Shape& shape, const Reach& reach, Nearest& nearest) {
+  const Vector3d half = 0.5 * shape.size;
+  const Vector3d p = nearest.X_OG.translation();
+  for (int closing = 0; closing < 2; ++closing) {
+    if (shape.size[closing] > reach.opening) continue;
+    const int along = 1 - closing;
+    for (const double sign : {1.0, -1.0}) {
+      const Vector3d closing_direction = sign * Vector3d::Unit(closing);
+      // From above: anywhere along the side, but with the palm over the object.
+      Vector3d place = Vector3d::Zero();
+      const double slack = std::max(0.0, half[along] - reach.half_width);
+      place[along] = std::clamp(p[along], -slack, slack);
+      place.z() = height_from_above(shape.size.z(), reach) - half.z();
+      nearest.offer(frame(-Vector3d::UnitZ(), closing_direction), place);
+      // From either end, with the palm upright.
+      const double lowest = reach.half_width - half.z();
+      const double highest = half.z() - 0.03;
+      if (lowest > highest) continue;
+      for (const double side : {1.0, -1.0}) {
+        Vector3d end = Vector3d::Zero();
+        end[along] = -side * std::max(0.0, half[along] - reach.engage);
+        end.z() = std::clamp(p.z(), lowest, highest);
+        nearest.offer(frame(side * Vector3d::Unit(along), closing_direction), end);
+      }
+    }
+  }
+}
+
+}  // namespace
+
+std::optional<Pose> nearest_grasp(const Shape& shape, const Pose& X_OG, const Reach& reach) {
+  if (!is_valid(shape) || !is_finite(X_OG)) return std::nullopt;
+  Nearest nearest{X_OG, std::nullopt};
+  if (shape.kind == ShapeKind::box) {
+    offer_box(shape, reach, nearest);
+  } else {
+    // A sphere is held like a cylinder as high as it is wide.
+    const Shape upright{ShapeKind::cylinder,
+                        2 * half_extents(shape).cwiseProduct(Vector3d(.5, .5, 1))};
+    offer_cylinder(upright, reach, nearest);
+  }
+  return nearest.best;
+}
+
+}  // namespace prehend::model

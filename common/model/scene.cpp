@@ -1,0 +1,298 @@
+#include "scene.hpp"
+
+#include <fmt/format.h>
+#include <toml++/toml.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <prehend/base/random.hpp>
+#include <set>
+
+namespace prehend::model {
+namespace {
+
+using Eigen::Vector3d;
+constexpr double pi = std::numbers::pi;
+
+/// Reads the keys of one table and remembers which were asked for, so that a misspelt one is found.
+class TableReader {
+ public:
+  TableReader(const toml::table& table, std::string name) : table_(table), name_(std::move(name)) {}
+
+  template <class T>
+  void read(std::string_view key, T& value) {
+    known_.insert(std::string(key));
+    const auto node = table_[key];
+    if (!node) return;
+    if (const auto found = node.template value<T>())
+      value = *found;
+    else
+      complain(key, "has the wrong type");
+  }
+  void read_seed(std::string_view key, std::uint64_t& value) {
+    auto number = static_cast<std::int64_t>(value);
+    read(key, number);
+    value = static_cast<std::uint64_t>(number);
+  }
+  void read(std::string_view key, Vector3d& value) {
+    std::vector<double> numbers(value.data(), value.data() + 3);
+    read_list(key, numbers);
+    if (numbers.size() == 3)
+      value = Eigen::Map<const Vector3d>(numbers.data());
+    else
+      complain(key, "needs three numbers");
+  }
+  void read(std::string_view key, Pose& value) {
+    const Eigen::Quaterniond q(value.linear());
+    std::vector<double> n{value.translation().x(),
+                          value.translation().y(),
+                          value.translation().z(),
+                          q.w(),
+                          q.x(),
+                          q.y(),
+                          q.z()};
+    read_list(key, n);
+    if (n.size() != 7) return complain(key, "needs seven numbers: x y z, then w x y z");
+    const auto pose = checked_pose({n[0], n[1], n[2]}, Eigen::Quaterniond(n[3], n[4], n[5], n[6]));
+    if (pose)
+      value = *pose;
+    else
+      complain(key, pose.error().what);
+  }
+  const std::string& problem() {
+    for (const auto& [key, node] : table_)
+      if (!known_.contains(std::string(key.str()))) complain(key.str(), "is not a key of a scene");
+    return problem_;
+  }
+
+ private:
+  void read_list(std::string_view key, std::vector<double>& values) {
+    known_.insert(std::string(key));
+    const toml::array* array = table_[key].as_array();
+    if (!array) {
+      if (table_[key]) complain(key, "must be a list of numbers");
+      return;
+    }
+    values.clear();
+    for (const toml::node& node : *array) values.push_back(node.value<double>().value_or(NAN));
+    if (!std::all_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); }))
+      complain(key, "must be a list of finite numbers");
+  }
+  void complain(std::string_view key, std::string_view what) {
+    if (problem_.empty()) problem_ = fmt::format("{}.{} {}", name_, key, what);
+  }
+
+  const toml::table& table_;
+  std::string name_, problem_;
+  std::set<std::string> known_;
+};
+
+/// Round-trips every double; TOML wants a point or an exponent in a float.
+std::string number(double v) {
+  std::string text = fmt::format("{}", v);
+  if (text.find_first_of(".en") == std::string::npos) text += ".0";
+  return text;
+}
+
+std::string list(std::initializer_list<double> values) {
+  std::string text;
+  for (const double v : values) text += (text.empty() ? "[" : ", ") + number(v);
+  return text + "]";
+}
+std::string list(const Vector3d& v) {
+  return list({v.x(), v.y(), v.z()});
+}
+std::string list(const Pose& X) {
+  const Eigen::Quaterniond q(X.linear());
+  const Vector3d p = X.translation();
+  return list({p.x(), p.y(), p.z(), q.w(), q.x(), q.y(), q.z()});
+}
+
+/// A text as TOML writes it.
+std::string quoted(const std::string& text) {
+  std::string result = "\"";
+  for (const char c : text) {
+    if (c == '"' || c == '\\') result += '\\';
+    result += c;
+  }
+  return result + "\"";
+}
+
+}  // namespace
+
+Expected<Scene> load_scene(const std::filesystem::path& file, const Catalogue& catalogue) {
+  toml::table root;
+  try {
+    root = toml::parse_file(file.string());
+  } catch (const toml::parse_error& error) {
+    return fail(std::string(error.description()), file.string(), "a scene is a TOML file");
+  }
+  Scene scene;
+  std::string problem;
+  const auto read_table = [&](std::string_view name, auto&& read) {
+    const toml::table* table = root[name].as_table();
+    if (!table) {
+      if (root[name] && problem.empty()) problem = fmt::format("{} must be a table", name);
+      return;
+    }
+    TableReader reader(*table, std::string(name));
+    read(reader);
+    if (problem.empty()) problem = reader.problem();
+  };
+  read_table("scene", [&](TableReader& reader) {
+    reader.read("name", scene.name);
+    reader.read("table_colour", scene.table_colour);
+    reader.read_seed("texture_seed", scene.texture_seed);
+    reader.read("X_WH", scene.X_WH);
+    reader.read("recording_rate", scene.recording_rate);
+  });
+  read_table("light", [&](TableReader& reader) {
+    reader.read("to_light_W", scene.light.to_light_W);
+    reader.read("ambient", scene.light.ambient);
+    reader.read("gain", scene.light.gain);
+    reader.read("colour", scene.light.colour);
+  });
+  read_table("demonstrator", [&](TableReader& reader) {
+    Demonstrator& person = scene.demonstrator;
+    reader.read("user", person.user);
+    reader.read("target", person.target);
+    reader.read("hand_scale", person.hand_scale);
+    reader.read("grasp_yaw", person.grasp_yaw);
+    reader.read("approach_offset", person.approach_offset);
+    reader.read("approach_turn", person.approach_turn);
+    reader.read("position_noise", person.position_noise);
+    reader.read("angle_noise", person.angle_noise);
+    reader.read("extreme_rate", person.extreme_rate);
+    reader.read_seed("seed", person.seed);
+  });
+  if (root["object"] && !root["object"].as_array()) problem = "object must be [[object]]";
+  if (const toml::array* entries = root["object"].as_array())
+    for (const toml::node& entry : *entries) {
+      const toml::table* table = entry.as_table();
+      if (!table) return fail("object is no table", file.string());
+      PlacedObject object{"", Pose::Identity()};
+      TableReader reader(*table, "object");
+      reader.read("name", object.name);
+      reader.read("X_WO", object.X_WO);
+      if (problem.empty()) problem = reader.problem();
+      if (!catalogue.find(object.name))
+        return fail("object '" + object.name + "' is not in the catalogue", file.string());
+      scene.objects.push_back(object);
+    }
+  for (const auto& [key, node] : root)
+    if (key != "scene" && key != "light" && key != "demonstrator" && key != "object" &&
+        problem.empty())
+      problem = fmt::format("{} is not a table of a scene", key.str());
+  if (problem.empty() && !(scene.recording_rate > 0)) problem = "recording_rate must be positive";
+  if (problem.empty() && !(scene.light.to_light_W.norm() > 1e-6))
+    problem = "light has no direction";
+  if (problem.empty() &&
+      !(scene.demonstrator.hand_scale >= 0.7 && scene.demonstrator.hand_scale <= 1.4))
+    problem = "hand_scale must lie in 0.7 to 1.4";
+  const std::string& target = scene.demonstrator.target;
+  if (problem.empty() && !target.empty() &&
+      std::none_of(scene.objects.begin(), scene.objects.end(),
+                   [&](const PlacedObject& object) { return object.name == target; }))
+    problem = "the demonstrator's target '" + target + "' stands nowhere";
+  if (!problem.empty()) return fail(problem, file.string(), "see common/model/scene.hpp");
+  scene.light.to_light_W.normalize();
+  return scene;
+}
+
+std::string to_toml(const Scene& scene) {
+  const Demonstrator& person = scene.demonstrator;
+  std::string text = fmt::format(
+      "[scene]\nname = {}\ntable_colour = {}\ntexture_seed = {}\nX_WH = {}\nrecording_rate = "
+      "{}\n\n",
+      quoted(scene.name), list(scene.table_colour), static_cast<std::int64_t>(scene.texture_seed),
+      list(scene.X_WH), number(scene.recording_rate));
+  text += fmt::format("[light]\nto_light_W = {}\nambient = {}\ngain = {}\ncolour = {}\n\n",
+                      list(scene.light.to_light_W), number(scene.light.ambient),
+                      number(scene.light.gain), list(scene.light.colour));
+  text += fmt::format(
+      "[demonstrator]\nuser = {}\ntarget = {}\nhand_scale = {}\ngrasp_yaw = {}\n"
+      "approach_offset = {}\napproach_turn = {}\nposition_noise = {}\nangle_noise = {}\n"
+      "extreme_rate = {}\nseed = {}\n",
+      quoted(person.user), quoted(person.target), number(person.hand_scale),
+      number(person.grasp_yaw), list(person.approach_offset), list(person.approach_turn),
+      number(person.position_noise), number(person.angle_noise), number(person.extreme_rate),
+      static_cast<std::int64_t>(person.seed));
+  for (const PlacedObject& object : scene.objects)
+    text +=
+        fmt::format("\n[[object]]\nname = {}\nX_WO = {}\n", quoted(object.name), list(object.X_WO));
+  return text;
+}
+
+Expected<Scene> make_scene(const Catalogue& catalogue, std::uint64_t seed,
+                           const SceneOptions& options) {
+  Random random(seed * 0x9E3779B97F4A7C15ULL + 1);
+  Scene scene;
+  scene.name = fmt::format("seed-{}", seed);
+  scene.texture_seed = random.bits() >> 1;
+  for (double& channel : scene.table_colour) channel = random.uniform(0.35, 0.75);
+  const double light_turn = random.uniform(0, 2 * pi), light_height = random.uniform(0.6, 1.3);
+  scene.light.to_light_W = {std::cos(light_turn) * std::cos(light_height),
+                            std::sin(light_turn) * std::cos(light_height), std::sin(light_height)};
+  scene.light.ambient = random.uniform(0.35, 0.6);
+  scene.light.gain = random.uniform(0.85, 1.15);
+  for (double& channel : scene.light.colour) channel = random.uniform(0.94, 1.06);
+
+  std::vector<std::string> names = options.graspable;
+  if (names.empty())
+    for (const CatalogueObject& object : catalogue.objects()) names.push_back(object.name);
+  const std::string drawn = names[random.index(names.size())];
+  const CatalogueObject* target = catalogue.find(options.target.empty() ? drawn : options.target);
+  if (!target)
+    return fail("object '" + (options.target.empty() ? drawn : options.target) +
+                    "' is not in the catalogue",
+                "scene", "see prehend demo --help");
+
+  const auto place = [&](const CatalogueObject& object, double x, double y, double yaw) {
+    const double height = half_extents(object.shape).z();
+    scene.objects.push_back(
+        {object.name, make_pose(Vector3d(x, y, height),
+                                Eigen::Quaterniond(Eigen::AngleAxisd(yaw, Vector3d::UnitZ())))});
+  };
+  const double x = random.uniform(-0.12, 0.12), y = random.uniform(-0.15, 0.05);
+  place(*target, x, y, random.uniform(-pi / 2, pi / 2));
+
+  Demonstrator& person = scene.demonstrator;
+  person.user = fmt::format("user{}", seed);
+  person.target = target->name;
+  person.hand_scale = std::clamp(1.0 + random.normal(0.06), 0.86, 1.14);
+  person.grasp_yaw = -pi / 2 + random.uniform(-0.9, 0.9);  // from the side of the camera
+  for (double& offset : person.approach_offset) offset = random.uniform(-0.01, 0.01);
+  const Vector3d axis = random.normal3(1.0).normalized();
+  person.approach_turn = axis * random.uniform(0, 10 * pi / 180);
+  person.seed = random.bits() >> 1;
+
+  // Others stand where they neither hide the target nor are in the way of the hands.
+  std::set<std::string> used{target->name};
+  for (int tries = 0; tries < 500 && static_cast<int>(used.size()) <= options.distractors;
+       ++tries) {
+    const CatalogueObject& other = catalogue.objects()[random.index(catalogue.objects().size())];
+    const double ox = random.uniform(-0.4, 0.4), oy = random.uniform(-0.2, 0.35);
+    const double yaw = random.uniform(-pi, pi);
+    if (used.contains(other.name)) continue;
+    const double radius = half_extents(other.shape).head<2>().norm();
+    const double towards = std::atan2(oy - y, ox - x);
+    const auto apart = [&](double azimuth) {
+      return std::abs(std::remainder(towards - azimuth, 2 * pi));
+    };
+    if (std::hypot(ox - x, oy - y) < 0.24 + radius) continue;
+    if (apart(person.grasp_yaw) < 1.2 || apart(-pi / 2) < 1.0) continue;
+    const bool crowded = std::any_of(
+        scene.objects.begin() + 1, scene.objects.end(), [&](const PlacedObject& placed) {
+          const double taken = half_extents(catalogue.find(placed.name)->shape).head<2>().norm();
+          return std::hypot(placed.X_WO.translation().x() - ox,
+                            placed.X_WO.translation().y() - oy) < taken + radius + 0.03;
+        });
+    if (crowded) continue;
+    place(other, ox, oy, yaw);
+    used.insert(other.name);
+  }
+  return scene;
+}
+
+}  // namespace prehend::model

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <map>
+#include <set>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <prehend/base/time.hpp>
+#include <prehend/dds/participant.hpp>
+
+namespace prehend::service {
+
+/// Leads services through time in lockstep: publishes lab/clock, waits for lab/progress. Whoever feeds
+/// the services (a replayer, a test) publishes with a Participant in lockstep and tells the conductor.
+///
+/// Every cycle names how many samples of each topic have been published so far, so that what a
+/// service takes in a cycle does not depend on when messages arrive. What services publish in one
+/// cycle they read in the next; settle() goes on at the same stamp until nothing new comes.
+/// A topic should have one writer: the order among several writers of a topic is not fixed.
+class Conductor {
+ public:
+  /// `services`: names of those that must answer every cycle.
+  static Expected<Conductor> create(dds::Participant& participant,
+                                    const std::vector<std::string>& services);
+
+  /// The caller has published `count` samples on the topic.
+  void published(std::string_view topic, std::uint64_t count = 1);
+
+  /// One cycle at `now`. Fails when a service does not answer in `patience`, and names it.
+  Expected<void> step(Time now, std::chrono::milliseconds patience);
+  /// Cycles at `now` until one brings nothing new.
+  Expected<void> settle(Time now, std::chrono::milliseconds patience);
+
+ private:
+  Conductor(dds::Writer<v1::LabClock> clock, dds::Reader<v1::LabProgress> progress,
+            const std::vector<std::string>& services);
+  std::map<std::string, std::uint64_t> totals() const;
+
+  dds::Writer<v1::LabClock> clock_;
+  dds::Reader<v1::LabProgress> progress_;
+  std::set<std::string> services_;
+  std::uint64_t cycle_ = 0;
+  std::map<std::string, std::uint64_t> own_;
+  std::map<std::string, std::map<std::string, std::uint64_t>> by_service_;
+};
+
+}  // namespace prehend::service

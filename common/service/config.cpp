@@ -1,0 +1,178 @@
+#include "config.hpp"
+
+#include <fmt/format.h>
+#include <toml++/toml.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cstdlib>
+#include <optional>
+#include <prehend/base/paths.hpp>
+
+namespace prehend::service {
+namespace {
+
+const ConfigKey* find_key(std::string_view name) {
+  const auto& keys = config_keys();
+  const auto found = std::find_if(keys.begin(), keys.end(),
+                                  [&](const ConfigKey& key) { return key.name == name; });
+  return found == keys.end() ? nullptr : &*found;
+}
+
+std::string_view type_name(const Setting& setting) {
+  constexpr std::string_view names[] = {"true or false", "a whole number", "a number", "a text",
+                                        "a list of numbers"};
+  return names[setting.index()];
+}
+
+/// The node as a value of the same type as `like`, or nothing.
+std::optional<Setting> convert(const toml::node& node, const Setting& like) {
+  if (std::holds_alternative<bool>(like)) {
+    if (node.is_boolean()) return Setting(**node.as_boolean());
+  } else if (std::holds_alternative<std::int64_t>(like)) {
+    if (node.is_integer()) return Setting(**node.as_integer());
+  } else if (std::holds_alternative<double>(like)) {
+    if (const auto number = node.value<double>(); number && node.is_number())
+      return Setting(*number);
+  } else if (std::holds_alternative<std::string>(like)) {
+    if (node.is_string()) return Setting(**node.as_string());
+  } else if (const toml::array* array = node.as_array()) {
+    std::vector<double> numbers;
+    for (const toml::node& entry : *array) {
+      if (!entry.is_number()) return std::nullopt;
+      numbers.push_back(*entry.value<double>());
+    }
+    return Setting(std::move(numbers));
+  }
+  return std::nullopt;
+}
+
+/// Nearest known key, to help with a slip of the pen.
+std::string suggestion(std::string_view unknown) {
+  const auto distance = [](std::string_view a, std::string_view b) {
+    std::vector<std::size_t> row(b.size() + 1);
+    for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
+    for (std::size_t i = 1; i <= a.size(); ++i) {
+      std::size_t diagonal = row[0]++;
+      for (std::size_t j = 1; j <= b.size(); ++j) {
+        const std::size_t above = row[j];
+        row[j] = std::min({row[j - 1] + 1, above + 1, diagonal + (a[i - 1] != b[j - 1])});
+        diagonal = above;
+      }
+    }
+    return row.back();
+  };
+  const auto& keys = config_keys();
+  const auto nearest =
+      std::min_element(keys.begin(), keys.end(), [&](const auto& a, const auto& b) {
+        return distance(unknown, a.name) < distance(unknown, b.name);
+      });
+  return fmt::format("did you mean {}?", nearest->name);
+}
+
+}  // namespace
+
+Expected<Config> Config::load(const std::filesystem::path& file,
+                              const std::vector<std::string>& overrides) {
+  Config config;
+  config.directory_ = std::filesystem::absolute(file).parent_path();
+  for (const ConfigKey& key : config_keys()) config.values_.emplace(key.name, key.fallback);
+
+  const auto set = [&](std::string_view name, const toml::node& node,
+                       const std::string& where) -> Expected<void> {
+    const ConfigKey* key = find_key(name);
+    if (!key) return fail(fmt::format("unknown key {}", name), where, suggestion(name));
+    auto value = convert(node, key->fallback);
+    if (!value)
+      return fail(fmt::format("{} must be {}", name, type_name(key->fallback)), where,
+                  std::string(key->help));
+    config.values_.find(name)->second = std::move(*value);
+    return {};
+  };
+  /// A value as it stands behind a key in TOML; bare words are texts.
+  const auto set_from_text = [&](std::string_view name, const std::string& text,
+                                 const std::string& where) -> Expected<void> {
+    const ConfigKey* key = find_key(name);
+    if (!key) return fail(fmt::format("unknown key {}", name), where, suggestion(name));
+    if (std::holds_alternative<std::string>(key->fallback))
+      return set(name, toml::value<std::string>(text), where);
+    try {
+      const toml::table table = toml::parse("value = " + text);
+      return set(name, *table.get("value"), where);
+    } catch (const toml::parse_error&) {
+      return fail(fmt::format("{} must be {}", name, type_name(key->fallback)), where,
+                  std::string(key->help));
+    }
+  };
+
+  toml::table root;
+  try {
+    root = toml::parse_file(file.string());
+  } catch (const toml::parse_error& error) {
+    return fail(std::string(error.description()),
+                fmt::format("{}:{}", file.string(), error.source().begin.line),
+                "the configuration is a TOML file");
+  }
+  for (const auto& [table_name, node] : root) {
+    const toml::table* table = node.as_table();
+    if (!table)
+      return fail(fmt::format("unknown key {}", table_name.str()), file.string(),
+                  "keys stand in tables");
+    for (const auto& [key, value] : *table) {
+      const auto done = set(fmt::format("{}.{}", table_name.str(), key.str()), value,
+                            fmt::format("{}:{}", file.string(), value.source().begin.line));
+      if (!done) return tl::unexpected(done.error());
+    }
+  }
+
+  for (const ConfigKey& key : config_keys()) {
+    std::string variable = "PREHEND_" + std::string(key.name);
+    for (char& c : variable)
+      c = c == '.' ? '_' : static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+    if (const char* text = std::getenv(variable.c_str()))
+      if (const auto done = set_from_text(key.name, text, variable); !done)
+        return tl::unexpected(done.error());
+  }
+  for (const std::string& text : overrides) {
+    const std::size_t equals = text.find('=');
+    if (equals == std::string::npos) return fail("must be table.key=value", "--set " + text);
+    if (const auto done =
+            set_from_text(text.substr(0, equals), text.substr(equals + 1), "--set " + text);
+        !done)
+      return tl::unexpected(done.error());
+  }
+  return config;
+}
+
+namespace {
+template <class T>
+const T& get(const std::map<std::string, Setting, std::less<>>& values, std::string_view key) {
+  return std::get<T>(values.find(key)->second);
+}
+}  // namespace
+
+bool Config::flag(std::string_view key) const {
+  return get<bool>(values_, key);
+}
+std::int64_t Config::integer(std::string_view key) const {
+  return get<std::int64_t>(values_, key);
+}
+double Config::number(std::string_view key) const {
+  return get<double>(values_, key);
+}
+const std::string& Config::text(std::string_view key) const {
+  return get<std::string>(values_, key);
+}
+const std::vector<double>& Config::numbers(std::string_view key) const {
+  return get<std::vector<double>>(values_, key);
+}
+
+std::filesystem::path Config::path(std::string_view key) const {
+  const std::string& given = text(key);
+  if (given.empty()) return {};
+  if (given.starts_with("share:")) return share_directory() / given.substr(6);
+  const std::filesystem::path path(given);
+  return path.is_absolute() ? path : directory_ / path;
+}
+
+}  // namespace prehend::service

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <prehend/base/error.hpp>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+namespace prehend::service {
+
+/// A setting of the lab: a number, a truth value, a text, or a list of numbers.
+using Setting = std::variant<bool, std::int64_t, double, std::string, std::vector<double>>;
+
+/// One key of lab.toml. All services share one table of keys (config_keys.cpp), so that a misspelt
+/// key is an error everywhere, whoever reads it.
+struct ConfigKey {
+  std::string_view name;  // "table.key"
+  Setting fallback;       // also fixes the type
+  std::string_view help;
+};
+const std::vector<ConfigKey>& config_keys();
+
+/// The configuration: defaults, then the file, then PREHEND_TABLE_KEY from the environment, then
+/// overrides of the form "table.key=value". Unknown keys and wrong types are errors.
+class Config {
+ public:
+  static Expected<Config> load(const std::filesystem::path& file,
+                               const std::vector<std::string>& overrides = {});
+
+  bool flag(std::string_view key) const;
+  std::int64_t integer(std::string_view key) const;
+  double number(std::string_view key) const;
+  const std::string& text(std::string_view key) const;
+  const std::vector<double>& numbers(std::string_view key) const;
+  /// A path; a relative one is meant from the folder of the file, "share:x" from share_directory().
+  /// Empty stays empty.
+  std::filesystem::path path(std::string_view key) const;
+
+ private:
+  std::map<std::string, Setting, std::less<>> values_;
+  std::filesystem::path directory_;
+};
+
+}  // namespace prehend::service

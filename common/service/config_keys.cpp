@@ -1,0 +1,62 @@
+#include "config.hpp"
+
+namespace prehend::service {
+
+using Numbers = std::vector<double>;
+using Text = std::string;
+
+// A pose is seven numbers: x, y, z in metres, then the quaternion w, x, y, z.
+const std::vector<ConfigKey>& config_keys() {
+  static const std::vector<ConfigKey> keys{
+      {"lab.rig", Text("lab"),
+       "the set-up of one glove and one robot hand; samples stay within it"},
+      {"lab.domain", std::int64_t{0}, "DDS domain, 0 to 232"},
+      {"lab.lockstep", false, "follow lab/clock instead of the system clock"},
+      {"lab.scene", Text(""),
+       "scene file: what stands on the table; empty where only cameras know"},
+      {"lab.catalogue", Text("share:models/objects/catalogue.toml"),
+       "the objects that the lab knows"},
+
+      {"tracker.X_WT", Numbers{0, 0, 0, 1, 0, 0, 0}, "tracker's frame on the table"},
+
+      {"glove.name", Text("glove"), "key of this glove's topics"},
+      {"glove.device", Text("synthetic"), "topic, nest_of_birds, recording or synthetic"},
+      {"glove.user", Text("anyone"), "who wears the glove"},
+      {"glove.hand_scale", 1.0, "length of the user's hand, 1 = average adult"},
+      {"glove.port", Text(""), "serial port of the tracker"},
+      {"glove.baud", std::int64_t{115200}, "bits per second on that port"},
+      {"glove.sensors", std::int64_t{4},
+       "sensors of the tracker; back of hand, thumb, index, little"},
+      {"glove.format", Text("position_matrix"), "records asked of the tracker"},
+      {"glove.file", Text(""), "recording to play"},
+      {"glove.rate", 30.0, "Hz, of the synthetic hand"},
+
+      {"camera.name", Text("camera"), "key of this camera's topic"},
+      {"camera.width", std::int64_t{640}, "px"},
+      {"camera.height", std::int64_t{480}, "px"},
+      {"camera.focal", Numbers{620, 620}, "px, horizontal and vertical"},
+      {"camera.centre", Numbers{319.5, 239.5}, "px, principal point"},
+      {"camera.distortion", Numbers{0, 0, 0, 0, 0}, "OpenCV's k1 k2 p1 p2 k3"},
+      {"camera.X_WC", Numbers{0, -0.95, 0.75, 0.4226183, -0.9063078, 0, 0},
+       "camera in the table's frame; z looks into the scene, x right, y down"},
+
+      {"recognition.source", Text("synthetic"), "topic, device, video, folder or synthetic"},
+      {"recognition.path", Text(""), "device file, video file or stream, or folder of pictures"},
+      {"recognition.rate", 10.0, "Hz, at which pictures are taken"},
+      {"recognition.model", Text("share:trained/objects.model"), "trained object models"},
+      {"recognition.accept", 0.7, "least probability of a published detection"},
+
+      {"mapping.hand", Text("barrett"), "kind of robot hand"},
+      {"mapping.hand_name", Text("hand"), "key of robot/command"},
+      {"mapping.model", Text("share:trained/barrett.mapping"), "trained mapping model"},
+      {"mapping.intelligent", true, "let detections improve the mapping"},
+
+      {"simulation.hand", Text("barrett"), "kind of robot hand"},
+      {"simulation.hand_name", Text("hand"), "key of robot/command"},
+      {"simulation.rate", 500.0, "Hz, physics steps"},
+      {"simulation.state_rate", 100.0, "Hz, robot/state and object/state"},
+  };
+  return keys;
+}
+
+}  // namespace prehend::service

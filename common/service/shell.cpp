@@ -1,0 +1,352 @@
+#include "shell.hpp"
+
+#include <signal.h>
+#include <sys/signalfd.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <atomic>
+#include <deque>
+#include <fastdds/dds/core/condition/GuardCondition.hpp>
+#include <fastdds/dds/core/condition/WaitSet.hpp>
+#include <fstream>
+#include <iostream>
+#include <limits>
+#include <mutex>
+#include <prehend/base/log.hpp>
+#include <prehend/base/paths.hpp>
+#include <thread>
+
+namespace prehend::service {
+
+namespace fdds = eprosima::fastdds::dds;
+
+namespace {
+
+Time system_now() {
+  return std::chrono::time_point_cast<Duration>(std::chrono::system_clock::now());
+}
+
+/// Bytes of memory in use, from the kernel.
+double resident_memory() {
+  std::ifstream statm("/proc/self/statm");
+  long total = 0, resident = 0;
+  statm >> total >> resident;
+  return static_cast<double>(resident) * static_cast<double>(sysconf(_SC_PAGESIZE));
+}
+
+std::string host_name() {
+  char name[65] = {};
+  gethostname(name, 64);
+  return name;
+}
+
+/// Waited for by a thread parked in sigwait: a handler must not touch what wakes the wait set.
+sigset_t stop_signals() {
+  sigset_t set;
+  sigemptyset(&set);
+  sigaddset(&set, SIGTERM);
+  sigaddset(&set, SIGINT);
+  return set;
+}
+
+}  // namespace
+
+struct Shell::State {
+  Options options;
+  Config config;
+  Status status;
+  bool lockstep = false;
+  std::optional<dds::Participant> participant;
+
+  std::vector<Input> inputs;
+  fdds::WaitSet wait_set;
+  fdds::GuardCondition woken;
+
+  std::mutex mutex;  // guards tasks
+  std::deque<std::function<void()>> tasks;
+  std::atomic<bool> stopping = false;
+  std::atomic<int> exit_code = 0;
+
+  std::function<void(Time)> tick;
+  Duration period{};
+  Time next_tick{}, next_status{}, started{}, clock{};
+
+  std::optional<dds::Writer<v1::ServiceStatus>> status_writer;
+  v1::ServiceStatus status_message;
+
+  // Lockstep.
+  std::optional<dds::Reader<v1::LabClock>> clock_reader;
+  std::optional<dds::Writer<v1::LabProgress>> progress_writer;
+  std::deque<v1::LabClock> cycles;
+  std::map<std::string, std::uint64_t, std::less<>> published;
+
+  std::thread signals;
+
+  void wake() { woken.set_trigger_value(true); }
+};
+
+Shell::Shell(std::unique_ptr<State> state) : state_(std::move(state)) {}
+
+Shell::~Shell() {
+  // The watcher sleeps in sigwait; a signal of our own lets it go.
+  if (state_ && state_->signals.joinable()) {
+    state_->stopping = true;
+    pthread_kill(state_->signals.native_handle(), SIGTERM);
+    state_->signals.join();
+  }
+}
+
+std::unique_ptr<Shell> Shell::create(int argc, char** argv, const Options& options,
+                                     int& exit_code) {
+  CLI::App app(options.description, "prehend-" + options.name);
+  std::string config_file = (share_directory() / "lab.toml").string();
+  std::vector<std::string> overrides;
+  bool lockstep = false, verbose = false;
+  app.add_option("--config", config_file, "the lab's configuration file")->capture_default_str();
+  app.add_option("--set", overrides, "override: table.key=value (repeatable)")
+      ->take_all()
+      ->expected(1)
+      ->allow_extra_args(false);
+  app.add_flag("--lockstep", lockstep, "follow lab/clock instead of the system clock");
+  app.add_flag("--verbose", verbose, "say more");
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    exit_code = app.exit(error) == 0 ? 0 : 2;
+    return nullptr;
+  }
+  log::set_name(options.name);
+  log::set_verbose(verbose);
+
+  auto config = Config::load(config_file, overrides);
+  if (!config) {
+    log::error("{}", config.error().message());
+    exit_code = 2;
+    return nullptr;
+  }
+
+  // Before any thread starts, so that all of them inherit it and only the watcher gets the signals.
+  const sigset_t set = stop_signals();
+  pthread_sigmask(SIG_BLOCK, &set, nullptr);
+
+  auto state = std::make_unique<State>();
+  state->options = options;
+  state->config = std::move(*config);
+  state->lockstep = lockstep || state->config.flag("lab.lockstep");
+  auto participant =
+      dds::Participant::create({.name = options.name,
+                                .domain = static_cast<int>(state->config.integer("lab.domain")),
+                                .rig = state->config.text("lab.rig"),
+                                .lockstep = state->lockstep});
+  if (!participant) {
+    log::error("{}", participant.error().message());
+    exit_code = 3;
+    return nullptr;
+  }
+  state->participant.emplace(std::move(*participant));
+  state->wait_set.attach_condition(state->woken);
+  state->started = system_now();
+
+  auto status_writer = state->participant->writer(dds::service_status);
+  if (!status_writer) refuse(status_writer.error());
+  state->status_writer.emplace(std::move(*status_writer));
+  const std::string host = host_name();
+  state->status_message.name(options.name.c_str());
+  state->status_message.host(host.substr(0, 64).c_str());
+  state->status_message.service(
+      (options.name + "@" + host + "/" + std::to_string(getpid())).substr(0, 128).c_str());
+
+  if (state->lockstep) {
+    auto reader = state->participant->reader(dds::lab_clock);
+    if (!reader) refuse(reader.error());
+    auto writer = state->participant->writer(dds::lab_progress);
+    if (!writer) refuse(writer.error());
+    reader->raw().get_statuscondition().set_enabled_statuses(fdds::StatusMask::data_available());
+    state->wait_set.attach_condition(reader->raw().get_statuscondition());
+    state->clock_reader.emplace(std::move(*reader));
+    state->progress_writer.emplace(std::move(*writer));
+  }
+
+  State* raw = state.get();
+  state->signals = std::thread([raw] {
+    const sigset_t waited = stop_signals();
+    int signal = 0;
+    sigwait(&waited, &signal);
+    raw->stopping = true;
+    raw->wake();
+  });
+  exit_code = 0;
+  return std::unique_ptr<Shell>(new Shell(std::move(state)));
+}
+
+const Config& Shell::config() const {
+  return state_->config;
+}
+Status& Shell::status() {
+  return state_->status;
+}
+bool Shell::lockstep() const {
+  return state_->lockstep;
+}
+Time Shell::now() const {
+  return state_->lockstep ? state_->clock : system_now();
+}
+dds::Participant& Shell::participant() {
+  return *state_->participant;
+}
+
+void Shell::refuse(const Error& error) {
+  log::error("{}", error.message());
+  std::_Exit(3);
+}
+
+void Shell::add_input(Input input) {
+  input.reader->get_statuscondition().set_enabled_statuses(fdds::StatusMask::data_available());
+  state_->wait_set.attach_condition(input.reader->get_statuscondition());
+  state_->inputs.push_back(std::move(input));
+  // Equal stamps are handed over in the order of the topics' names, whoever subscribed first.
+  std::stable_sort(state_->inputs.begin(), state_->inputs.end(),
+                   [](const Input& a, const Input& b) { return a.topic < b.topic; });
+}
+
+std::function<void()> Shell::count_output(std::string_view topic) {
+  std::uint64_t& count = state_->published[std::string(topic)];
+  return [&count] { ++count; };
+}
+
+void Shell::on_tick(Duration period, std::function<void(Time)> tick) {
+  state_->period = period;
+  state_->tick = std::move(tick);
+}
+
+void Shell::post(std::function<void()> task) {
+  {
+    const std::scoped_lock lock(state_->mutex);
+    state_->tasks.push_back(std::move(task));
+  }
+  state_->wake();
+}
+
+void Shell::stop(int exit_code) {
+  state_->exit_code = exit_code;
+  state_->stopping = true;
+  state_->wake();
+}
+
+int Shell::run() {
+  State& state = *state_;
+  const auto publish_status = [&](Time now) {
+    state.status.fill(state.status_message, now);
+    state.status_message.uptime(to_seconds(now - state.started));
+    state.status_message.resident(resident_memory());
+    state.status_writer->write(state.status_message);
+    state.next_status = now + std::chrono::seconds(1);
+  };
+  const auto run_tasks = [&] {
+    std::deque<std::function<void()>> tasks;
+    {
+      const std::scoped_lock lock(state.mutex);
+      tasks.swap(state.tasks);
+    }
+    for (auto& task : tasks) task();
+  };
+  /// In the order (stamp, topic, sequence): inputs are sorted by topic, arrivals by sequence.
+  const auto deliver = [](std::vector<Input::Arrival>& due) {
+    std::stable_sort(due.begin(), due.end(),
+                     [](const auto& a, const auto& b) { return a.stamp_ns < b.stamp_ns; });
+    for (Input::Arrival& arrival : due) arrival.deliver();
+  };
+
+  /// Lockstep: takes what has arrived, so that the wait set can sleep until more comes.
+  const auto collect = [&] {
+    for (auto& sample : state.clock_reader->take())
+      if (!sample.info.gone) state.cycles.push_back(std::move(sample.data));
+    for (Input& input : state.inputs)
+      for (Input::Arrival& arrival : input.take()) {
+        arrival.index = input.received++;
+        input.waiting.push_back(std::move(arrival));
+      }
+  };
+
+  /// One lockstep cycle, if everything it speaks of has come. False: wait for more.
+  const auto run_cycle = [&]() -> bool {
+    if (state.cycles.empty()) return false;
+    const v1::LabClock& cycle = state.cycles.front();
+    const auto counted = [&](const Input& input) {
+      for (const auto& count : cycle.published())
+        if (input.topic == std::string_view(count.topic().c_str())) return count.count();
+      return std::uint64_t{0};
+    };
+    for (const Input& input : state.inputs)
+      if (input.received < counted(input)) return false;
+    state.clock = from_ns(cycle.stamp_ns());
+    // Of each topic only as many as the clock has counted: later ones belong to later cycles.
+    std::vector<Input::Arrival> due;
+    std::uint32_t waiting = 0;
+    for (Input& input : state.inputs) {
+      std::vector<Input::Arrival> kept;
+      for (Input::Arrival& arrival : input.waiting) {
+        const bool is_due = arrival.index < counted(input) && arrival.stamp_ns <= cycle.stamp_ns();
+        (is_due ? due : kept).push_back(std::move(arrival));
+      }
+      waiting += static_cast<std::uint32_t>(kept.size());
+      input.waiting = std::move(kept);
+    }
+    deliver(due);
+    if (state.tick) state.tick(state.clock);
+    v1::LabProgress progress;
+    progress.service(state.options.name.c_str());
+    progress.cycle(cycle.cycle());
+    progress.stamp_ns(cycle.stamp_ns());
+    progress.waiting(waiting);
+    for (const auto& [topic, count] : state.published) {
+      v1::TopicCount entry;
+      entry.topic(topic.c_str());
+      entry.count(count);
+      progress.published().push_back(entry);
+    }
+    state.progress_writer->write(progress);
+    state.cycles.pop_front();
+    return true;
+  };
+
+  publish_status(system_now());
+  state.next_tick = system_now();
+  while (!state.stopping) {
+    const Time before = system_now();
+    Time wake_at = state.next_status;
+    if (state.tick && !state.lockstep) wake_at = std::min(wake_at, state.next_tick);
+    if (wake_at > before) {
+      const Duration left = wake_at - before;
+      fdds::ConditionSeq active;
+      state.wait_set.wait(active, eprosima::fastrtps::Duration_t(
+                                      static_cast<int32_t>(left.count() / 1'000'000'000),
+                                      static_cast<uint32_t>(left.count() % 1'000'000'000)));
+    }
+    // Reset before looking: whatever is posted afterwards sets it again.
+    state.woken.set_trigger_value(false);
+    run_tasks();
+    if (state.lockstep) {
+      collect();
+      while (run_cycle()) {
+      }
+    } else {
+      std::vector<Input::Arrival> due;
+      for (Input& input : state.inputs)
+        for (Input::Arrival& arrival : input.take()) due.push_back(std::move(arrival));
+      deliver(due);
+      if (const Time now = system_now(); state.tick && now >= state.next_tick) {
+        state.tick(now);
+        // A late tick is not made up for: the next one sees all the time that has passed.
+        state.next_tick = std::max(state.next_tick + state.period, now);
+      }
+    }
+    if (const Time now = system_now(); now >= state.next_status) publish_status(now);
+  }
+  log::info("stopped");
+  return state.exit_code;
+}
+
+}  // namespace prehend::service

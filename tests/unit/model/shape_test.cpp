@@ -1,0 +1,71 @@
+// The signed distance of each primitive against its definition: the distance to the nearest point of
+// the surface, found by brute force over a dense sample of the surface.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <limits>
+#include <numbers>
+#include <vector>
+
+#include <prehend/base/random.hpp>
+#include <prehend/model/shape.hpp>
+
+namespace prehend::model {
+namespace {
+
+using Eigen::Vector3d;
+
+std::vector<Vector3d> sample_surface(const Shape& shape, Random& random, int count) {
+  std::vector<Vector3d> points;
+  const Vector3d half = half_extents(shape);
+  for (int i = 0; i < count; ++i) {
+    if (shape.kind == ShapeKind::sphere) {
+      points.push_back(random.normal3(1).normalized() * shape.size.x());
+    } else if (shape.kind == ShapeKind::box) {
+      Vector3d p(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
+      p[static_cast<int>(random.index(3))] = random.uniform() < 0.5 ? -1 : 1;
+      points.push_back(p.cwiseProduct(half));
+    } else {
+      const double angle = random.uniform(0, 2 * std::numbers::pi);
+      const bool side = random.uniform() < 0.6;
+      const double radius = shape.size.x() * (side ? 1 : std::sqrt(random.uniform()));
+      const double z = side ? random.uniform(-1, 1) : (random.uniform() < 0.5 ? -1 : 1);
+      points.emplace_back(radius * std::cos(angle), radius * std::sin(angle), z * half.z());
+    }
+  }
+  return points;
+}
+
+TEST(Shape, SignedDistanceIsTheDistanceToTheSurface) {
+  Random random(7);
+  const Shape shapes[] = {{ShapeKind::cylinder, {0.03, 0.03, 0.1}},
+                          {ShapeKind::box, {0.04, 0.2, 0.12}},
+                          {ShapeKind::sphere, {0.04, 0.04, 0.04}}};
+  for (const Shape& shape : shapes) {
+    const auto surface = sample_surface(shape, random, 60000);
+    for (int i = 0; i < 60; ++i) {
+      const Vector3d p = random.normal3(0.06);
+      double nearest = std::numeric_limits<double>::infinity();
+      for (const Vector3d& q : surface) nearest = std::min(nearest, (p - q).norm());
+      // The sampled surface has gaps of about 1 mm, so the sampled distance is up to that too long.
+      EXPECT_NEAR(std::abs(signed_distance(shape, p)), nearest, 2e-3) << to_string(shape.kind);
+      const Vector3d half = half_extents(shape);
+      if ((p.cwiseAbs() - half).maxCoeff() > 0) {
+        EXPECT_GT(signed_distance(shape, p), 0);
+      }
+    }
+    EXPECT_LT(signed_distance(shape, Vector3d::Zero()), 0);
+  }
+}
+
+TEST(Shape, NamesRoundTripAndBadSizesAreInvalid) {
+  for (const ShapeKind kind : {ShapeKind::unknown, ShapeKind::cylinder, ShapeKind::box, ShapeKind::sphere})
+    EXPECT_EQ(shape_from_string(to_string(kind)), kind);
+  EXPECT_FALSE(shape_from_string("Cylinder").has_value());
+  EXPECT_FALSE(is_valid({ShapeKind::box, {0.1, 0, 0.1}}));
+  EXPECT_FALSE(is_valid({ShapeKind::box, {0.1, std::nan(""), 0.1}}));
+  EXPECT_FALSE(is_valid({ShapeKind::unknown, {1, 1, 1}}));
+}
+
+}  // namespace
+}  // namespace prehend::model

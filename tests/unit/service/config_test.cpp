@@ -1,0 +1,73 @@
+// lab.toml: defaults, file, environment and overrides in this order; whatever is misspelt or of the
+// wrong type is an error that names the place.
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+
+#include <prehend/service/config.hpp>
+
+namespace prehend::service {
+namespace {
+
+std::filesystem::path write(const std::string& text) {
+  const auto file =
+      std::filesystem::temp_directory_path() / ("lab-" + std::to_string(::getpid()) + ".toml");
+  std::ofstream(file) << text;
+  return file;
+}
+
+TEST(Config, LaterSourcesWin) {
+  const auto file = write("[glove]\nrate = 40\nuser = \"ann\"\n[camera]\nfocal = [500, 510.5]\n");
+  auto config = Config::load(file);
+  ASSERT_TRUE(config) << config.error().message();
+  EXPECT_EQ(config->number("glove.rate"), 40) << "a whole number is a number too";
+  EXPECT_EQ(config->integer("glove.baud"), 115200);
+  EXPECT_EQ(config->numbers("camera.focal"), (std::vector<double>{500, 510.5}));
+
+  setenv("PREHEND_GLOVE_RATE", "50", 1);
+  EXPECT_EQ(Config::load(file)->number("glove.rate"), 50);
+  EXPECT_EQ(Config::load(file, {"glove.rate=60.5", "glove.user=bob"})->number("glove.rate"), 60.5);
+  EXPECT_EQ(Config::load(file, {"glove.user=bob"})->text("glove.user"), "bob");
+  unsetenv("PREHEND_GLOVE_RATE");
+}
+
+TEST(Config, TheShippedFileIsValid) {
+  const auto config = Config::load(PREHEND_SOURCE "/deploy/lab.toml");
+  EXPECT_TRUE(config) << config.error().message();
+}
+
+TEST(Config, PathsAreMeantFromTheFile) {
+  const auto file = write("[glove]\nfile = \"hand.csv\"\n");
+  const auto config = Config::load(file);
+  EXPECT_EQ(config->path("glove.file"), file.parent_path() / "hand.csv");
+  EXPECT_TRUE(Config::load(file, {"glove.file="})->path("glove.file").empty());
+  EXPECT_EQ(Config::load(file, {"glove.file=/a/b"})->path("glove.file"), "/a/b");
+}
+
+TEST(Config, MistakesAreNamed) {
+  const std::pair<const char*, const char*> files[] = {
+      {"[glove]\nrat = 40\n", "glove.rat"},
+      {"[glove]\nrat = 40\n", "did you mean glove.rate"},
+      {"[glove]\nrat = 40\n", ":2"},
+      {"[glove]\nrate = \"fast\"\n", "a number"},
+      {"[glvoe]\nrate = 3\n", "glvoe.rate"},
+      {"rate = 3\n", "rate"},
+      {"[glove\n", ":1"},
+      {"[lab]\ndomain = 1.5\n", "whole number"},
+  };
+  for (const auto& [text, expected] : files) {
+    const auto config = Config::load(write(text));
+    ASSERT_FALSE(config) << text;
+    EXPECT_NE(config.error().message().find(expected), std::string::npos) << config.error().message();
+    EXPECT_EQ(config.error().message().find('\n'), std::string::npos) << "one line";
+  }
+  const auto file = write("");
+  for (const char* text : {"glove.rat=3", "glove.rate", "glove.rate=fast", "glove.rate=[1]", "=3"})
+    EXPECT_FALSE(Config::load(file, {text})) << text;
+  EXPECT_FALSE(Config::load("/nowhere/lab.toml"));
+}
+
+}  // namespace
+}  // namespace prehend::service
