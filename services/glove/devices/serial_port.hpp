@@ -1,0 +1,40 @@
+#pragma once
+
+#include <memory>
+#include <prehend/base/error.hpp>
+#include <prehend/base/time.hpp>
+#include <string>
+#include <string_view>
+
+struct sp_port;
+
+namespace prehend::glove {
+
+/// A serial line, 8 bits, no parity, 1 stop bit, no flow control. Not for several threads at once.
+///
+/// Opened and set up by libserialport. It refuses pseudo-terminals (version 0.1.1 insists on modem
+/// lines, TIOCMGET), so these are opened here; what is read and written goes the same way.
+class SerialPort {
+ public:
+  /// `path` may be a link.
+  static Expected<SerialPort> open(const std::string& path, int baud);
+  SerialPort(SerialPort&& other) noexcept;
+  SerialPort& operator=(SerialPort&&) = delete;
+  ~SerialPort();
+
+  /// What has come, as soon as anything has; empty when nothing came in time. Fails when the port
+  /// is gone.
+  Expected<std::string> read(Duration timeout);
+  Expected<void> write(std::string_view bytes);
+  /// Throws away what has come and was not read.
+  void discard_input();
+
+ private:
+  explicit SerialPort(std::string path) : path_(std::move(path)) {}
+
+  std::string path_;
+  int handle_ = -1;
+  sp_port* port_ = nullptr;  // owns the handle; null: a pseudo-terminal, the handle is ours
+};
+
+}  // namespace prehend::glove

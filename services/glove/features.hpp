@@ -1,0 +1,13 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <prehend/base/pose.hpp>
+
+namespace prehend::glove {
+
+/// Position of a sensor relative to the reference sensor on the back of the hand, p = Mᵀ (x − x_r)
+/// (eq. 4.1 of the thesis): the same wherever the hand is and however it is turned. M and x_r are
+/// rotation and position of the reference, X_TR; x that of the other sensor. m.
+Eigen::Vector3d invariant_feature(const Pose& X_TR, const Eigen::Vector3d& p_TS);
+
+}  // namespace prehend::glove

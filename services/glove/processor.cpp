@@ -1,0 +1,144 @@
+#include "processor.hpp"
+
+#include "features.hpp"
+
+namespace prehend::glove {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double farthest = 5;           // m from the transmitter, twice what any tracker reaches
+constexpr double longest_finger = 0.28;  // m from H to a fingertip of an average hand, with margin
+
+/// The end of a unit axis moves as far as the angle turns: 300 rad/s², 15 rad/s, 0.1 rad of noise.
+constexpr GateOptions turning{.noise = 0.1, .acceleration = 300, .agreement = 15};
+/// Relative to the hand, fingers are slower than the arm.
+constexpr GateOptions bending{.noise = 0.015, .acceleration = 25, .agreement = 1.5};
+
+/// The pose of a reading; `reason` says why there is none.
+std::optional<Pose> checked(const Reading& reading, std::string_view& reason) {
+  if (!reading.valid) {
+    reason = "not valid";
+  } else if (!reading.p_TS.allFinite() || !reading.q_TS.coeffs().allFinite()) {
+    reason = "not finite";
+  } else if (reading.q_TS.norm() < 1e-6) {
+    reason = "zero norm";
+  } else if (reading.p_TS.norm() < 1e-9 &&
+             reading.q_TS.normalized().angularDistance(Eigen::Quaterniond::Identity()) < 1e-7) {
+    reason = "identity pose";
+  } else if (reading.p_TS.norm() > farthest) {
+    reason = "extreme point";
+  } else {
+    return make_pose(reading.p_TS, reading.q_TS.normalized());
+  }
+  return std::nullopt;
+}
+
+std::string_view reason_of(PointGate::Verdict verdict) {
+  return verdict == PointGate::Verdict::extreme ? "extreme point" : "unconfirmed";
+}
+
+}  // namespace
+
+Processor::Processor(const ProcessorOptions& options)
+    : options_(options),
+      hand_gate_(GateOptions{}),
+      x_gate_(turning),
+      z_gate_(turning),
+      hand_filter_(OneEuroOptions{}),
+      hand_rotation_(OneEuroOptions{.slope = 5}) {}
+
+Processor::Finger::Finger() : gate(bending), filter(OneEuroOptions{}) {}
+
+Processed Processor::process(const Frame& frame, Time now) {
+  Processed result;
+  const double age = to_seconds(now - frame.stamp);
+  if (age > options_.stale || age < -options_.stale) {
+    result.rejects.push_back(age > 0 ? "stale" : "from the future");
+    return result;
+  }
+  if (last_ && frame.stamp <= *last_) {
+    result.rejects.push_back("out of order");
+    return result;
+  }
+  last_ = frame.stamp;
+
+  const std::optional<Pose> X_TH = back_of_hand(frame, result);
+  if (!X_TH) return result;
+
+  Posture posture;
+  posture.sequence = frame.sequence;
+  posture.stamp = frame.stamp;
+  posture.joint_angles = frame.joint_angles;
+  const Pose X_WH = options_.X_WT * *X_TH;
+  posture.X_WH = make_pose(hand_filter_(frame.stamp, X_WH.translation()),
+                           hand_rotation_(frame.stamp, Eigen::Quaterniond(X_WH.linear())));
+
+  int sensors = 1, good = 1;
+  std::array<bool, model::finger_count> done{};
+  for (const Reading& reading : frame.readings) {
+    const auto which = finger_of(reading.site);
+    if (!which) continue;
+    const auto f = static_cast<std::size_t>(*which);
+    if (done[f]) continue;  // a site counts once
+    done[f] = true;
+    ++sensors;
+    Finger& finger = fingers_[f];
+    if (fingertip(finger, frame.stamp, reading, *X_TH, result)) ++good;
+    posture.fingertips[f].valid =
+        finger.seen && to_seconds(frame.stamp - *finger.seen) <= options_.carry;
+    if (posture.fingertips[f].valid) posture.fingertips[f].p_HF = finger.p_HF;
+  }
+  posture.quality = static_cast<double>(good) / sensors;
+  result.posture = std::move(posture);
+  return result;
+}
+
+std::optional<Pose> Processor::back_of_hand(const Frame& frame, Processed& result) {
+  for (const Reading& reading : frame.readings) {
+    if (reading.site != Site::back_of_hand) continue;
+    std::string_view reason;
+    const std::optional<Pose> X_TH = checked(reading, reason);
+    if (!X_TH) {
+      result.rejects.push_back(reason);
+      return std::nullopt;
+    }
+    // Every gate sees every reading, so that all of them confirm a jump together.
+    for (const auto verdict : {hand_gate_.check(frame.stamp, X_TH->translation()),
+                               x_gate_.check(frame.stamp, X_TH->linear().col(0)),
+                               z_gate_.check(frame.stamp, X_TH->linear().col(2))})
+      if (verdict != PointGate::Verdict::good) {
+        result.rejects.push_back(reason_of(verdict));
+        return std::nullopt;
+      }
+    return X_TH;
+  }
+  result.rejects.push_back("no back of hand");
+  return std::nullopt;
+}
+
+bool Processor::fingertip(Finger& finger, Time stamp, const Reading& reading, const Pose& X_TH,
+                          Processed& result) {
+  std::string_view reason;
+  const std::optional<Pose> X_TS = checked(reading, reason);
+  if (!X_TS) {
+    result.rejects.push_back(reason);
+    return false;
+  }
+  // The unfiltered hand: a filtered one lags, and its lag would look like bent fingers.
+  const Vector3d p_HF = invariant_feature(X_TH, X_TS->translation());
+  if (p_HF.norm() > longest_finger * options_.hand_scale) {
+    result.rejects.push_back("extreme point");
+    return false;
+  }
+  const PointGate::Verdict verdict = finger.gate.check(stamp, p_HF);
+  if (verdict != PointGate::Verdict::good) {
+    result.rejects.push_back(reason_of(verdict));
+    return false;
+  }
+  finger.p_HF = finger.filter(stamp, p_HF);
+  finger.seen = stamp;
+  return true;
+}
+
+}  // namespace prehend::glove

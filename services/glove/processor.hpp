@@ -1,0 +1,63 @@
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "frame.hpp"
+#include "gate.hpp"
+#include "one_euro.hpp"
+
+namespace prehend::glove {
+
+struct ProcessorOptions {
+  Pose X_WT = Pose::Identity();  // tracker on the table
+  double hand_scale = 1;         // 1 = average adult; bounds where a fingertip can be
+  double stale = 0.3;            // s, age at which a frame says nothing about now
+  double carry = 0.1;            // s, a finger may be carried over that much lost input
+};
+
+/// What became of a frame: perhaps a posture, and the reasons for what was not used.
+struct Processed {
+  std::optional<Posture> posture;
+  std::vector<std::string_view> rejects;  // one a rejected reading or frame
+};
+
+/// Frames of raw sensor poses in, clean hands out. Extreme points, values that are not finite,
+/// rotations without norm, identity poses of lost sensors and stale frames never come through.
+///
+/// Fingertips are the invariant features of their sensors (features.hpp), thus in H.
+class Processor {
+ public:
+  explicit Processor(const ProcessorOptions& options);
+
+  /// `now` is the lab's time, to judge the age of the frame by.
+  Processed process(const Frame& frame, Time now);
+
+ private:
+  struct Finger {
+    Finger();
+    PointGate gate;
+    PointFilter filter;
+    std::optional<Time> seen;
+    Eigen::Vector3d p_HF = Eigen::Vector3d::Zero();
+  };
+
+  /// X_TH, if this frame's reading of the back of the hand can be trusted.
+  std::optional<Pose> back_of_hand(const Frame& frame, Processed& result);
+  /// True if the reading was used.
+  bool fingertip(Finger& finger, Time stamp, const Reading& reading, const Pose& X_TH,
+                 Processed& result);
+
+  ProcessorOptions options_;
+  std::optional<Time> last_;
+  PointGate hand_gate_;
+  PointGate x_gate_, z_gate_;  // of the ends of two axes of H, so that rotations are gated too
+  PointFilter hand_filter_;
+  RotationFilter hand_rotation_;
+  std::array<Finger, model::finger_count> fingers_;
+};
+
+}  // namespace prehend::glove

@@ -1,0 +1,121 @@
+#include "service.hpp"
+
+#include <prehend/base/log.hpp>
+
+#include "options.hpp"
+
+namespace prehend::glove {
+namespace {
+
+constexpr Duration tick_period = std::chrono::milliseconds(100);
+constexpr Duration silence =
+    std::chrono::milliseconds(300);  // longer means that something is wrong
+constexpr Duration start_up = std::chrono::milliseconds(3000);  // a tracker takes its time
+
+}  // namespace
+
+Expected<std::unique_ptr<Service>> Service::create(service::Shell& shell, int& exit_code) {
+  exit_code = 2;
+  auto kind = find_device(shell.config().text("glove.device"));
+  if (!kind) return tl::unexpected(kind.error());
+  if (shell.lockstep() && !kind->by_topic) {
+    log::info("in lockstep, frames come on glove/frame; {} is left alone", kind->name);
+    kind = find_device("topic");
+  }
+  exit_code = 3;
+  const auto options = device_options(shell.config());
+  if (!options) return tl::unexpected(options.error());
+  auto device = kind->create(*options);
+  if (!device) return tl::unexpected(device.error());
+  exit_code = 0;
+  std::unique_ptr<Service> made(new Service(shell, *kind, *options));
+  made->connect(std::move(*device));
+  return made;
+}
+
+Service::Service(service::Shell& shell, const DeviceKind& kind, const DeviceOptions& options)
+    : shell_(shell),
+      kind_(kind),
+      glove_(shell.config().text("glove.name")),
+      wearer_{shell.config().text("glove.user"), options.hand_scale},
+      processor_({.X_WT = options.X_WT, .hand_scale = options.hand_scale}),
+      postures_(shell.publish(dds::hand_posture)),
+      started_(shell.now()) {
+  if (kind.name == "synthetic") wearer_.user = options.scene.demonstrator.user;
+  if (kind.by_topic)
+    shell.subscribe(dds::glove_frame, std::function([this](const v1::GloveFrame& message,
+                                                           const dds::SampleInfo& info) {
+                      if (info.gone) return;
+                      if (message.glove().to_string() == glove_)
+                        on_frame(from_message(message));
+                      else
+                        shell_.status().drop("another glove");
+                    }));
+  else
+    frames_ = shell.publish(dds::glove_frame);
+  shell.on_tick(tick_period, [this](Time now) { on_tick(now); });
+}
+
+void Service::connect(std::unique_ptr<Device> device) {
+  device_ = std::move(device);
+  if (shell_.lockstep()) return;
+  device_->start({.frame =
+                      [this](Frame frame) {
+                        shell_.post([this, frame = std::move(frame)] {
+                          frames_.publish(to_message(frame, glove_, std::string(kind_.name)));
+                          on_frame(frame);
+                        });
+                      },
+                  .degraded =
+                      [this](std::string line) {
+                        shell_.post([this, line = std::move(line)] {
+                          complaint_ = line;
+                          degrade(line);
+                        });
+                      },
+                  .drop = [this](std::string_view reason,
+                                 std::uint64_t count) { shell_.status().drop(reason, count); }});
+}
+
+void Service::on_frame(const Frame& frame) {
+  const Time now = shell_.now();
+  const auto begin = std::chrono::steady_clock::now();
+  shell_.status().count("frames");
+  // Frames that begin to come get their time to become a posture.
+  if (now - last_frame_ > silence) last_posture_ = now;
+  last_frame_ = now;
+  complaint_.clear();
+  const Processed processed = processor_.process(frame, now);
+  for (const std::string_view reason : processed.rejects) {
+    shell_.status().drop(reason);
+    last_reject_ = reason;
+  }
+  if (!processed.posture) return;
+  postures_.publish(to_message(*processed.posture, glove_, wearer_));
+  last_posture_ = now;
+  shell_.status().latency("acquisition", now - frame.stamp);
+  shell_.status().latency("process", std::chrono::steady_clock::now() - begin);
+  if (!degraded_.empty()) log::info("frames come again");
+  degraded_.clear();
+  shell_.status().running();
+}
+
+void Service::on_tick(Time now) {
+  if (last_frame_ == Time{} && now - started_ < start_up) return;
+  if (now - last_posture_ <= silence) return;
+  if (!complaint_.empty())
+    degrade(complaint_);
+  else if (now - last_frame_ > silence)
+    degrade(fmt::format("no frames from {}; the hand stays as it is", kind_.name));
+  else
+    degrade(fmt::format("no frame from {} is usable: {}", kind_.name, last_reject_));
+}
+
+void Service::degrade(const std::string& line) {
+  if (line == degraded_) return;
+  degraded_ = line;
+  log::warning("{}", line);
+  shell_.status().degraded(line);
+}
+
+}  // namespace prehend::glove

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <memory>
+#include <prehend/glove_devices/device.hpp>
+#include <prehend/service/shell.hpp>
+#include <string>
+
+#include "messages.hpp"
+#include "processor.hpp"
+
+namespace prehend::glove {
+
+/// The shell around device and processor: frames go out on glove/frame, hands on hand/posture.
+/// Everything here runs in the shell's thread; a device's thread only posts to it.
+class Service {
+ public:
+  /// Reads the configuration, makes the device and starts it. `exit_code` is set where it fails.
+  static Expected<std::unique_ptr<Service>> create(service::Shell& shell, int& exit_code);
+
+ private:
+  Service(service::Shell& shell, const DeviceKind& kind, const DeviceOptions& options);
+  void connect(std::unique_ptr<Device> device);
+  void on_frame(const Frame& frame);
+  void on_tick(Time now);
+  void degrade(const std::string& line);
+
+  service::Shell& shell_;
+  DeviceKind kind_;
+  std::string glove_;
+  Wearer wearer_;
+  Processor processor_;
+  service::Shell::Output<v1::GloveFrame> frames_;
+  service::Shell::Output<v1::HandPosture> postures_;
+  Time started_{}, last_frame_{}, last_posture_{};
+  std::string complaint_;  // of the device; empty: none
+  std::string last_reject_;
+  std::string degraded_;            // what was said last; empty: all is well
+  std::unique_ptr<Device> device_;  // last: its thread ends before the rest goes
+};
+
+}  // namespace prehend::glove

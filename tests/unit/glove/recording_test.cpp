@@ -1,0 +1,235 @@
+// Recordings of bare hands: every frame once, with the recorded times, in the shape of a hand.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cstdlib>
+#include <filesystem>
+#include <prehend/base/random.hpp>
+#include <prehend/glove/features.hpp>
+#include <prehend/glove/processor.hpp>
+#include <prehend/glove/recording.hpp>
+#include <string>
+
+namespace prehend::glove {
+namespace {
+
+using Eigen::Vector3d;
+namespace fs = std::filesystem;
+
+fs::path shared_data() {
+  const char* shared = std::getenv("PREHEND_SHARED");
+  return shared ? fs::path(shared) / "data" : fs::path(PREHEND_SHARED_DATA);
+}
+
+const RecordingOptions room{.X_WT = make_pose(Vector3d(0, 0.45, 0.3)),
+                            .X_WH = make_pose(Vector3d(0.05, 0, 0.25))};
+
+/// Finite, increasing in time, the hand where the scene puts it, fingers of a hand's length.
+void expect_plausible(const Recording& recording) {
+  std::optional<Time> last;
+  for (std::size_t n = 0; n < recording.size(); ++n) {
+    const auto frame = recording.frame(n);
+    ASSERT_TRUE(frame);
+    EXPECT_EQ(frame->sequence, n);
+    if (last) {
+      EXPECT_GT(frame->stamp, *last);
+    }
+    last = frame->stamp;
+    ASSERT_EQ(frame->readings.size(), 6u);
+    const Reading& back = frame->readings[0];
+    ASSERT_EQ(back.site, Site::back_of_hand);
+    const Pose X_TH = make_pose(back.p_TS, back.q_TS);
+    EXPECT_TRUE((room.X_WT * X_TH).isApprox(room.X_WH, 1e-9));
+    for (std::size_t s = 1; s < 6; ++s) {
+      ASSERT_TRUE(frame->readings[s].p_TS.allFinite());
+      EXPECT_NEAR(frame->readings[s].q_TS.norm(), 1, 1e-9);
+      EXPECT_LT(invariant_feature(X_TH, frame->readings[s].p_TS).norm(), 0.25);
+    }
+  }
+}
+
+TEST(Recording, ReadsTheLeapRecordings) {
+  const fs::path folder = shared_data() / "leap_hand_recordings";
+  if (!fs::exists(folder)) GTEST_SKIP() << "no " << folder;
+  // Frames of right hands, from the folder's index; three-claps and flapping hold both hands.
+  const std::vector<std::pair<std::string, std::size_t>> files{
+      {"grab", 374}, {"pinch", 307}, {"HandSplay-110fps", 288}, {"wave", 111}, {"brian", 500}};
+  for (const auto& [name, frames] : files) {
+    const auto recording = Recording::load(folder / (name + ".csv"), room);
+    ASSERT_TRUE(recording) << recording.error().message();
+    EXPECT_EQ(recording->size(), frames) << name;
+    EXPECT_EQ(recording->unreadable(), 0u) << name;
+    expect_plausible(*recording);
+  }
+  for (const std::string name : {"three-claps", "flapping"}) {
+    const auto recording = Recording::load(folder / (name + ".csv"), room);
+    ASSERT_TRUE(recording) << recording.error().message();
+    EXPECT_GT(recording->other_hand(), 300u);
+    EXPECT_FALSE(recording->left());
+    expect_plausible(*recording);
+  }
+}
+
+TEST(Recording, KeepsTheRecordedTimes) {
+  const fs::path file = shared_data() / "leap_hand_recordings" / "grab.csv";
+  if (!fs::exists(file)) GTEST_SKIP() << "no " << file;
+  const auto recording = Recording::load(file, room);
+  ASSERT_TRUE(recording);
+  EXPECT_EQ(recording->frame(0)->stamp, Time{});
+  const double length = to_seconds(recording->frame(373)->stamp.time_since_epoch());
+  EXPECT_GT(length, 374 / 115.);  // the camera's best rate
+  EXPECT_LT(length, 374 / 50.);
+  EXPECT_FALSE(recording->frame(374));
+}
+
+TEST(Recording, ClosesTheHandInGrab) {
+  const fs::path file = shared_data() / "leap_hand_recordings" / "grab.csv";
+  if (!fs::exists(file)) GTEST_SKIP() << "no " << file;
+  const auto recording = Recording::load(file, room);
+  ASSERT_TRUE(recording);
+  double nearest = 1, farthest = 0;
+  for (std::size_t n = 0; n < recording->size(); ++n) {
+    const auto frame = recording->frame(n);
+    const Pose X_TH = make_pose(frame->readings[0].p_TS, frame->readings[0].q_TS);
+    const Vector3d middle = invariant_feature(X_TH, frame->readings[3].p_TS);
+    nearest = std::min(nearest, middle.x());
+    farthest = std::max(farthest, middle.x());
+    // Fingers are on the palm's side or near the plane of the hand, the thumb toward +y of the
+    // little finger: this is a right hand.
+    EXPECT_LT(middle.z(), 0.06);
+    EXPECT_GT(invariant_feature(X_TH, frame->readings[1].p_TS).y(),
+              invariant_feature(X_TH, frame->readings[5].p_TS).y());
+  }
+  EXPECT_GT(farthest, 0.12) << "open";
+  EXPECT_LT(nearest, 0.08) << "closed";
+}
+
+TEST(Recording, ReadsTheLandmarks) {
+  const fs::path file = shared_data() / "landmark_hand_recording" / "human_joint_right.csv";
+  if (!fs::exists(file)) GTEST_SKIP() << "no " << file;
+  const auto recording = Recording::load(file, room);
+  ASSERT_TRUE(recording) << recording.error().message();
+  EXPECT_EQ(recording->size(), 621u);
+  expect_plausible(*recording);
+  EXPECT_NEAR(to_seconds(recording->frame(30)->stamp.time_since_epoch()), 1, 1e-9) << "30 Hz";
+  for (std::size_t n = 0; n < recording->size(); ++n) {
+    const auto frame = recording->frame(n);
+    const Pose X_TH = make_pose(frame->readings[0].p_TS, frame->readings[0].q_TS);
+    EXPECT_GT(invariant_feature(X_TH, frame->readings[2].p_TS).y(),
+              invariant_feature(X_TH, frame->readings[5].p_TS).y());
+  }
+}
+
+// What comes out of a real recording passes the core nearly whole.
+TEST(Recording, PassesTheProcessor) {
+  for (const char* name : {"leap_hand_recordings/grab.csv", "leap_hand_recordings/pinch.csv",
+                           "landmark_hand_recording/human_joint_right.csv"}) {
+    const fs::path file = shared_data() / name;
+    if (!fs::exists(file)) GTEST_SKIP() << "no " << file;
+    const auto recording = Recording::load(file, room);
+    ASSERT_TRUE(recording);
+    Processor processor({.X_WT = room.X_WT});
+    std::size_t published = 0, full = 0;
+    for (std::size_t n = 0; n < recording->size(); ++n) {
+      const auto frame = recording->frame(n);
+      const Processed out = processor.process(*frame, frame->stamp);
+      published += out.posture.has_value();
+      full += out.posture && out.posture->quality == 1;
+    }
+    EXPECT_EQ(published, recording->size() - 1) << name << ": all but the first";
+    EXPECT_GT(full, recording->size() * 95 / 100) << name;
+  }
+}
+
+constexpr const char* header =
+    "frame,t_us,fps,hand,palm_x,palm_y,palm_z,dir_x,dir_y,dir_z,normal_x,normal_y,normal_z";
+
+/// A Leap row of a flat hand at `t`; a left one is the mirror image of a right one.
+std::string leap(long long t, bool left, double thumb_x = -60) {
+  const double s = left ? -1 : 1;
+  std::string row =
+      fmt::format("{},{},100,{},0,100,0,0,0,-1,0,-1,0", t / 10000, t, left ? "left" : "right");
+  const std::array<Vector3d, 5> tips{Vector3d(thumb_x, 100, -20), Vector3d(-30, 100, -90),
+                                     Vector3d(0, 100, -100), Vector3d(25, 100, -90),
+                                     Vector3d(50, 100, -70)};
+  for (const Vector3d& p : tips)
+    for (const double back : {60., 20., 0.})  // mcp, dip, tip
+      row += fmt::format(",{},{},{}", s * p.x(), p.y(), p.z() + back);
+  return row + "\n";
+}
+
+std::string leap_header() {
+  std::string text = header;
+  for (const char* finger : {"thumb", "index", "middle", "ring", "pinky"})
+    for (const char* joint : {"mcp", "dip", "tip"})
+      text += fmt::format(",{0}_{1}_x,{0}_{1}_y,{0}_{1}_z", finger, joint);
+  return text + "\n";
+}
+
+TEST(Recording, MirrorsALeftHandIntoARightOne) {
+  const auto right = Recording::parse(leap_header() + leap(0, false), "right", room);
+  const auto left = Recording::parse(leap_header() + leap(0, true), "left", room);
+  ASSERT_TRUE(right && left);
+  EXPECT_FALSE(right->left());
+  EXPECT_TRUE(left->left());
+  EXPECT_TRUE(left->frame(0)->left);
+  for (std::size_t s = 0; s < 6; ++s)
+    EXPECT_LT((right->frame(0)->readings[s].p_TS - left->frame(0)->readings[s].p_TS).norm(), 1e-9);
+}
+
+TEST(Recording, SkipsWhatIsNoHand) {
+  std::string text = leap_header() + leap(0, false) + leap(10000, true) + leap(20000, false);
+  text += leap(20000, false);           // a second right hand in the same picture
+  text += "3,30000,100,right,1,2,3\n";  // cut off
+  text += leap(15000, false);           // earlier
+  text += leap(40000, false, NAN);      // not a number
+  const auto recording = Recording::parse(text, "mixed", room);
+  ASSERT_TRUE(recording);
+  EXPECT_EQ(recording->size(), 2u);
+  EXPECT_EQ(recording->other_hand(), 1u);
+  EXPECT_EQ(recording->unreadable(), 4u);
+}
+
+TEST(Recording, RefusesOtherFiles) {
+  EXPECT_FALSE(Recording::load("/nowhere/to/be/found.csv", room));
+  EXPECT_FALSE(Recording::load("/", room));
+  EXPECT_FALSE(Recording::parse("", "empty", room));
+  EXPECT_FALSE(Recording::parse("a,b,c\n1,2,3\n", "other", room));
+  EXPECT_FALSE(Recording::parse(leap_header(), "no rows", room));
+}
+
+// Mutation fuzzing: flipped, dropped and doubled bytes give an error or plausible frames.
+TEST(Recording, SurvivesDamagedFiles) {
+  const std::string good = leap_header() + leap(0, false) + leap(10000, false) + leap(20000, true);
+  Random random(23);
+  int read = 0;
+  for (int n = 0; n < 3000; ++n) {
+    std::string text = good;
+    for (std::size_t changes = 1 + random.index(8); changes > 0; --changes) {
+      const std::size_t at = random.index(text.size());
+      switch (random.index(3)) {
+        case 0:
+          text[at] = static_cast<char>(random.bits() & 0xff);
+          break;
+        case 1:
+          text.erase(at, 1 + random.index(20));
+          break;
+        default:
+          text.insert(at, text.substr(random.index(text.size()), random.index(30)));
+      }
+    }
+    const auto recording = Recording::parse(text, "damaged", room);
+    if (!recording) continue;
+    ++read;
+    for (std::size_t i = 0; i < recording->size(); ++i) {
+      const auto frame = recording->frame(i);
+      for (const Reading& reading : frame->readings)
+        ASSERT_TRUE(reading.p_TS.allFinite() && reading.q_TS.coeffs().allFinite());
+    }
+  }
+  EXPECT_GT(read, 100) << "some damage must be survivable";
+}
+
+}  // namespace
+}  // namespace prehend::glove
