@@ -1,0 +1,110 @@
+#include "closing.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace prehend::grasping {
+namespace {
+
+using Eigen::VectorXd;
+
+constexpr double lead = 0.05;        // rad that the command stays ahead: a third of the full torque
+constexpr double still = 0.02;       // rad/s: slower joints stand still
+constexpr double stands_for = 0.15;  // s
+constexpr double overlap = 0.001;    // m, that a preshape may already press into the object
+constexpr double damping = 20;       // 1/s, of an object that floats while it is grasped
+
+bool stands_still(const World& world) {
+  const BodyMotion object = world.body_motion(0);
+  return world.hand_motion().velocity.cwiseAbs().maxCoeff() < still &&
+         object.velocity.norm() < 0.002 && object.angular_velocity.norm() < 0.05;
+}
+
+/// Commands every closing DoF ahead of its joint until all have stopped. False if they never do.
+bool close_until_still(World& world, const ClosingOptions& options) {
+  const model::HandModel& hand = world.hand();
+  const Pose X_WB = world.commanded_base();
+  VectorXd command = world.commanded_dof();
+  const double dt = world.time_step();
+  double standing = 0;
+  for (double t = 0; t < options.longest; t += dt) {
+    const VectorXd now = world.hand_motion().dof;
+    for (Eigen::Index i = 0; i < command.size(); ++i) {
+      const int closing = hand.dofs()[static_cast<std::size_t>(i)].closing;
+      if (closing == 0) continue;
+      const double next = command[i] + closing * options.speed * dt;
+      command[i] = closing > 0 ? std::min(next, now[i] + lead) : std::max(next, now[i] - lead);
+    }
+    world.command(X_WB, command);
+    world.step();
+    // The drives need a moment before they move at all.
+    standing = t > 0.1 && stands_still(world) ? standing + dt : 0;
+    if (standing > stands_for) return true;
+  }
+  return false;
+}
+
+HoldResult squeeze_and_hold(World& world, const VectorXd& contact, const ClosingOptions& options) {
+  const model::HandModel& hand = world.hand();
+  VectorXd squeezed = contact;
+  for (Eigen::Index i = 0; i < squeezed.size(); ++i)
+    squeezed[i] += options.squeeze * hand.dofs()[static_cast<std::size_t>(i)].closing;
+  world.command(world.commanded_base(), squeezed);
+  const double dt = world.time_step();
+  for (double t = 0; t < 0.5; t += dt) world.step();
+  world.set_object_damping(0);
+  world.set_gravity(9.81 * options.down_B.normalized());
+  return hold_test(world, 0);
+}
+
+}  // namespace
+
+Expected<ClosedGrasp> close_hand(const model::HandModel& hand, const Body& object, const Pose& X_BO,
+                                 const Eigen::VectorXd& preshape, const ClosingOptions& options) {
+  if (!(options.longest > 0) || !(options.speed > 0) || !(options.squeeze >= 0))
+    return fail("time and speed must be positive", "closing");
+  if (!options.down_B.allFinite() || options.down_B.norm() < 1e-9)
+    return fail("down needs a direction", "closing");
+  WorldOptions world_options;
+  world_options.table = false;
+  world_options.gravity_W.setZero();
+  world_options.object_damping = damping;
+  auto created = World::create(hand, Pose::Identity(), preshape, world_options);
+  if (!created) return tl::unexpected(created.error());
+  std::unique_ptr<World> world = std::move(*created);
+  Body body = object;
+  if (options.fixed_object) body.mass = 0;
+  if (auto added = world->add_body(body, X_BO); !added) return tl::unexpected(added.error());
+  if (world->distance_to_hand(0, 0.01) < -overlap)
+    return fail("the hand is inside the object before it closes", object.name,
+                "open the preshape or stand further off");
+
+  if (!close_until_still(*world, options))
+    return fail("the fingers did not come to rest", object.name);
+  ClosedGrasp grasp;
+  const HandMotion motion = world->hand_motion();
+  grasp.dof = motion.dof;
+  grasp.joints = motion.joint;
+  grasp.X_BO = motion.X_WB.inverse() * world->body_motion(0).X_WO;
+  grasp.contacts = world->contacts(0);
+  if (grasp.contacts.size() < 2)
+    return fail("fewer than two contacts", object.name, "the object is out of the fingers' reach");
+  auto quality = grasp_quality(grasp.contacts, object.shape);
+  if (!quality) return tl::unexpected(quality.error());
+  grasp.quality = *quality;
+  if (options.hold_test) {
+    if (options.fixed_object || !(object.mass > 0)) {
+      // The fixed object served to find the posture; a free one in its place is lifted.
+      auto lifted = World::create(hand, Pose::Identity(), grasp.dof, world_options);
+      if (!lifted) return tl::unexpected(lifted.error());
+      if (auto added = (*lifted)->add_body(object, grasp.X_BO); !added)
+        return tl::unexpected(added.error());
+      grasp.hold = squeeze_and_hold(**lifted, grasp.dof, options);
+    } else {
+      grasp.hold = squeeze_and_hold(*world, grasp.dof, options);
+    }
+  }
+  return grasp;
+}
+
+}  // namespace prehend::grasping

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <prehend/base/error.hpp>
+#include <prehend/base/pose.hpp>
+#include <prehend/model/hand_model.hpp>
+#include <vector>
+
+#include "contact.hpp"
+#include "hold_test.hpp"
+#include "world.hpp"
+#include "wrench_space.hpp"
+
+namespace prehend::grasping {
+
+struct ClosingOptions {
+  /// The object cannot move while the hand closes. Otherwise it floats without gravity, damped, so
+  /// that the fingers may push it to where they all touch.
+  bool fixed_object = false;
+  double squeeze = 0.15;  // rad, commanded past contact
+  double speed = 1.0;     // rad/s, of the closing command
+  double longest = 5.0;   // s, until the fingers must have stopped
+  /// Afterwards: gravity on, commanded `squeeze` past contact, lifted and held (see hold_test.hpp).
+  bool hold_test = false;
+  /// Which way gravity pulls in the hold test, in B; the lift goes the other way. Unit.
+  Eigen::Vector3d down_B = {0, 0, 1};
+};
+
+/// Where the fingers stopped.
+struct ClosedGrasp {
+  Eigen::VectorXd dof;     // rad: the contact posture; command dof + squeeze * closing to grip
+  Eigen::VectorXd joints;  // rad
+  Pose X_BO;               // where the object ended up
+  std::vector<Contact> contacts;
+  Quality quality;
+  std::optional<HoldResult> hold;
+};
+
+/// Closes the hand on an object that stands at X_BO, from the preshape along the closing direction
+/// of each DoF, in a Bullet world of its own. Deterministic; several threads may call it at once.
+/// Fails when the preshape already penetrates the object, when sizes or values are wrong, or when
+/// fewer than two contacts are made.
+Expected<ClosedGrasp> close_hand(const model::HandModel& hand, const Body& object, const Pose& X_BO,
+                                 const Eigen::VectorXd& preshape,
+                                 const ClosingOptions& options = {});
+
+}  // namespace prehend::grasping

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+namespace prehend::grasping {
+
+/// A touch between hand and object. O: the object's frame, whose origin is its centre of mass.
+struct Contact {
+  std::string link;          // of the hand
+  Eigen::Vector3d p_OC;      // m
+  Eigen::Vector3d normal_O;  // unit, into the object
+  double friction = 0;       // coefficient of the two materials
+  double force = 0;          // N, along the normal
+  double depth = 0;          // m, penetration, 0 or more
+};
+
+/// At most `most` of the contacts, spread as widely over the object as possible (farthest points
+/// first, beginning with the strongest contact). Keeps the cost of a wrench space bounded.
+std::vector<Contact> spread_contacts(const std::vector<Contact>& contacts, std::size_t most);
+
+}  // namespace prehend::grasping

@@ -1,0 +1,112 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+#include <optional>
+#include <prehend/base/error.hpp>
+#include <prehend/base/pose.hpp>
+#include <prehend/model/hand_model.hpp>
+#include <prehend/model/shape.hpp>
+#include <string>
+#include <vector>
+
+#include "contact.hpp"
+
+namespace prehend::grasping {
+
+/// A rigid body besides the hand.
+struct Body {
+  std::string name;
+  model::Shape shape;
+  double mass = 0;                 // kg; 0: does not move
+  std::string material = "wood";   // of the friction table
+  std::optional<double> friction;  // against everything, instead of the material's
+};
+
+struct WorldOptions {
+  double rate = 500;                          // Hz, physics steps
+  int iterations = 100;                       // of the contact solver
+  bool table = true;                          // a fixed plane z = 0, of wood
+  Eigen::Vector3d gravity_W = {0, 0, -9.81};  // m/s², of the objects; the hand is compensated
+  /// 1/s: damps free objects; for closing without gravity.
+  double object_damping = 0;
+  /// Limits of the arm that carries the hand's base.
+  double base_speed = 1.0;               // m/s
+  double base_turn_speed = 3.0;          // rad/s
+  double base_acceleration = 10.0;       // m/s²
+  double base_turn_acceleration = 50.0;  // rad/s²
+  double full_squeeze = 0.15;            // rad of DoF from joint to command for the full torque
+};
+
+struct HandMotion {
+  Pose X_WB;
+  Eigen::VectorXd dof;       // rad, of the joint that leads each DoF
+  Eigen::VectorXd joint;     // rad
+  Eigen::VectorXd velocity;  // rad/s, of the joints
+  Eigen::VectorXd torque;    // N m, that the drives applied in the last step
+};
+
+struct BodyMotion {
+  Pose X_WO;
+  Eigen::Vector3d velocity = Eigen::Vector3d::Zero();          // m/s
+  Eigen::Vector3d angular_velocity = Eigen::Vector3d::Zero();  // rad/s, in W
+};
+
+/// A physical world with one hand, a table and objects, stepped by Bullet (double). The base of the
+/// hand follows its command within the arm's limits. Each joint is driven by a spring that reaches
+/// its torque limit when the command is `full_squeeze` ahead, no faster than its velocity limit.
+/// Deterministic: same calls, same bits. Not thread-safe; worlds
+/// are independent of each other. Keeps a reference to the hand.
+class World {
+ public:
+  /// Fails on what cannot be simulated: invalid shapes, negative masses, unknown materials.
+  static Expected<std::unique_ptr<World>> create(const model::HandModel& hand, const Pose& X_WB,
+                                                 const Eigen::VectorXd& dof,
+                                                 const WorldOptions& options = {});
+  ~World();
+  World(const World&) = delete;
+  World& operator=(const World&) = delete;
+
+  /// A new world in the same state and with the same commands. (Not with the solver's memory of the
+  /// last contact impulses; those settle within a few steps.)
+  std::unique_ptr<World> clone() const;
+
+  /// Adds a body and returns its number, 0, 1, ...
+  Expected<int> add_body(const Body& body, const Pose& X_WO);
+  void move_body(int body, const Pose& X_WO);  // puts it there, at rest
+  void set_gravity(const Eigen::Vector3d& gravity_W);
+  const Eigen::Vector3d& gravity() const;
+  void set_object_damping(double per_second);
+
+  /// Puts the hand there, at rest, without passing through what lies between.
+  void place_hand(const Pose& X_WB, const Eigen::VectorXd& dof);
+  /// Where base and DoFs shall go from now on. Values outside the limits are clamped.
+  void command(const Pose& X_WB, const Eigen::VectorXd& dof);
+  void hold_still();  // commands base and fingers to stay where they are; a grip keeps its squeeze
+
+  void step();
+  double time_step() const;
+
+  const model::HandModel& hand() const;
+  HandMotion hand_motion() const;
+  const Pose& commanded_base() const;
+  const Eigen::VectorXd& commanded_dof() const;
+  int body_count() const;
+  const Body& body(int index) const;
+  BodyMotion body_motion(int index) const;
+
+  /// Touches of the hand on a body in the last step.
+  std::vector<Contact> contacts(int body) const;
+  /// True if the body touches anything but the hand.
+  bool touches_others(int body) const;
+  bool hand_touches_anything() const;
+  /// Distance between hand and body, m, negative when they penetrate; capped at `most`.
+  double distance_to_hand(int body, double most = 1.0) const;
+
+ private:
+  struct State;
+  explicit World(std::unique_ptr<State> state);
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace prehend::grasping

@@ -1,0 +1,61 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <prehend/base/error.hpp>
+#include <prehend/grasping/hold_test.hpp>
+#include <prehend/grasping/world.hpp>
+#include <prehend/grasping/wrench_space.hpp>
+#include <vector>
+
+#include "command.hpp"
+
+namespace prehend::simulation {
+
+/// A hand that has closed on an object: all that the judge needs, apart from the living world.
+struct Closure {
+  std::uint64_t number = 0;  // counts closures
+  Time time{};               // of the world
+  Command command;           // the last one before it
+  int body = 0;
+  grasping::Body object;
+  Eigen::VectorXd dof;  // rad
+  Pose X_BO = Pose::Identity();
+  std::vector<grasping::Contact> contacts;
+  std::unique_ptr<grasping::World> world;  // a copy, to be used up
+};
+
+struct Verdict {
+  grasping::Quality quality;
+  double penetration = 0;  // m, deepest contact
+  grasping::HoldResult hold;
+};
+
+/// Quality of the contacts, and whether the object is held when it is lifted. Uses up the world;
+/// takes about half a second and touches nothing else, so it may run in another thread.
+Verdict judge(Closure& closure);
+
+/// Finds the moment at which the hand has closed on something: for 0.3 s no joint has moved faster
+/// than 0.05 rad/s, the drives of two DoFs press, and at least two contacts on two links carry
+/// force. The speed is that over the 0.3 s: a trembling hand may tremble.
+class ClosureDetector {
+ public:
+  explicit ClosureDetector(double time_step) : time_step_(time_step) {}
+
+  /// The body that the hand has just closed on. Once a closure: not again until a closing DoF has
+  /// moved by more than 0.1 rad.
+  std::optional<int> update(const grasping::World& world);
+
+ private:
+  void restart(const Eigen::VectorXd& joint, const Eigen::VectorXd& command);
+
+  double time_step_;
+  double still_ = 0;                       // s
+  Eigen::VectorXd joint_;                  // where they were when they came to rest
+  Eigen::VectorXd command_;                // what the DoFs were told then
+  std::optional<Eigen::VectorXd> judged_;  // DoFs at the last closure
+};
+
+}  // namespace prehend::simulation

@@ -1,0 +1,139 @@
+#include "messages.hpp"
+
+#include <algorithm>
+#include <prehend/dds/convert.hpp>
+
+namespace prehend::simulation {
+namespace {
+
+model::ShapeKind kind_of(v1::ShapeKind kind) {
+  switch (kind) {
+    case v1::SHAPE_CYLINDER:
+      return model::ShapeKind::cylinder;
+    case v1::SHAPE_BOX:
+      return model::ShapeKind::box;
+    case v1::SHAPE_SPHERE:
+      return model::ShapeKind::sphere;
+    default:
+      return model::ShapeKind::unknown;
+  }
+}
+
+v1::ShapeKind kind_of(model::ShapeKind kind) {
+  switch (kind) {
+    case model::ShapeKind::cylinder:
+      return v1::SHAPE_CYLINDER;
+    case model::ShapeKind::box:
+      return v1::SHAPE_BOX;
+    case model::ShapeKind::sphere:
+      return v1::SHAPE_SPHERE;
+    default:
+      return v1::SHAPE_UNKNOWN;
+  }
+}
+
+}  // namespace
+
+Expected<Command> from_message(const v1::HandCommand& message) {
+  const auto X_WB = dds::from_message(message.X_WB());
+  if (!X_WB) return fail("command not finite");
+  Command command;
+  command.stamp = from_ns(message.stamp_ns());
+  command.origin = from_ns(message.origin_ns());
+  command.model = message.model().to_string();
+  command.dof = dds::from_message(message.dof());
+  command.X_WB = *X_WB;
+  command.mode = static_cast<int>(message.mode());
+  command.weight = message.weight();
+  command.object = message.object().to_string();
+  command.grasp_type = static_cast<int>(message.grasp_type());
+  return command;
+}
+
+Expected<Sighting> from_message(const v1::ObjectDetection& message,
+                                const model::Catalogue& catalogue) {
+  const auto X_WO = dds::from_message(message.X_WO());
+  if (!X_WO) return tl::unexpected(X_WO.error());
+  Sighting sighting;
+  sighting.X_WO = *X_WO;
+  grasping::Body& body = sighting.body;
+  body.name = message.name().to_string();
+  body.shape = {kind_of(message.shape()), dds::from_message(message.size())};
+  if (const model::CatalogueObject* known = catalogue.find(body.name)) {
+    body.mass = known->mass;
+    body.material = known->material;
+  } else {
+    body.mass = 0.2;
+    body.material = "wood";
+  }
+  return sighting;
+}
+
+v1::HandState to_message(const grasping::HandMotion& motion) {
+  v1::HandState message;
+  message.dof(dds::to_message(motion.dof));
+  message.joint(dds::to_message(motion.joint));
+  message.velocity(dds::to_message(motion.velocity));
+  message.torque(dds::to_message(motion.torque));
+  message.X_WB(dds::to_message(motion.X_WB));
+  return message;
+}
+
+v1::ObjectState to_message(const grasping::Body& body, const grasping::BodyMotion& motion) {
+  v1::ObjectState message;
+  message.body(body.name);
+  message.X_WO(dds::to_message(motion.X_WO));
+  message.velocity(dds::to_message(motion.velocity));
+  message.angular_velocity(dds::to_message(motion.angular_velocity));
+  return message;
+}
+
+v1::BodyDescription to_message(const grasping::Body& body) {
+  v1::BodyDescription message;
+  message.name(body.name);
+  message.shape(kind_of(body.shape.kind));
+  message.size(dds::to_message(body.shape.size));
+  message.mass(body.mass);
+  message.material(body.material);
+  return message;
+}
+
+v1::GraspReport to_message(const Closure& closure, const Verdict& verdict) {
+  v1::GraspReport message;
+  message.sequence_number(closure.number);
+  message.stamp_ns(to_ns(closure.time));
+  message.origin_ns(to_ns(closure.command.origin));
+  message.object(closure.object.name);
+  message.X_BO(dds::to_message(closure.X_BO));
+  message.dof(dds::to_message(closure.dof));
+  message.mode(static_cast<v1::MappingMode>(closure.command.mode));
+  message.weight(closure.command.weight);
+  message.grasp_type(static_cast<v1::GraspType>(closure.command.grasp_type));
+  message.believed_object(closure.command.object);
+  const std::size_t most = 64;  // of the message
+  for (const grasping::Contact& contact : grasping::spread_contacts(closure.contacts, most)) {
+    v1::Contact entry;
+    entry.link(contact.link);
+    entry.p_OC(dds::to_message(contact.p_OC));
+    entry.normal_O(dds::to_message(contact.normal_O));
+    entry.friction(contact.friction);
+    entry.force(contact.force);
+    entry.depth(contact.depth);
+    message.contacts().push_back(entry);
+  }
+  message.epsilon(verdict.quality.epsilon);
+  message.volume(verdict.quality.volume);
+  message.force_closure(verdict.quality.force_closure);
+  const Eigen::VectorXd& weakest = verdict.quality.weakest_direction;
+  for (std::size_t i = 0; i < 6; ++i)
+    message.weakest_direction()[i] =
+        weakest.size() == 6 ? weakest[static_cast<Eigen::Index>(i)] : 0.0;
+  message.penetration(verdict.penetration);
+  message.held(verdict.hold.held);
+  message.slip(verdict.hold.slip);
+  message.turn(verdict.hold.turn);
+  message.reason(verdict.hold.reason);
+  return message;
+}
+
+}  // namespace prehend::simulation

@@ -1,0 +1,68 @@
+// Files for `prehend grasp quality`: contacts become the same wrenches as given ones, and whatever
+// is wrong in them is refused with the file and the place.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <prehend/grasping/wrench_space.hpp>
+#include <prehend/simulation/quality_file.hpp>
+
+namespace {
+
+using namespace prehend;
+
+std::filesystem::path written(const std::string& text) {
+  const auto file = std::filesystem::path(testing::TempDir()) / "quality_test.json";
+  std::ofstream(file) << text;
+  return file;
+}
+
+TEST(QualityFile, CrossPolytope) {
+  const auto wrenches = simulation::read_wrenches(written(
+      R"({"wrenches":[[1,0,0,0,0,0],[0,1,0,0,0,0],[0,0,1,0,0,0],[0,0,0,1,0,0],[0,0,0,0,1,0],
+          [0,0,0,0,0,1],[-1,0,0,0,0,0],[0,-1,0,0,0,0],[0,0,-1,0,0,0],[0,0,0,-1,0,0],
+          [0,0,0,0,-1,0],[0,0,0,0,0,-1]]})"));
+  ASSERT_TRUE(wrenches) << wrenches.error().message();
+  const auto quality = grasping::wrench_quality(*wrenches);
+  ASSERT_TRUE(quality);
+  EXPECT_NEAR(quality->epsilon, 1 / std::sqrt(6.0), 1e-9);
+}
+
+TEST(QualityFile, EdgesOfAContact) {
+  const auto wrenches = simulation::read_wrenches(
+      written(R"({"contacts":[{"position_m":[0.03,0,0.01],"normal":[-2,0,0],"friction":0.5,
+                 "tangent":[0,1,0]}],"center_of_mass_m":[0,0,0.01],"torque_scale_m":0.03,"edges":4})"));
+  ASSERT_TRUE(wrenches) << wrenches.error().message();
+  ASSERT_EQ(wrenches->cols(), 4);
+  Eigen::Matrix<double, 6, 4> expected;  // n = -x, t1 = y, t2 = n × t1 = -z; torque = x × f
+  expected.col(0) << -1, 0.5, 0, 0, 0, 0.5;
+  expected.col(1) << -1, 0, -0.5, 0, 0.5, 0;
+  expected.col(2) << -1, -0.5, 0, 0, 0, -0.5;
+  expected.col(3) << -1, 0, 0.5, 0, -0.5, 0;
+  EXPECT_LT((*wrenches - expected).cwiseAbs().maxCoeff(), 1e-12);
+}
+
+TEST(QualityFile, RefusesNonsense) {
+  EXPECT_FALSE(simulation::read_wrenches("/nowhere/at/all.json"));
+  const std::string good = R"({"position_m":[0,0,0],"normal":[1,0,0],"friction":1})";
+  for (
+      const std::string& text : std::vector<std::string>{
+          "", "[]", "{", "{}", R"({"wrenches":3})", R"({"wrenches":[[1,2,3]]})",
+          R"({"wrenches":[[1,2,3,4,5,"x"]]})", R"({"wrenches":[[1,2,3,4,5,1e999]]})",
+          R"({"contacts":[)" + good + "]}", R"({"contacts":[)" + good + R"(],"torque_scale_m":0})",
+          R"({"contacts":[)" + good + R"(],"torque_scale_m":1,"edges":2})",
+          R"({"contacts":[)" + good + R"(],"torque_scale_m":1,"edges":1000000000})",
+          R"({"contacts":[{"position_m":[0,0],"normal":[1,0,0],"friction":1}],"torque_scale_m":1})",
+          R"({"contacts":[{"position_m":[0,0,0],"normal":[0,0,0],"friction":1}],"torque_scale_m":1})",
+          R"({"contacts":[{"position_m":[0,0,0],"normal":[1,0,0],"friction":-1}],"torque_scale_m":1})",
+          R"({"contacts":[7],"torque_scale_m":1})"}) {
+    const auto wrenches = simulation::read_wrenches(written(text));
+    EXPECT_FALSE(wrenches) << text;
+    if (!wrenches) {
+      EXPECT_NE(wrenches.error().message().find("quality_test.json"), std::string::npos);
+    }
+  }
+}
+
+}  // namespace

@@ -1,0 +1,231 @@
+// The world behind the topics: what it refuses, how it follows the clock, when it holds still, and
+// a whole grasp: commands reach, close and lift; one closure is found and judged.
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <prehend/model/hand_model.hpp>
+#include <prehend/simulation/simulation.hpp>
+
+namespace {
+
+using namespace prehend;
+using namespace prehend::simulation;
+using Eigen::Vector3d;
+using Eigen::VectorXd;
+using std::chrono::milliseconds;
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+const Time start = from_ns(1'700'000'000'000'000'000);
+
+const model::HandModel& barrett() {
+  static const model::HandModel hand =
+      *model::HandModel::load(std::string(PREHEND_SOURCE) + "/common/models/hands/barrett");
+  return hand;
+}
+
+const grasping::Body talc{
+    "Talc", {model::ShapeKind::cylinder, {0.024, 0.024, 0.105}}, 0.15, "plastic", {}};
+
+std::unique_ptr<Simulation> made(const Options& options = {}) {
+  auto simulation = Simulation::create(barrett(), options);
+  if (!simulation) throw std::runtime_error(simulation.error().message());
+  (*simulation)->follow(start, false);
+  return std::move(*simulation);
+}
+
+/// The hand beside an object at the origin, G at p, palm along y, its x axis up.
+Command command(const Vector3d& p_WG, double closure) {
+  Eigen::Matrix3d R;
+  R.col(0) = Vector3d::UnitZ();
+  R.col(2) = Vector3d::UnitY();
+  R.col(1) = R.col(2).cross(R.col(0));
+  Command made;
+  made.model = "barrett";
+  made.X_WB = make_pose(p_WG, R) * barrett().X_BG().inverse();
+  made.dof = VectorXd::Constant(4, closure);
+  made.dof[0] = 0;
+  return made;
+}
+
+void run_until(Simulation& simulation, Time time) {
+  simulation.follow(time, true);
+  while (simulation.step()) {
+  }
+}
+
+TEST(Simulation, RefusesCommandsThatCannotBeFollowed) {
+  const auto simulation = made();
+  Command other = command({0, 0, 0.3}, 0);
+  other.model = "robonaut";
+  EXPECT_EQ(simulation->accept(other, start).error().what, "command for another model");
+  Command shorter = command({0, 0, 0.3}, 0);
+  shorter.dof = VectorXd::Zero(3);
+  EXPECT_EQ(simulation->accept(shorter, start).error().what, "command of wrong length");
+  Command broken = command({0, 0, 0.3}, 0);
+  broken.dof[2] = nan;
+  EXPECT_EQ(simulation->accept(broken, start).error().what, "command not finite");
+  broken = command({0, 0, 0.3}, 0);
+  broken.X_WB.translation().x() = nan;
+  EXPECT_EQ(simulation->accept(broken, start).error().what, "command not finite");
+  EXPECT_FALSE(simulation->accept(command({0, 0, 300}, 0), start));
+  const Pose before = simulation->world().hand_motion().X_WB;
+  run_until(*simulation, start + milliseconds(100));
+  EXPECT_LT((simulation->world().hand_motion().X_WB.translation() - before.translation()).norm(),
+            1e-9);
+}
+
+TEST(Simulation, FollowsTheClockExactlyInLockstepAndCatchesUpALittleLive) {
+  const auto simulation = made();
+  int steps = 0;
+  EXPECT_EQ(simulation->follow(start + milliseconds(1000), true), Duration::zero());
+  while (simulation->step()) ++steps;
+  EXPECT_EQ(steps, 500);
+  EXPECT_EQ(simulation->time(), start + milliseconds(1000));
+  EXPECT_EQ(simulation->follow(start + milliseconds(1300), false), milliseconds(250));
+  for (steps = 0; simulation->step();) ++steps;
+  EXPECT_EQ(steps, 25);
+  EXPECT_EQ(simulation->time(), start + milliseconds(1300));
+  EXPECT_EQ(simulation->follow(start + milliseconds(1200), false), Duration::zero());
+  EXPECT_FALSE(simulation->step());  // a clock that goes back moves nothing
+}
+
+TEST(Simulation, TheFirstCommandPlacesTheHandLaterOnesMoveIt) {
+  const auto simulation = made();
+  const Command first = command({0.3, 0, 0.3}, 0), second = command({0.6, 0, 0.3}, 0);
+  ASSERT_TRUE(simulation->accept(first, start));
+  const auto at = [&]() -> Vector3d {
+    return simulation->world().hand_motion().X_WB.translation();
+  };
+  EXPECT_LT((at() - first.X_WB.translation()).norm(), 1e-9);
+  ASSERT_TRUE(simulation->accept(second, start));
+  run_until(*simulation, start + milliseconds(100));
+  EXPECT_LT((at() - first.X_WB.translation()).norm(), 0.1);
+}
+
+TEST(Simulation, TheFirstCommandNeverPlacesTheHandIntoAnObject) {
+  const auto simulation = made();
+  const Command into = command({0, 0, 0.06}, 0);
+  ASSERT_TRUE(simulation->see(talc, into.X_WB));
+  const Vector3d before = simulation->world().hand_motion().X_WB.translation();
+  ASSERT_TRUE(simulation->accept(into, start));
+  EXPECT_LT((simulation->world().hand_motion().X_WB.translation() - before).norm(), 1e-9);
+}
+
+TEST(Simulation, HoldsStillWhenCommandsStop) {
+  const auto simulation = made();
+  ASSERT_TRUE(simulation->accept(command({0, 0, 0.5}, 0), start));
+  ASSERT_TRUE(simulation->accept(command({0, 0, 1.5}, 0), start));
+  run_until(*simulation, start + milliseconds(199));
+  EXPECT_FALSE(simulation->is_holding_still());
+  run_until(*simulation, start + milliseconds(204));
+  EXPECT_TRUE(simulation->is_holding_still());
+  const Vector3d then = simulation->world().hand_motion().X_WB.translation();
+  run_until(*simulation, start + milliseconds(2000));
+  // It was told to stay where it was up to two steps before, at up to 1 m/s.
+  EXPECT_LT((simulation->world().hand_motion().X_WB.translation() - then).norm(), 5e-3);
+  ASSERT_TRUE(simulation->accept(command({0, 0, 1.5}, 0), start + milliseconds(2000)));
+  EXPECT_FALSE(simulation->is_holding_still());
+}
+
+TEST(Simulation, SightingsPlaceObjectsAndMoveThemOnlyWhileTheHandIsFar) {
+  const auto simulation = made();
+  const auto place = [&]() -> Vector3d {
+    return simulation->world().body_motion(0).X_WO.translation();
+  };
+  EXPECT_TRUE(*simulation->see(talc, make_pose(Vector3d(0.1, 0, 0.07))));
+  EXPECT_LT((place() - Vector3d(0.1, 0, 0.0525)).norm(), 1e-12);  // stands on the table
+  EXPECT_FALSE(*simulation->see(talc, make_pose(Vector3d(0.2, 0, 0.05))));
+  EXPECT_LT((place() - Vector3d(0.2, 0, 0.0525)).norm(), 1e-12);
+  EXPECT_EQ(simulation->world().body_count(), 1);
+
+  ASSERT_TRUE(simulation->accept(command({0.2, -0.04, 0.06}, 0), start));
+  EXPECT_FALSE(*simulation->see(talc, make_pose(Vector3d(0.1, 0, 0.05))));
+  EXPECT_LT((place() - Vector3d(0.2, 0, 0.0525)).norm(), 1e-12);
+
+  grasping::Body bad = talc;
+  bad.name = "bad";
+  bad.shape.size.x() = nan;
+  EXPECT_FALSE(simulation->see(bad, Pose::Identity()));
+  bad = talc;
+  bad.name = "lost";
+  EXPECT_FALSE(simulation->see(bad, make_pose(Vector3d(nan, 0, 0))));
+  EXPECT_EQ(simulation->world().body_count(), 1);
+}
+
+struct Episode {
+  std::vector<Closure> closures;
+  std::unique_ptr<Simulation> simulation;
+};
+
+/// Commands at 30 Hz: reach from 25 cm away, close, wait, lift; `offset` is the error of the reach.
+Episode reach_and_lift(const grasping::Body& body, const Vector3d& offset) {
+  Episode episode{{}, made()};
+  Simulation& simulation = *episode.simulation;
+  if (!simulation.see(body, Pose::Identity())) throw std::runtime_error("not placed");
+  for (int i = 0; i < 150; ++i) {
+    const double t = i / 30.0;
+    const double reach = std::min(1.0, t / 1.2), close = std::clamp((t - 1.4) / 0.8, 0.0, 1.0);
+    const double lift = 0.12 * std::clamp((t - 3.2) / 0.8, 0.0, 1.0);
+    const Time now = start + milliseconds(static_cast<long>(1000 * t));
+    const Vector3d p = Vector3d(0, -0.25 * (1 - reach), 0.06 + lift) + offset;
+    if (!simulation.accept(command(p, 1.4 * close), now)) throw std::runtime_error("refused");
+    simulation.follow(now + milliseconds(33), true);
+    while (simulation.step())
+      if (auto closure = simulation.take_closure()) episode.closures.push_back(std::move(*closure));
+  }
+  return episode;
+}
+
+TEST(Simulation, AGraspIsFoundOnceJudgedAndReallyLifted) {
+  Episode episode = reach_and_lift(talc, {0.005, 0.005, 0.005});
+  ASSERT_EQ(episode.closures.size(), 1u);
+  Closure& closure = episode.closures.front();
+  EXPECT_EQ(closure.object.name, "Talc");
+  EXPECT_GE(closure.contacts.size(), 3u);
+  const Verdict verdict = judge(closure);
+  EXPECT_TRUE(verdict.hold.held) << verdict.hold.reason;
+  EXPECT_TRUE(verdict.quality.force_closure);
+  EXPECT_GT(verdict.quality.epsilon, 0.01);
+  EXPECT_GT(verdict.quality.volume, 0);
+  EXPECT_LT(verdict.penetration, 0.001);
+  // The world itself went on and lifted it, too.
+  EXPECT_NEAR(episode.simulation->world().body_motion(0).X_WO.translation().z(), 0.0525 + 0.12,
+              0.02);
+  EXPECT_FALSE(episode.simulation->world().touches_others(0));
+}
+
+TEST(Simulation, IsDeterministic) {
+  const Episode a = reach_and_lift(talc, {0.003, 0, 0}), b = reach_and_lift(talc, {0.003, 0, 0});
+  EXPECT_EQ(a.simulation->world().hand_motion().joint, b.simulation->world().hand_motion().joint);
+  EXPECT_TRUE((a.simulation->world().body_motion(0).X_WO.matrix().array() ==
+               b.simulation->world().body_motion(0).X_WO.matrix().array())
+                  .all());
+}
+
+TEST(Simulation, ASlipperyObjectIsDroppedAndAMissedOneIsNoClosure) {
+  grasping::Body slippery = talc;
+  slippery.friction = 0.05;
+  Episode dropped = reach_and_lift(slippery, Vector3d::Zero());
+  for (Closure& closure : dropped.closures) EXPECT_FALSE(judge(closure).hold.held);
+  EXPECT_LT(dropped.simulation->world().body_motion(0).X_WO.translation().z(), 0.1);
+  const Episode missed = reach_and_lift(talc, {0, -0.10, 0});
+  EXPECT_TRUE(missed.closures.empty());
+}
+
+TEST(Simulation, BuildsTheSceneOrSaysWhatIsMissing) {
+  const auto catalogue =
+      model::Catalogue::load(std::string(PREHEND_SOURCE) + "/common/models/objects/catalogue.toml");
+  ASSERT_TRUE(catalogue) << catalogue.error().message();
+  model::Scene scene;
+  for (const auto& object : catalogue->objects())
+    scene.objects.push_back(
+        {object.name, make_pose(Vector3d(0.4 * static_cast<double>(scene.objects.size()), 0,
+                                         model::half_extents(object.shape).z()))});
+  const auto simulation = made();
+  ASSERT_TRUE(simulation->build(scene, *catalogue));
+  EXPECT_EQ(simulation->world().body_count(), static_cast<int>(catalogue->objects().size()));
+  scene.objects = {{"Teapot", Pose::Identity()}};
+  EXPECT_FALSE(simulation->build(scene, *catalogue));
+}
+
+}  // namespace
