@@ -137,15 +137,16 @@ Expected<fdds::DataWriter*> Participant::make_writer(std::string_view name,
   return writer;
 }
 
-Expected<fdds::DataReader*> Participant::make_reader(std::string_view name,
-                                                     fdds::TypeSupport type) {
+Expected<fdds::DataReader*> Participant::make_reader(std::string_view name, fdds::TypeSupport type,
+                                                     fdds::DataReaderListener* listener) {
   const TopicQos* topic = find_topic(name);
   if (!topic) return fail("is not in the table of topics", std::string(name));
   const auto handle = state_->topic(name, type);
   if (!handle) return tl::unexpected(handle.error());
   fdds::DataReaderQos qos = state_->subscriber->get_default_datareader_qos();
   apply(qos, *topic, topic->reader_depth, state_->options.lockstep);
-  fdds::DataReader* reader = state_->subscriber->create_datareader(*handle, qos);
+  fdds::DataReader* reader = state_->subscriber->create_datareader(
+      *handle, qos, listener, fdds::StatusMask::data_available());
   if (!reader) return fail("reader cannot be created", std::string(name));
   return reader;
 }

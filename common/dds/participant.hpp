@@ -1,8 +1,8 @@
 #pragma once
 
-#include <fastdds/dds/core/condition/WaitSet.hpp>
 #include <fastdds/dds/publisher/DataWriter.hpp>
 #include <fastdds/dds/subscriber/DataReader.hpp>
+#include <fastdds/dds/subscriber/DataReaderListener.hpp>
 #include <functional>
 #include <map>
 #include <memory>
@@ -107,9 +107,11 @@ class Participant {
     if (!made) return tl::unexpected(made.error());
     return Writer<typename P::type>(*made);
   }
+  /// listener: told of every arrival, in the thread that received it; nullptr: none.
   template <class P>
-  Expected<Reader<typename P::type>> reader(const Topic<P>& topic) {
-    auto made = make_reader(topic.name, eprosima::fastdds::dds::TypeSupport(new P()));
+  Expected<Reader<typename P::type>> reader(
+      const Topic<P>& topic, eprosima::fastdds::dds::DataReaderListener* listener = nullptr) {
+    auto made = make_reader(topic.name, eprosima::fastdds::dds::TypeSupport(new P()), listener);
     if (!made) return tl::unexpected(made.error());
     return Reader<typename P::type>(*made);
   }
@@ -120,7 +122,8 @@ class Participant {
   Expected<eprosima::fastdds::dds::DataWriter*> make_writer(
       std::string_view topic, eprosima::fastdds::dds::TypeSupport type);
   Expected<eprosima::fastdds::dds::DataReader*> make_reader(
-      std::string_view topic, eprosima::fastdds::dds::TypeSupport type);
+      std::string_view topic, eprosima::fastdds::dds::TypeSupport type,
+      eprosima::fastdds::dds::DataReaderListener* listener);
   std::unique_ptr<State> state_;
 };
 

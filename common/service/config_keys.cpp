@@ -37,7 +37,7 @@ const std::vector<ConfigKey>& config_keys() {
       {"camera.focal", Numbers{620, 620}, "px, horizontal and vertical"},
       {"camera.centre", Numbers{319.5, 239.5}, "px, principal point"},
       {"camera.distortion", Numbers{0, 0, 0, 0, 0}, "OpenCV's k1 k2 p1 p2 k3"},
-      {"camera.X_WC", Numbers{0, -0.95, 0.75, 0.4226183, -0.9063078, 0, 0},
+      {"camera.X_WC", Numbers{0, -0.75, 0.8, 0.36650123, -0.93041757, 0, 0},
        "camera in the table's frame; z looks into the scene, x right, y down"},
 
       {"recognition.source", Text("synthetic"), "topic, device, video, folder or synthetic"},

@@ -7,9 +7,8 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <atomic>
+#include <condition_variable>
 #include <deque>
-#include <fastdds/dds/core/condition/GuardCondition.hpp>
-#include <fastdds/dds/core/condition/WaitSet.hpp>
 #include <fstream>
 #include <iostream>
 #include <limits>
@@ -42,7 +41,7 @@ std::string host_name() {
   return name;
 }
 
-/// Waited for by a thread parked in sigwait: a handler must not touch what wakes the wait set.
+/// Waited for by a thread parked in sigwait: a handler must not touch what wakes run().
 sigset_t stop_signals() {
   sigset_t set;
   sigemptyset(&set);
@@ -53,45 +52,60 @@ sigset_t stop_signals() {
 
 }  // namespace
 
+/// What has come on a topic and is not handed over yet: live only before run(), in lockstep until
+/// due.
+struct Shell::Input {
+  std::string_view topic;
+  std::vector<Arrival> waiting;
+  std::uint64_t received = 0;
+};
+
 struct Shell::State {
   Options options;
   Config config;
   Status status;
   bool lockstep = false;
-  std::optional<dds::Participant> participant;
 
-  std::vector<Input> inputs;
-  fdds::WaitSet wait_set;
-  fdds::GuardCondition woken;
-
-  std::mutex mutex;  // guards tasks
-  std::deque<std::function<void()>> tasks;
-  std::atomic<bool> stopping = false;
-  std::atomic<int> exit_code = 0;
-
+  std::mutex exclusive;  // held while anything of the service runs; guards what follows
+  bool running = false;
+  std::vector<std::unique_ptr<Input>> inputs;
+  std::deque<v1::LabClock> cycles;  // lockstep, not yet run
+  std::map<std::string, std::uint64_t, std::less<>> published;
   std::function<void(Time)> tick;
   Duration period{};
   Time next_tick{}, next_status{}, started{}, clock{};
 
-  std::optional<dds::Writer<v1::ServiceStatus>> status_writer;
+  std::mutex wake_mutex;  // guards what follows; taken inside of `exclusive`, never around it
+  std::condition_variable wake_condition;
+  bool woken = false;
+  std::deque<std::function<void()>> tasks;
+
+  std::atomic<bool> stopping = false;
+  std::atomic<int> exit_code = 0;
+
   v1::ServiceStatus status_message;
-
-  // Lockstep.
-  std::optional<dds::Reader<v1::LabClock>> clock_reader;
+  std::vector<std::unique_ptr<fdds::DataReaderListener>> listeners;
+  // Goes before all that its threads may still touch.
+  std::optional<dds::Participant> participant;
+  std::optional<dds::Writer<v1::ServiceStatus>> status_writer;
   std::optional<dds::Writer<v1::LabProgress>> progress_writer;
-  std::deque<v1::LabClock> cycles;
-  std::map<std::string, std::uint64_t, std::less<>> published;
-
   std::thread signals;
 
-  void wake() { woken.set_trigger_value(true); }
+  void wake() {
+    {
+      const std::scoped_lock lock(wake_mutex);
+      woken = true;
+    }
+    wake_condition.notify_one();
+  }
 };
 
 Shell::Shell(std::unique_ptr<State> state) : state_(std::move(state)) {}
 
 Shell::~Shell() {
+  state_->participant.reset();  // ends the threads that hand over samples
   // The watcher sleeps in sigwait; a signal of our own lets it go.
-  if (state_ && state_->signals.joinable()) {
+  if (state_->signals.joinable()) {
     state_->stopping = true;
     pthread_kill(state_->signals.native_handle(), SIGTERM);
     state_->signals.join();
@@ -146,7 +160,6 @@ std::unique_ptr<Shell> Shell::create(int argc, char** argv, const Options& optio
     return nullptr;
   }
   state->participant.emplace(std::move(*participant));
-  state->wait_set.attach_condition(state->woken);
   state->started = system_now();
 
   auto status_writer = state->participant->writer(dds::service_status);
@@ -158,17 +171,6 @@ std::unique_ptr<Shell> Shell::create(int argc, char** argv, const Options& optio
   state->status_message.service(
       (options.name + "@" + host + "/" + std::to_string(getpid())).substr(0, 128).c_str());
 
-  if (state->lockstep) {
-    auto reader = state->participant->reader(dds::lab_clock);
-    if (!reader) refuse(reader.error());
-    auto writer = state->participant->writer(dds::lab_progress);
-    if (!writer) refuse(writer.error());
-    reader->raw().get_statuscondition().set_enabled_statuses(fdds::StatusMask::data_available());
-    state->wait_set.attach_condition(reader->raw().get_statuscondition());
-    state->clock_reader.emplace(std::move(*reader));
-    state->progress_writer.emplace(std::move(*writer));
-  }
-
   State* raw = state.get();
   state->signals = std::thread([raw] {
     const sigset_t waited = stop_signals();
@@ -178,7 +180,16 @@ std::unique_ptr<Shell> Shell::create(int argc, char** argv, const Options& optio
     raw->wake();
   });
   exit_code = 0;
-  return std::unique_ptr<Shell>(new Shell(std::move(state)));
+  std::unique_ptr<Shell> shell(new Shell(std::move(state)));
+  if (raw->lockstep) {
+    auto writer = raw->participant->writer(dds::lab_progress);
+    if (!writer) refuse(writer.error());
+    raw->progress_writer.emplace(std::move(*writer));
+    shell->subscribe(dds::lab_clock, [raw](const v1::LabClock& cycle, const dds::SampleInfo& info) {
+      if (!info.gone) raw->cycles.push_back(cycle);
+    });
+  }
+  return shell;
 }
 
 const Config& Shell::config() const {
@@ -202,13 +213,33 @@ void Shell::refuse(const Error& error) {
   std::_Exit(3);
 }
 
-void Shell::add_input(Input input) {
-  input.reader->get_statuscondition().set_enabled_statuses(fdds::StatusMask::data_available());
-  state_->wait_set.attach_condition(input.reader->get_statuscondition());
-  state_->inputs.push_back(std::move(input));
+Shell::Input& Shell::add_input(std::string_view topic) {
+  const std::scoped_lock lock(state_->exclusive);
+  auto& inputs = state_->inputs;
   // Equal stamps are handed over in the order of the topics' names, whoever subscribed first.
-  std::stable_sort(state_->inputs.begin(), state_->inputs.end(),
-                   [](const Input& a, const Input& b) { return a.topic < b.topic; });
+  const auto place = std::find_if(inputs.begin(), inputs.end(),
+                                  [&](const auto& input) { return input->topic > topic; });
+  return **inputs.insert(place, std::make_unique<Input>(Input{topic, {}, 0}));
+}
+
+void Shell::keep(std::unique_ptr<fdds::DataReaderListener> listener) {
+  state_->listeners.push_back(std::move(listener));
+}
+
+void Shell::arrive(Input& input, std::vector<Arrival> arrivals) {
+  State& state = *state_;
+  {
+    const std::scoped_lock lock(state.exclusive);
+    const bool at_once = state.lockstep ? input.topic == dds::lab_clock.name : state.running;
+    for (Arrival& arrival : arrivals) {
+      arrival.index = input.received++;
+      if (at_once)
+        arrival.deliver();
+      else
+        input.waiting.push_back(std::move(arrival));
+    }
+  }
+  if (state.lockstep) state.wake();
 }
 
 std::function<void()> Shell::count_output(std::string_view topic) {
@@ -223,10 +254,16 @@ void Shell::on_tick(Duration period, std::function<void(Time)> tick) {
 
 void Shell::post(std::function<void()> task) {
   {
-    const std::scoped_lock lock(state_->mutex);
+    const std::scoped_lock lock(state_->wake_mutex);
     state_->tasks.push_back(std::move(task));
+    state_->woken = true;
   }
-  state_->wake();
+  state_->wake_condition.notify_one();
+}
+
+void Shell::exclusively(const std::function<void()>& task) {
+  const std::scoped_lock lock(state_->exclusive);
+  if (state_->running) task();
 }
 
 void Shell::stop(int exit_code) {
@@ -247,27 +284,16 @@ int Shell::run() {
   const auto run_tasks = [&] {
     std::deque<std::function<void()>> tasks;
     {
-      const std::scoped_lock lock(state.mutex);
+      const std::scoped_lock lock(state.wake_mutex);
       tasks.swap(state.tasks);
     }
     for (auto& task : tasks) task();
   };
   /// In the order (stamp, topic, sequence): inputs are sorted by topic, arrivals by sequence.
-  const auto deliver = [](std::vector<Input::Arrival>& due) {
+  const auto deliver = [](std::vector<Arrival>& due) {
     std::stable_sort(due.begin(), due.end(),
                      [](const auto& a, const auto& b) { return a.stamp_ns < b.stamp_ns; });
-    for (Input::Arrival& arrival : due) arrival.deliver();
-  };
-
-  /// Lockstep: takes what has arrived, so that the wait set can sleep until more comes.
-  const auto collect = [&] {
-    for (auto& sample : state.clock_reader->take())
-      if (!sample.info.gone) state.cycles.push_back(std::move(sample.data));
-    for (Input& input : state.inputs)
-      for (Input::Arrival& arrival : input.take()) {
-        arrival.index = input.received++;
-        input.waiting.push_back(std::move(arrival));
-      }
+    for (Arrival& arrival : due) arrival.deliver();
   };
 
   /// One lockstep cycle, if everything it speaks of has come. False: wait for more.
@@ -279,20 +305,20 @@ int Shell::run() {
         if (input.topic == std::string_view(count.topic().c_str())) return count.count();
       return std::uint64_t{0};
     };
-    for (const Input& input : state.inputs)
-      if (input.received < counted(input)) return false;
+    for (const auto& input : state.inputs)
+      if (input->received < counted(*input)) return false;
     state.clock = from_ns(cycle.stamp_ns());
     // Of each topic only as many as the clock has counted: later ones belong to later cycles.
-    std::vector<Input::Arrival> due;
+    std::vector<Arrival> due;
     std::uint32_t waiting = 0;
-    for (Input& input : state.inputs) {
-      std::vector<Input::Arrival> kept;
-      for (Input::Arrival& arrival : input.waiting) {
-        const bool is_due = arrival.index < counted(input) && arrival.stamp_ns <= cycle.stamp_ns();
+    for (const auto& input : state.inputs) {
+      std::vector<Arrival> kept;
+      for (Arrival& arrival : input->waiting) {
+        const bool is_due = arrival.index < counted(*input) && arrival.stamp_ns <= cycle.stamp_ns();
         (is_due ? due : kept).push_back(std::move(arrival));
       }
       waiting += static_cast<std::uint32_t>(kept.size());
-      input.waiting = std::move(kept);
+      input->waiting = std::move(kept);
     }
     deliver(due);
     if (state.tick) state.tick(state.clock);
@@ -312,39 +338,40 @@ int Shell::run() {
     return true;
   };
 
+  std::unique_lock lock(state.exclusive);
   publish_status(system_now());
   state.next_tick = system_now();
+  state.running = true;
+  if (!state.lockstep) {
+    std::vector<Arrival> early;
+    for (const auto& input : state.inputs)
+      for (Arrival& arrival : input->waiting) early.push_back(std::move(arrival));
+    deliver(early);
+  }
   while (!state.stopping) {
-    const Time before = system_now();
-    Time wake_at = state.next_status;
-    if (state.tick && !state.lockstep) wake_at = std::min(wake_at, state.next_tick);
-    if (wake_at > before) {
-      const Duration left = wake_at - before;
-      fdds::ConditionSeq active;
-      state.wait_set.wait(active, eprosima::fastrtps::Duration_t(
-                                      static_cast<int32_t>(left.count() / 1'000'000'000),
-                                      static_cast<uint32_t>(left.count() % 1'000'000'000)));
-    }
-    // Reset before looking: whatever is posted afterwards sets it again.
-    state.woken.set_trigger_value(false);
     run_tasks();
     if (state.lockstep) {
-      collect();
       while (run_cycle()) {
       }
-    } else {
-      std::vector<Input::Arrival> due;
-      for (Input& input : state.inputs)
-        for (Input::Arrival& arrival : input.take()) due.push_back(std::move(arrival));
-      deliver(due);
-      if (const Time now = system_now(); state.tick && now >= state.next_tick) {
-        state.tick(now);
-        // A late tick is not made up for: the next one sees all the time that has passed.
-        state.next_tick = std::max(state.next_tick + state.period, now);
-      }
+    } else if (const Time now = system_now(); state.tick && now >= state.next_tick) {
+      state.tick(now);
+      // A late tick is not made up for: the next one sees all the time that has passed.
+      state.next_tick = std::max(state.next_tick + state.period, now);
     }
     if (const Time now = system_now(); now >= state.next_status) publish_status(now);
+
+    Time wake_at = state.next_status;
+    if (state.tick && !state.lockstep) wake_at = std::min(wake_at, state.next_tick);
+    lock.unlock();
+    {
+      std::unique_lock sleep(state.wake_mutex);
+      state.wake_condition.wait_until(sleep, wake_at,
+                                      [&] { return state.woken || state.stopping; });
+      state.woken = false;
+    }
+    lock.lock();
   }
+  state.running = false;
   log::info("stopped");
   return state.exit_code;
 }

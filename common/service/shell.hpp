@@ -2,6 +2,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <prehend/dds/participant.hpp>
 #include <string>
 #include <string_view>
@@ -15,13 +16,14 @@ namespace prehend::service {
 /// The shell of every process: arguments, configuration, life cycle, input, time, status.
 ///
 /// Use: create(), then publish() and subscribe(), on_tick(), run(). Everything that is given to the
-/// shell is called in the thread of run(), one call at a time; only post() and status() may be used
-/// from other threads.
+/// shell is called between the start and the end of run(), one call at a time. Only post(),
+/// exclusively() and status() may be used from other threads.
 ///
-/// Live, inputs are handed over as they come, and the tick follows the system clock. In lockstep
-/// (lab.lockstep = true, or --lockstep) inputs are handed over in the order (stamp, topic,
-/// sequence) of what the clock's cycle says has been published, then comes one tick, then
-/// lab/progress is answered; nothing then depends on when messages arrive.
+/// Live, a sample is handed over in the thread that received it (a change of threads would cost as
+/// much as the whole hop), and the tick follows the system clock. In lockstep (lab.lockstep = true,
+/// or --lockstep) inputs are handed over in the order (stamp, topic, sequence) of what the clock's
+/// cycle says has been published, then comes one tick, then lab/progress is answered; nothing then
+/// depends on when messages arrive.
 class Shell {
  public:
   struct Options {
@@ -58,9 +60,13 @@ class Shell {
   /// Calls tick(now) every `period` live, and once each cycle in lockstep.
   void on_tick(Duration period, std::function<void(Time now)> tick);
 
-  /// Runs `task` soon in the thread of run(). For threads that block on a device; never used in
-  /// lockstep, where all input comes by topic.
+  /// Runs `task` soon, in the thread of run(). Never used in lockstep, where all input comes by
+  /// topic.
   void post(std::function<void()> task);
+
+  /// Runs `task` at once, in the calling thread, when nothing else of the shell is running; drops
+  /// it outside of run(). For devices whose frames must not wait for a change of threads.
+  void exclusively(const std::function<void()>& task);
 
   /// Ends run() with this exit code: 3 where the environment is broken.
   void stop(int exit_code = 0);
@@ -69,24 +75,23 @@ class Shell {
   int run();
 
  private:
-  struct Input {
-    std::string_view topic;
-    eprosima::fastdds::dds::DataReader* reader = nullptr;
-    /// What has arrived, in order; the stamp to order it among topics, and how to hand it over.
-    struct Arrival {
-      std::int64_t stamp_ns = 0;
-      std::function<void()> deliver;
-      std::uint64_t index = 0;  // lockstep: counts the topic's samples as they arrive
-    };
-    std::function<std::vector<Arrival>()> take;
-    std::vector<Arrival> waiting;  // lockstep: arrived, not yet due
-    std::uint64_t received = 0;
+  /// A sample on its way: the stamp to order it among topics, and how to hand it over.
+  struct Arrival {
+    std::int64_t stamp_ns = 0;
+    std::function<void()> deliver;
+    std::uint64_t index = 0;  // lockstep: counts the topic's samples as they arrive
   };
+  struct Input;
+  template <class T>
+  class Listener;
   struct State;
   explicit Shell(std::unique_ptr<State> state);
 
   dds::Participant& participant();
-  void add_input(Input input);
+  Input& add_input(std::string_view topic);
+  void keep(std::unique_ptr<eprosima::fastdds::dds::DataReaderListener> listener);
+  /// Called by the thread that received samples.
+  void arrive(Input& input, std::vector<Arrival> arrivals);
   [[noreturn]] static void refuse(const Error& error);
   std::function<void()> count_output(std::string_view topic);
 
@@ -111,28 +116,43 @@ Shell::Output<typename P::type> Shell::publish(const dds::Topic<P>& topic) {
           }};
 }
 
+/// Takes samples off the wire in the thread that received them.
+template <class T>
+class Shell::Listener : public eprosima::fastdds::dds::DataReaderListener {
+ public:
+  using OnSample = std::function<void(const T&, const dds::SampleInfo&)>;
+  Listener(Shell& shell, Input& input, OnSample on_sample)
+      : shell_(shell), input_(input), on_sample_(std::move(on_sample)) {}
+
+  void on_data_available(eprosima::fastdds::dds::DataReader* raw) override {
+    if (!reader_) reader_.emplace(raw);
+    std::vector<Arrival> arrivals;
+    for (dds::Sample<T>& sample : reader_->take()) {
+      // A vanished instance carries no stamp of its own: it follows the topic's last sample.
+      if (!sample.info.gone) stamp_ns_ = sample.data.stamp_ns();
+      auto kept = std::make_shared<dds::Sample<T>>(std::move(sample));
+      arrivals.push_back({stamp_ns_, [this, kept] { on_sample_(kept->data, kept->info); }});
+    }
+    shell_.arrive(input_, std::move(arrivals));
+  }
+
+ private:
+  Shell& shell_;
+  Input& input_;
+  OnSample on_sample_;
+  std::optional<dds::Reader<T>> reader_;
+  std::int64_t stamp_ns_ = 0;
+};
+
 template <class P>
 void Shell::subscribe(
     const dds::Topic<P>& topic,
     std::function<void(const typename P::type&, const dds::SampleInfo&)> on_sample) {
   using T = typename P::type;
-  auto made = participant().reader(topic);
-  if (!made) refuse(made.error());
-  auto reader = std::make_shared<dds::Reader<T>>(std::move(*made));
-  Input input;
-  input.topic = topic.name;
-  input.reader = &reader->raw();
-  input.take = [reader, on_sample, stamp = std::int64_t{0}]() mutable {
-    std::vector<typename Input::Arrival> arrivals;
-    for (dds::Sample<T>& sample : reader->take()) {
-      // A vanished instance carries no stamp of its own: it follows the topic's last sample.
-      if (!sample.info.gone) stamp = sample.data.stamp_ns();
-      auto kept = std::make_shared<dds::Sample<T>>(std::move(sample));
-      arrivals.push_back({stamp, [kept, on_sample] { on_sample(kept->data, kept->info); }});
-    }
-    return arrivals;
-  };
-  add_input(std::move(input));
+  auto listener = std::make_unique<Listener<T>>(*this, add_input(topic.name), std::move(on_sample));
+  auto* raw = listener.get();
+  keep(std::move(listener));
+  if (auto made = participant().reader(topic, raw); !made) refuse(made.error());
 }
 
 }  // namespace prehend::service

@@ -61,7 +61,7 @@ void Service::connect(std::unique_ptr<Device> device) {
   if (shell_.lockstep()) return;
   device_->start({.frame =
                       [this](Frame frame) {
-                        shell_.post([this, frame = std::move(frame)] {
+                        shell_.exclusively([this, &frame] {
                           frames_.publish(to_message(frame, glove_, std::string(kind_.name)));
                           on_frame(frame);
                         });

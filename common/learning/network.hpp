@@ -1,0 +1,33 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <prehend/base/error.hpp>
+#include <vector>
+
+namespace prehend::learning {
+
+/// Weights into the neurons of one layer, a row a neuron; the last column is the bias.
+using Layer = Eigen::MatrixXd;
+
+/// A fully connected feed-forward network with a symmetric sigmoid in every layer:
+/// y = tanh(s · (W x + b)), s = 0.5 as in FANN. It is a value: evaluating it from several threads
+/// is safe, and neither locale nor file format of the library that trained it matters.
+class Network {
+ public:
+  /// Refuses no layers, empty ones, ones that do not fit each other, and weights that are not
+  /// finite.
+  static Expected<Network> create(std::vector<Layer> layers);
+
+  int inputs() const { return static_cast<int>(layers_.front().cols()) - 1; }
+  int outputs() const { return static_cast<int>(layers_.back().rows()); }
+  const std::vector<Layer>& layers() const { return layers_; }
+
+  /// x: inputs() numbers, scaled. Returns outputs() numbers in (-1, 1).
+  Eigen::VectorXd evaluate(const Eigen::VectorXd& x) const;
+
+ private:
+  explicit Network(std::vector<Layer> layers) : layers_(std::move(layers)) {}
+  std::vector<Layer> layers_;
+};
+
+}  // namespace prehend::learning

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <prehend/base/error.hpp>
+#include <string_view>
+
+#include "network.hpp"
+
+namespace prehend::learning {
+
+enum class TrainingMethod { incremental, batch, rprop, quickprop, sarprop };
+
+std::string_view to_string(TrainingMethod method);
+std::optional<TrainingMethod> method_from_string(std::string_view name);
+
+/// Pairs of network input and output, both scaled, a column a pair.
+struct Samples {
+  Eigen::MatrixXd inputs, outputs;
+};
+
+struct TrainingOptions {
+  TrainingMethod method = TrainingMethod::rprop;
+  int hidden = 8;              // neurons of the one hidden layer
+  int epochs = 2000;           // at most
+  double learning_rate = 0.7;  // of the methods that have one
+  int check_every = 10;        // epochs between looks at the validation error
+  int patience = 200;          // epochs without a better validation error before it stops
+  std::uint32_t seed = 1;      // of the first weights
+};
+
+/// Mean over samples of the sum over outputs of squared differences (eq. 5.1, scaled units).
+double squared_error(const Network& network, const Samples& samples);
+
+struct TrainingResult {
+  Network network;              // the best one seen, by validation error
+  double training_error = 0;    // squared_error of it
+  double validation_error = 0;  // the same on the validation samples; on the training ones without
+  int epochs = 0;               // that were trained
+};
+
+/// Trains a network with one hidden layer. Stops early when the error on `validation` (may be
+/// empty: then the training error) no longer improves, and returns the best network seen. The same
+/// samples, options and seed give the same network bit for bit. Uses the C library's rand(): not
+/// safe from two threads at once. `progress` is told the share of epochs done, 0 to 1.
+Expected<TrainingResult> train(const Samples& training, const Samples& validation,
+                               const TrainingOptions& options,
+                               const std::function<void(double)>& progress = {});
+
+}  // namespace prehend::learning

@@ -1,0 +1,52 @@
+#include "arguments.hpp"
+
+#include <CLI/CLI.hpp>
+#include <iostream>
+#include <prehend/base/log.hpp>
+#include <prehend/base/paths.hpp>
+
+namespace prehend::cli {
+
+void LabArguments::add_to(CLI::App& app) {
+  app.add_option("--config", config, "the lab's configuration file");
+  app.add_option("--set", sets, "override a key: table.key=value; may be repeated")
+      ->type_size(1)
+      ->allow_extra_args(false);
+  app.add_option("--domain", domain, "DDS domain")->check(CLI::Range(0, 232));
+}
+
+std::string LabArguments::file() const {
+  return config.empty() ? (share_directory() / "lab.toml").string()
+                        : std::filesystem::absolute(config).string();
+}
+
+std::vector<std::string> LabArguments::overrides() const {
+  std::vector<std::string> result = sets;
+  if (domain) result.push_back("lab.domain=" + std::to_string(*domain));
+  return result;
+}
+
+Expected<service::Config> LabArguments::load() const {
+  return service::Config::load(file(), overrides());
+}
+
+std::optional<int> parse(CLI::App& app, const std::vector<std::string>& arguments) {
+  // CLI11 wants them last first.
+  std::vector<std::string> reversed(arguments.rbegin(), arguments.rend());
+  try {
+    app.parse(reversed);
+  } catch (const CLI::CallForHelp&) {
+    std::cout << app.help();
+    return exit_done;
+  } catch (const CLI::ParseError& error) {
+    return complain({error.what(), app.get_name(), "see --help"}, exit_wrong_use);
+  }
+  return std::nullopt;
+}
+
+int complain(const Error& error, int exit_code) {
+  log::error("{}", error.message());
+  return exit_code;
+}
+
+}  // namespace prehend::cli

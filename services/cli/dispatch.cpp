@@ -1,0 +1,34 @@
+#include "dispatch.hpp"
+
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <prehend/base/paths.hpp>
+
+#include "arguments.hpp"
+
+namespace prehend::cli {
+
+const std::vector<Tool>& tools() {
+  static const std::vector<Tool> table{
+      {"glove", "prehend-glove-tool", "decode a serial capture, emulate a tracker"},
+      {"objects", "prehend-objects", "train, detect and evaluate object models"},
+      {"train", "prehend-train", "train a mapping model for a robot hand"},
+      {"grasp", "prehend-grasp", "quality of given contacts"},
+  };
+  return table;
+}
+
+int become(const Tool& tool, const std::vector<std::string>& arguments) {
+  std::vector<std::string> command{(program_directory() / tool.program).string()};
+  command.insert(command.end(), arguments.begin(), arguments.end());
+  std::vector<char*> pointers;
+  for (std::string& argument : command) pointers.push_back(argument.data());
+  pointers.push_back(nullptr);
+  ::execv(pointers.front(), pointers.data());
+  return complain({std::strerror(errno), command.front(), "is it built and installed?"},
+                  exit_broken);
+}
+
+}  // namespace prehend::cli

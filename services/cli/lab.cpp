@@ -1,0 +1,80 @@
+#include "lab.hpp"
+
+#include <fmt/format.h>
+
+#include <csignal>
+#include <cstdlib>
+#include <prehend/base/paths.hpp>
+
+namespace prehend::cli {
+
+Expected<TemporaryFolder> TemporaryFolder::create(bool keep) {
+  std::error_code code;
+  const std::filesystem::path base = std::filesystem::temp_directory_path(code);
+  if (code) return fail(code.message(), "temporary folder", "set TMPDIR");
+  std::string name = (base / "prehend-XXXXXX").string();
+  if (!::mkdtemp(name.data())) return fail("cannot make a folder", base.string(), "set TMPDIR");
+  return TemporaryFolder(name, keep);
+}
+
+TemporaryFolder::TemporaryFolder(TemporaryFolder&& other) noexcept
+    : path_(std::exchange(other.path_, {})), keep_(other.keep_) {}
+
+TemporaryFolder::~TemporaryFolder() {
+  std::error_code ignored;
+  if (!keep_ && !path_.empty()) std::filesystem::remove_all(path_, ignored);
+}
+
+Lab::Lab(std::string config, std::vector<std::string> sets, std::filesystem::path logs)
+    : config_(std::move(config)), sets_(std::move(sets)), logs_(std::move(logs)) {}
+
+Lab::~Lab() {
+  stop();
+}
+
+Expected<void> Lab::start_service(const std::string& name, const std::vector<std::string>& sets) {
+  std::vector<std::string> arguments{"--config", config_};
+  std::vector<std::string> all = sets_;
+  all.insert(all.end(), sets.begin(), sets.end());
+  for (const std::string& set : all) arguments.insert(arguments.end(), {"--set", set});
+  return start(name, "prehend-" + name, arguments);
+}
+
+Expected<void> Lab::start(const std::string& name, const std::string& program,
+                          const std::vector<std::string>& arguments) {
+  service::Process::Options options;
+  options.command = {(program_directory() / program).string()};
+  options.command.insert(options.command.end(), arguments.begin(), arguments.end());
+  options.log = logs_ / (name + ".log");
+  auto process = service::Process::start(options);
+  if (!process) return tl::unexpected(process.error());
+  members_.push_back({name, std::move(*process)});
+  return {};
+}
+
+std::optional<service::Process::Exit> Lab::ended(std::string_view name) {
+  for (Member& member : members_)
+    if (member.name == name) return member.process.exit();
+  return std::nullopt;
+}
+
+std::optional<Error> Lab::casualty(std::string_view may_end) {
+  for (Member& member : members_) {
+    const auto exit = member.process.exit();
+    if (!exit || (member.name == may_end && exit->code == 0)) continue;
+    std::string how = exit->signal ? fmt::format("was killed by signal {}", exit->signal)
+                                   : fmt::format("ended with exit code {}", exit->code);
+    const std::string said = service::last_lines(member.process.log(), 5);
+    if (!said.empty()) how += "; it said:\n" + said;
+    return Error{how, member.name, ""};
+  }
+  return std::nullopt;
+}
+
+void Lab::stop() {
+  for (Member& member : members_) member.process.signal(SIGTERM);
+  for (Member& member : members_) member.process.stop(seconds(3));
+  members_.clear();
+}
+
+}  // namespace prehend::cli

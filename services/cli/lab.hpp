@@ -1,0 +1,58 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <prehend/base/error.hpp>
+#include <prehend/service/process.hpp>
+#include <string>
+#include <vector>
+
+namespace prehend::cli {
+
+/// A folder under the system's temporary one, removed at the end unless it shall be kept.
+class TemporaryFolder {
+ public:
+  static Expected<TemporaryFolder> create(bool keep);
+  TemporaryFolder(TemporaryFolder&& other) noexcept;
+  TemporaryFolder& operator=(TemporaryFolder&&) = delete;
+  ~TemporaryFolder();
+  const std::filesystem::path& path() const { return path_; }
+
+ private:
+  explicit TemporaryFolder(std::filesystem::path path, bool keep)
+      : path_(std::move(path)), keep_(keep) {}
+  std::filesystem::path path_;
+  bool keep_;
+};
+
+/// The processes of a lab on this machine. All are stopped when it goes.
+class Lab {
+ public:
+  /// config, sets: what every service is started with; logs: folder for what they say.
+  Lab(std::string config, std::vector<std::string> sets, std::filesystem::path logs);
+  ~Lab();
+
+  /// Starts prehend-NAME with the lab's configuration and further overrides.
+  Expected<void> start_service(const std::string& name, const std::vector<std::string>& sets = {});
+  /// Starts a program from the folder of this one.
+  Expected<void> start(const std::string& name, const std::string& program,
+                       const std::vector<std::string>& arguments);
+  /// How a process ended, if it did.
+  std::optional<service::Process::Exit> ended(std::string_view name);
+  /// The first process found dead, with the last lines it said. `may_end` may end with success.
+  std::optional<Error> casualty(std::string_view may_end = {});
+  /// Asks all to stop and kills those that do not within three seconds.
+  void stop();
+
+ private:
+  struct Member {
+    std::string name;
+    service::Process process;
+  };
+  std::string config_;
+  std::vector<std::string> sets_;
+  std::filesystem::path logs_;
+  std::vector<Member> members_;
+};
+
+}  // namespace prehend::cli

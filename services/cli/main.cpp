@@ -1,0 +1,57 @@
+#include <fmt/format.h>
+
+#include <iostream>
+#include <prehend/base/log.hpp>
+
+#include "arguments.hpp"
+#include "demo.hpp"
+#include "dispatch.hpp"
+#include "scene_command.hpp"
+#include "status_command.hpp"
+
+using namespace prehend;
+
+namespace {
+
+struct Command {
+  std::string_view name;
+  int (*run)(const std::vector<std::string>&);
+  std::string_view help;
+};
+constexpr Command commands[] = {
+    {"demo", cli::demo_command, "play a demonstration through all services and judge the grasp"},
+    {"status", cli::status_command, "who is there and how they fare"},
+    {"scene", cli::scene_command, "draw a scene from a seed"},
+};
+
+std::string help() {
+  std::string text =
+      "prehend: turns a human hand into a robot hand\n\n"
+      "Usage: prehend COMMAND [ARGUMENTS]; prehend COMMAND --help tells more\n\n";
+  for (const Command& command : commands)
+    text += fmt::format("  {:<9}{}\n", command.name, command.help);
+  for (const cli::Tool& tool : cli::tools())
+    text += fmt::format("  {:<9}{}\n", tool.name, tool.help);
+  return text + "\nExit codes: 0 done, 1 the answer is no, 2 wrong use, 3 environment broken.\n";
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const std::vector<std::string> arguments(argv + 1, argv + argc);
+  if (arguments.empty() || arguments.front() == "--help" || arguments.front() == "-h") {
+    (arguments.empty() ? std::cerr : std::cout) << help();
+    return arguments.empty() ? cli::exit_wrong_use : cli::exit_done;
+  }
+  if (arguments.front() == "--version") {
+    std::cout << "prehend " PREHEND_VERSION "\n";
+    return cli::exit_done;
+  }
+  const std::vector<std::string> rest(arguments.begin() + 1, arguments.end());
+  for (const Command& command : commands)
+    if (command.name == arguments.front()) return command.run(rest);
+  for (const cli::Tool& tool : cli::tools())
+    if (tool.name == arguments.front()) return cli::become(tool, rest);
+  return cli::complain({"unknown command '" + arguments.front() + "'", "prehend", "see --help"},
+                       cli::exit_wrong_use);
+}

@@ -1,0 +1,26 @@
+#include "grasp_type.hpp"
+
+namespace prehend::mapping {
+
+namespace {
+/// Below this the hand is open, rad. Human fingers that hold something wide are hardly bent, so
+/// their bending would not tell.
+constexpr double least_closed = 0.6;
+/// The approach counts as from above within 45 degrees.
+constexpr double from_above = -0.7071;
+/// How much less the little finger bends than the index in a precision grasp.
+constexpr double little_apart = 0.25;
+}  // namespace
+
+GraspType grasp_type(const Features& features, double closed, const Pose& X_WG,
+                     model::ShapeKind shape) {
+  if (!(closed >= least_closed)) return GraspType::none;
+  const Eigen::Vector3d bent = bending(features);
+  if (X_WG.linear()(2, 2) > from_above) return GraspType::power_wrap;
+  if (shape == model::ShapeKind::box) return GraspType::precision;
+  if (shape == model::ShapeKind::unknown && bent[1] - bent[2] > little_apart)
+    return GraspType::precision;
+  return GraspType::circular_sphere;
+}
+
+}  // namespace prehend::mapping

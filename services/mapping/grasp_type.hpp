@@ -1,0 +1,23 @@
+#pragma once
+
+#include <prehend/base/pose.hpp>
+#include <prehend/model/shape.hpp>
+
+#include "features.hpp"
+
+namespace prehend::mapping {
+
+enum class GraspType { none, power_wrap, circular_sphere, precision };
+
+/// Which grasp a hand is making, by where its palm comes from and what its fingers do:
+///   robot fingers (to be) open           -> none
+///   palm from the side                   -> power wrap
+///   from above, on a box                 -> precision
+///   from above, on a cylinder or sphere  -> circular sphere
+///   from above, on something unknown     -> precision if the little finger stays out of it
+/// closed: mean angle of the robot's closing DoFs as mapped, rad. X_WG: the hand's grasp frame on
+/// the table.
+GraspType grasp_type(const Features& features, double closed, const Pose& X_WG,
+                     model::ShapeKind shape);
+
+}  // namespace prehend::mapping

@@ -1,0 +1,216 @@
+#include "mapping.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <prehend/model/human_hand.hpp>
+#include <prehend/model/placement.hpp>
+#include <utility>
+
+namespace prehend::mapping {
+
+Mapping::Mapping(const model::HandModel& hand, const MappingModel& model,
+                 const MappingOptions& options)
+    : hand_(hand),
+      model_(model),
+      options_(options),
+      arbitration_(options.ramp),
+      grip_(hand, options.grip) {}
+
+Expected<void> Mapping::on_detection(const Detection& detection) {
+  if (!is_valid(detection.shape)) return fail("detection without a shape");
+  if (!is_finite(detection.X_WO)) return fail("detection not finite");
+  if (!(detection.probability >= options_.least_probability))
+    return fail("detection not confident");
+  // Late ones must not bring back an older place.
+  const auto known = detections_.find(detection.track);
+  if (known != detections_.end() && known->second.stamp > detection.stamp)
+    return fail("detection out of order");
+  detections_[detection.track] = detection;
+  return {};
+}
+
+void Mapping::on_detection_gone(std::uint32_t track) {
+  detections_.erase(track);
+}
+
+Expected<void> Mapping::on_state(const RobotState& state) {
+  const auto dofs = static_cast<Eigen::Index>(hand_.dofs().size());
+  const auto joints = static_cast<Eigen::Index>(hand_.joints().size());
+  if (state.dof.size() != dofs || state.velocity.size() != joints || state.torque.size() != joints)
+    return fail("robot state of another hand");
+  if (!state.dof.allFinite() || !state.velocity.allFinite() || !state.torque.allFinite() ||
+      !is_finite(state.X_WB))
+    return fail("robot state not finite");
+  grip_.observe(state, command_.dof);
+  state_ = state;
+  return {};
+}
+
+/// Where the first command begins: where the robot hand is; without word from it, where it shall
+/// be.
+bool Mapping::start(const Pose& X_WG, Time stamp, Time now) {
+  if (!first_posture_) first_posture_ = now;
+  if (!state_ && now - *first_posture_ < options_.state_wait) return false;
+  time_ = stamp;
+  if (!state_) {
+    command_.dof = hand_.clamp(hand_.postures().at("open"));
+    command_.X_WB = X_WG * hand_.X_BG().inverse();
+    return true;
+  }
+  // A hand that presses on something does so with a squeeze and perhaps a corrected placement: both
+  // stay.
+  command_.dof = grip_.squeeze(hand_.clamp(state_->dof));
+  command_.X_WB = state_->X_WB;
+  if (grip_.touching())
+    correction_ = limit_step(Pose::Identity(), X_WG.inverse() * state_->X_WB * hand_.X_BG(),
+                             options_.correct_distance, options_.correct_angle);
+  return true;
+}
+
+std::optional<Mapping::Candidate> Mapping::candidate(const Detection& detection, const Pose& X_WG,
+                                                     bool engaged) const {
+  const auto X_OG =
+      model::nearest_grasp(detection.shape, detection.X_WO.inverse() * X_WG, hand_.reach());
+  if (!X_OG) return std::nullopt;
+  Candidate found{detection, 0, detection.X_WO * *X_OG};
+  found.distance = (found.X_WG.translation() - X_WG.translation()).norm();
+  const double angle = angle_between(found.X_WG.linear(), X_WG.linear());
+  if (found.distance > (engaged ? options_.leave : options_.enter) ||
+      angle > (engaged ? options_.leave_angle : options_.enter_angle))
+    return std::nullopt;
+  return found;
+}
+
+/// The object within reach: the engaged one, while there is one and no other is clearly nearer.
+std::optional<Mapping::Candidate> Mapping::choose(const Pose& X_WG, Time now) {
+  if (!options_.intelligent) return std::nullopt;
+  std::erase_if(detections_, [&](const auto& entry) {
+    return std::chrono::abs(now - entry.second.stamp) > options_.fresh;
+  });
+  std::optional<Candidate> nearest, kept;
+  for (const auto& [track, detection] : detections_) {
+    if (!model_.knows(detection.shape.kind)) continue;
+    const bool engaged = engaged_ && engaged_->track == track;
+    auto found = candidate(detection, X_WG, engaged);
+    if (!found) continue;
+    if (engaged) kept = found;
+    if (!nearest || found->distance < nearest->distance) nearest = std::move(found);
+  }
+  if (!engaged_) return nearest;
+  // Another one takes over only after the weight of this one has gone to 0.
+  if (kept && nearest->distance < kept->distance - options_.prefer) return std::nullopt;
+  return kept;
+}
+
+/// The hand's grasp frame with its placement corrected toward the object's nearest grasp.
+Pose Mapping::corrected(const Pose& X_WG, const std::optional<Candidate>& seen, Duration elapsed) {
+  const double t = to_seconds(elapsed);
+  // In a grip, the object moves with the hand: what was corrected stays.
+  if (arbitration_.phase() != Phase::gripping) {
+    if (arbitration_.phase() == Phase::direct)
+      full_correction_ = Pose::Identity();
+    else if (seen && arbitration_.phase() != Phase::leaving)
+      full_correction_ = X_WG.inverse() * limit_step(X_WG, seen->X_WG, options_.correct_distance,
+                                                     options_.correct_angle);
+    const Pose wanted = interpolate(Pose::Identity(), full_correction_, arbitration_.weight());
+    correction_ = limit_step(correction_, wanted, options_.correct_speed * t,
+                             options_.correct_turn_speed * t);
+  }
+  return X_WG * correction_;
+}
+
+/// Mean angle of the closing DoFs from their open end, rad.
+double Mapping::mean_closing(const Eigen::VectorXd& dof) const {
+  double sum = 0;
+  int count = 0;
+  for (std::size_t i = 0; i < hand_.dofs().size(); ++i) {
+    const model::HandDof& d = hand_.dofs()[i];
+    if (d.closing == 0) continue;
+    sum += d.closing * (dof[static_cast<Eigen::Index>(i)] - (d.closing > 0 ? d.lower : d.upper));
+    ++count;
+  }
+  return count == 0 ? 0 : sum / count;
+}
+
+void Mapping::move_toward(const Eigen::VectorXd& dof, const Pose& X_WB, Duration elapsed) {
+  const double t = to_seconds(elapsed);
+  const Eigen::VectorXd change = dof - command_.dof;
+  // Fingers that close on a known object move in proportion, slowly enough to arrive together: one
+  // that came first would push the object away.
+  const auto closes = [&](Eigen::Index i) {
+    return hand_.dofs()[static_cast<std::size_t>(i)].closing * change[i] > 0;
+  };
+  const auto speed = [&](Eigen::Index i) {
+    const double most = hand_.dofs()[static_cast<std::size_t>(i)].max_velocity;
+    if (!closes(i)) return most;
+    return most + command_.weight * (std::min(most, options_.closing_speed) - most);
+  };
+  double together = 1;
+  for (Eigen::Index i = 0; i < change.size(); ++i)
+    if (closes(i)) together = std::min(together, speed(i) * t / std::abs(change[i]));
+  for (Eigen::Index i = 0; i < change.size(); ++i) {
+    const double most = speed(i) * t;
+    const double alone = std::clamp(change[i], -most, most);
+    command_.dof[i] += closes(i) ? alone + command_.weight * (together * change[i] - alone) : alone;
+  }
+  command_.X_WB =
+      limit_step(command_.X_WB, X_WB, options_.base_speed * t, options_.base_turn_speed * t);
+}
+
+Expected<Command> Mapping::on_posture(const Posture& posture, Time now) {
+  const auto features = mapping::features(posture.fingertips, posture.hand_scale);
+  if (!features) return tl::unexpected(features.error());
+  if (!is_finite(posture.X_WH)) return fail("pose of the hand not finite");
+  if (std::chrono::abs(now - posture.stamp) > options_.fresh) return fail("posture stale");
+
+  const Pose X_WG = posture.X_WH * model::HumanHand(posture.hand_scale).X_HG();
+  if (command_.dof.size() == 0 && !start(X_WG, posture.stamp, now))
+    return fail("no robot state yet");
+  const Duration elapsed =
+      std::clamp(posture.stamp - time_, Duration::zero(), options_.longest_step);
+  time_ = std::max(time_, posture.stamp);
+
+  const auto seen = choose(X_WG, posture.stamp);
+  const Phase before = arbitration_.phase();
+  arbitration_.step(seen.has_value(), grip_.touching(), elapsed);
+  if (arbitration_.phase() == Phase::direct)
+    engaged_.reset();
+  else if (seen && before != Phase::gripping)
+    engaged_ = seen->detection;
+
+  const Answer direct = model_.direct(*features);
+  Eigen::VectorXd dof = direct.dof;
+  command_.extrapolating = direct.extrapolating;
+  command_.weight = arbitration_.weight();
+  command_.object.clear();
+  if (engaged_ && command_.weight > 0) {
+    // choose() lets through only shapes that have a network.
+    const Answer known = *model_.intelligent(*features, engaged_->shape);
+    dof += command_.weight * (known.dof - direct.dof);
+    command_.extrapolating = known.extrapolating || (direct.extrapolating && command_.weight < 1);
+    command_.object = engaged_->name;
+  }
+  command_.mode = command_.object.empty() ? Mode::direct : Mode::intelligent;
+  dof = hand_.clamp(dof);
+  command_.grasp_type =
+      mapping::grasp_type(*features, mean_closing(dof), X_WG,
+                          engaged_ ? engaged_->shape.kind : model::ShapeKind::unknown);
+
+  const Pose X_WB = corrected(X_WG, seen, elapsed) * hand_.X_BG().inverse();
+  move_toward(grip_.squeeze(dof), X_WB, elapsed);
+  command_.stamp = posture.stamp;
+  command_.origin = posture.origin;
+  last_answer_ = now;
+  return command_;
+}
+
+std::optional<Command> Mapping::tick(Time now) {
+  if (!last_answer_ || now - *last_answer_ < options_.silence) return std::nullopt;
+  time_ = std::max(time_, now);
+  command_.stamp = now;
+  command_.origin.reset();
+  command_.mode = Mode::hold;
+  return command_;
+}
+
+}  // namespace prehend::mapping

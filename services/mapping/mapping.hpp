@@ -1,0 +1,123 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <prehend/base/error.hpp>
+#include <prehend/base/pose.hpp>
+#include <prehend/base/time.hpp>
+#include <prehend/model/hand_model.hpp>
+#include <string>
+
+#include "arbitration.hpp"
+#include "features.hpp"
+#include "grasp_type.hpp"
+#include "grip.hpp"
+#include "mapping_model.hpp"
+
+namespace prehend::mapping {
+
+/// A hand as hand/posture says it.
+struct Posture {
+  Time stamp, origin;  // acquisition, and head of the chain
+  Pose X_WH = Pose::Identity();
+  double hand_scale = 1;
+  Fingertips fingertips;
+};
+
+/// An object as object/detection says it.
+struct Detection {
+  std::uint32_t track = 0;
+  std::string name;
+  model::Shape shape;
+  Pose X_WO = Pose::Identity();
+  double probability = 0;
+  Time stamp;
+};
+
+enum class Mode { hold, direct, intelligent };
+
+/// What the robot hand shall do, as robot/command says it.
+struct Command {
+  Time stamp;                  // of the posture; of the tick when holding
+  std::optional<Time> origin;  // of the glove frame; none when holding
+  Eigen::VectorXd dof;         // rad
+  Pose X_WB = Pose::Identity();
+  Mode mode = Mode::hold;
+  double weight = 0;   // of the intelligent answer
+  std::string object;  // empty: none
+  GraspType grasp_type = GraspType::none;
+  bool extrapolating = false;
+};
+
+struct MappingOptions {
+  bool intelligent = true;                      // let detections improve the mapping
+  double enter = 0.15, leave = 0.20;            // m, from G to the nearest grasp of an object
+  double enter_angle = 0.8, leave_angle = 1.1;  // rad, the same
+  double prefer = 0.03;  // m, by which another object must be nearer to take over
+  double least_probability = 0.6;
+  Duration fresh = std::chrono::milliseconds(500);   // age at which a detection counts as gone
+  Duration ramp = std::chrono::milliseconds(300);    // weight from 0 to 1
+  Duration silence = std::chrono::milliseconds(60);  // without postures, until it holds
+  Duration state_wait = std::chrono::seconds(1);     // for robot/state, before starting without
+  double correct_distance = 0.03;                    // m, most that the placement is corrected
+  double correct_angle = 0.349066;                   // rad (20°)
+  double correct_speed = 0.15;                       // m/s, at which the correction may change
+  double correct_turn_speed = 1.5;                   // rad/s
+  double closing_speed = 1.0;    // rad/s, of fingers that close on a known object
+  double base_speed = 1.0;       // m/s, of the hand's base
+  double base_turn_speed = 3.0;  // rad/s
+  Duration longest_step = std::chrono::milliseconds(100);  // motion of one command, at most
+  GripOptions grip;
+};
+
+/// From postures, detections and robot states to commands. Pure and deterministic; time comes as
+/// values. Every command keeps the velocity limits relative to the one before, whatever happens;
+/// the first one starts from where the robot hand is. Keeps references to the hand and the model.
+class Mapping {
+ public:
+  Mapping(const model::HandModel& hand, const MappingModel& model, const MappingOptions& options);
+
+  /// The answer to a posture; call tick() too. The error's `what` is a short reason to count: bad
+  /// postures are not answered, so the hand holds still. now: when the posture arrived.
+  Expected<Command> on_posture(const Posture& posture, Time now);
+  /// Refuses what is not finite or has no valid shape.
+  Expected<void> on_detection(const Detection& detection);
+  void on_detection_gone(std::uint32_t track);
+  /// Refuses what has not this hand's sizes or is not finite.
+  Expected<void> on_state(const RobotState& state);
+  /// A command to stay, once no posture has been answered for `silence`.
+  std::optional<Command> tick(Time now);
+
+  Phase phase() const { return arbitration_.phase(); }
+
+ private:
+  struct Candidate {
+    Detection detection;
+    double distance = 0;  // m, to its nearest grasp
+    Pose X_WG;            // that grasp
+  };
+  bool start(const Pose& X_WG, Time stamp, Time now);
+  std::optional<Candidate> candidate(const Detection& detection, const Pose& X_WG,
+                                     bool engaged) const;
+  std::optional<Candidate> choose(const Pose& X_WG, Time now);
+  Pose corrected(const Pose& X_WG, const std::optional<Candidate>& seen, Duration elapsed);
+  double mean_closing(const Eigen::VectorXd& dof) const;
+  void move_toward(const Eigen::VectorXd& dof, const Pose& X_WB, Duration elapsed);
+
+  const model::HandModel& hand_;
+  const MappingModel& model_;
+  MappingOptions options_;
+  Arbitration arbitration_;
+  Grip grip_;
+  std::map<std::uint32_t, Detection> detections_;
+  std::optional<Detection> engaged_;         // the object that the weight is for
+  Pose full_correction_ = Pose::Identity();  // X_GG', for weight 1, as last seen
+  Pose correction_ = Pose::Identity();       // X_GG' in force
+  std::optional<RobotState> state_;
+  std::optional<Time> first_posture_, last_answer_;
+  Time time_{};      // that the last command is for
+  Command command_;  // the last one; dof empty before the first
+};
+
+}  // namespace prehend::mapping

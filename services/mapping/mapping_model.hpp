@@ -1,0 +1,68 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <prehend/learning/network.hpp>
+#include <prehend/learning/scaling.hpp>
+#include <prehend/model/hand_model.hpp>
+#include <prehend/model/shape.hpp>
+#include <string>
+#include <vector>
+
+#include "features.hpp"
+
+namespace prehend::mapping {
+
+/// Mean over pairs of the sum over DoF of squared differences, rad² (eq. 5.1).
+struct ModelErrors {
+  double training = 0, validation = 0;
+  double test = 0;  // takes of users that were in neither
+};
+
+/// One network with what belongs to it. Its input scaling is the range that was trained.
+struct MappingNetwork {
+  model::ShapeKind shape = model::ShapeKind::unknown;  // unknown: the direct mapping
+  learning::Network network;
+  learning::Scaling input, output;
+  ModelErrors errors;
+};
+
+/// A robot posture, and whether the question lay outside what was trained.
+struct Answer {
+  Eigen::VectorXd dof;  // rad
+  bool extrapolating = false;
+};
+
+/// Trained networks for one hand: direct, from nine features, and intelligent, one a shape, from
+/// the same and the object's characteristic_size. Files are sealed (kind «mapping-model») and
+/// checked.
+class MappingModel {
+ public:
+  /// From trained parts. Refuses a missing or doubled network and sizes that do not fit the hand.
+  static Expected<MappingModel> create(const model::HandModel& hand, std::string scheme,
+                                       std::string training_set_digest,
+                                       std::vector<MappingNetwork> networks);
+  /// Refuses a file that is damaged, is not a mapping model, or was trained for another hand or for
+  /// another version of this one (other DoF or limits).
+  static Expected<MappingModel> load(const std::filesystem::path& file,
+                                     const model::HandModel& hand);
+  Expected<void> save(const std::filesystem::path& file, const model::HandModel& hand) const;
+
+  const std::string& scheme() const { return scheme_; }
+  const std::string& training_set_digest() const { return digest_; }
+  const std::vector<MappingNetwork>& networks() const { return networks_; }  // [0] is direct
+
+  /// Inputs outside the trained range are taken as its nearest end, with a tenth of the range more
+  /// at each side, and the answer says so. Sizes are not stretched: the nearest trained one counts.
+  Answer direct(const Features& features) const;
+  /// nullopt: no network knows this shape.
+  std::optional<Answer> intelligent(const Features& features, const model::Shape& shape) const;
+  bool knows(model::ShapeKind shape) const;
+
+ private:
+  MappingModel() = default;
+  std::string scheme_, digest_;
+  std::vector<MappingNetwork> networks_;
+};
+
+}  // namespace prehend::mapping

@@ -1,0 +1,190 @@
+#include "service.hpp"
+
+#include <optional>
+#include <prehend/base/log.hpp>
+#include <prehend/base/paths.hpp>
+#include <prehend/dds/convert.hpp>
+#include <prehend/dds/topics.hpp>
+
+#include "mapping.hpp"
+#include "mapping_model.hpp"
+
+namespace prehend::mapping {
+
+namespace {
+
+v1::MappingMode to_message(Mode mode) {
+  switch (mode) {
+    case Mode::direct:
+      return v1::MODE_DIRECT;
+    case Mode::intelligent:
+      return v1::MODE_INTELLIGENT;
+    case Mode::hold:
+      break;
+  }
+  return v1::MODE_HOLD;
+}
+
+v1::GraspType to_message(GraspType type) {
+  switch (type) {
+    case GraspType::power_wrap:
+      return v1::GRASP_POWER_WRAP;
+    case GraspType::circular_sphere:
+      return v1::GRASP_CIRCULAR_SPHERE;
+    case GraspType::precision:
+      return v1::GRASP_PRECISION;
+    case GraspType::none:
+      break;
+  }
+  return v1::GRASP_NONE;
+}
+
+model::ShapeKind from_message(v1::ShapeKind kind) {
+  switch (kind) {
+    case v1::SHAPE_CYLINDER:
+      return model::ShapeKind::cylinder;
+    case v1::SHAPE_BOX:
+      return model::ShapeKind::box;
+    case v1::SHAPE_SPHERE:
+      return model::ShapeKind::sphere;
+    case v1::SHAPE_UNKNOWN:
+      break;
+  }
+  return model::ShapeKind::unknown;
+}
+
+Expected<Posture> from_message(const v1::HandPosture& message) {
+  auto X_WH = dds::from_message(message.X_WH());
+  if (!X_WH) return fail("pose of the hand not usable");
+  Posture posture{
+      from_ns(message.stamp_ns()), from_ns(message.origin_ns()), *X_WH, message.hand_scale(), {}};
+  for (std::size_t f = 0; f < posture.fingertips.size(); ++f) {
+    const v1::Fingertip& tip = message.fingertips()[f];
+    posture.fingertips[f] = {tip.valid(), dds::from_message(tip.p_HF())};
+  }
+  return posture;
+}
+
+Expected<Detection> from_message(const v1::ObjectDetection& message) {
+  auto X_WO = dds::from_message(message.X_WO());
+  if (!X_WO) return fail("pose of a detection not usable");
+  return Detection{message.track(),
+                   message.name().to_string(),
+                   {from_message(message.shape()), dds::from_message(message.size())},
+                   *X_WO,
+                   message.probability(),
+                   from_ns(message.stamp_ns())};
+}
+
+Expected<RobotState> from_message(const v1::HandState& message) {
+  auto X_WB = dds::from_message(message.X_WB());
+  if (!X_WB) return fail("pose of the robot not usable");
+  return RobotState{from_ns(message.stamp_ns()), dds::from_message(message.dof()),
+                    dds::from_message(message.velocity()), dds::from_message(message.torque()),
+                    *X_WB};
+}
+
+/// The topics' side of a Mapping. Lives as long as the shell runs.
+class Service {
+ public:
+  Service(service::Shell& shell, const model::HandModel& hand, const MappingModel& model,
+          const MappingOptions& options)
+      : shell_(shell),
+        mapping_(hand, model, options),
+        hand_name_(shell.config().text("mapping.hand_name")),
+        output_(shell.publish(dds::robot_command)) {
+    message_.hand(hand_name_);
+    message_.model(hand.name());
+    shell.subscribe(dds::hand_posture,
+                    Handler<v1::HandPosture>([this](auto& s, auto& i) { on_posture(s, i); }));
+    shell.subscribe(dds::object_detection,
+                    Handler<v1::ObjectDetection>([this](auto& s, auto& i) { on_detection(s, i); }));
+    shell.subscribe(dds::robot_state,
+                    Handler<v1::HandState>([this](auto& s, auto& i) { on_state(s, i); }));
+    shell.on_tick(std::chrono::milliseconds(20), [this](Time now) {
+      if (const auto command = mapping_.tick(now)) {
+        shell_.status().count("hold commands");
+        publish(*command);
+      }
+    });
+  }
+
+ private:
+  template <class T>
+  using Handler = std::function<void(const T&, const dds::SampleInfo&)>;
+
+  void on_posture(const v1::HandPosture& message, const dds::SampleInfo& info) {
+    if (info.gone) return;
+    const Time now = shell_.now();
+    service::Status& status = shell_.status();
+    const auto posture = from_message(message);
+    const auto command =
+        posture.and_then([&](const Posture& value) { return mapping_.on_posture(value, now); });
+    if (!command) {
+      status.drop(command.error().what);
+      return;
+    }
+    publish(*command);
+    status.latency("posture hop", now - info.sent);
+    status.latency("glove to command", shell_.now() - from_ns(message.origin_ns()));
+  }
+
+  void on_detection(const v1::ObjectDetection& message, const dds::SampleInfo& info) {
+    if (info.gone) {
+      mapping_.on_detection_gone(message.track());
+      return;
+    }
+    const auto taken = from_message(message).and_then(
+        [&](const Detection& detection) { return mapping_.on_detection(detection); });
+    if (!taken) shell_.status().drop(taken.error().what);
+  }
+
+  void on_state(const v1::HandState& message, const dds::SampleInfo& info) {
+    if (info.gone || message.hand() != hand_name_) return;
+    const auto taken = from_message(message).and_then(
+        [&](const RobotState& state) { return mapping_.on_state(state); });
+    if (!taken) shell_.status().drop(taken.error().what);
+  }
+
+  void publish(const Command& command) {
+    message_.sequence_number(sequence_number_++);
+    message_.stamp_ns(to_ns(command.stamp));
+    message_.origin_ns(command.origin ? to_ns(*command.origin) : 0);
+    message_.dof(dds::to_message(command.dof));
+    message_.X_WB(dds::to_message(command.X_WB));
+    message_.mode(to_message(command.mode));
+    message_.weight(command.weight);
+    message_.object(command.object);
+    message_.grasp_type(to_message(command.grasp_type));
+    message_.extrapolating(command.extrapolating);
+    output_.publish(message_);
+  }
+
+  service::Shell& shell_;
+  Mapping mapping_;
+  std::string hand_name_;
+  service::Shell::Output<v1::HandCommand> output_;
+  v1::HandCommand message_;  // reused, so that a command costs no allocation
+  std::uint64_t sequence_number_ = 0;
+};
+
+}  // namespace
+
+Expected<int> run(service::Shell& shell) {
+  const service::Config& config = shell.config();
+  const auto hand =
+      model::HandModel::load(share_directory() / "models" / "hands" / config.text("mapping.hand"));
+  if (!hand) return tl::unexpected(hand.error());
+  const auto model = MappingModel::load(config.path("mapping.model"), *hand);
+  if (!model) return tl::unexpected(model.error());
+  MappingOptions options;
+  options.intelligent = config.flag("mapping.intelligent");
+
+  const Service service(shell, *hand, *model, options);
+  log::info("{}, {}{}", hand->name(), model->scheme(),
+            options.intelligent ? "" : ", direct mapping only");
+  shell.status().running();
+  return shell.run();
+}
+
+}  // namespace prehend::mapping

@@ -1,0 +1,71 @@
+#include "demonstrator.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace prehend::mapping {
+
+namespace {
+
+Eigen::Vector3d direction(Random& random) {
+  Eigen::Vector3d v = random.normal3(1.0);
+  while (v.norm() < 1e-6) v = random.normal3(1.0);
+  return v.normalized();
+}
+
+Eigen::Matrix3d turn(Random& random, double most) {
+  const Eigen::Vector3d axis = direction(random);
+  return Eigen::AngleAxisd(random.uniform(0, most), axis).toRotationMatrix();
+}
+
+double drawn_scale(Random& random, double sigma) {
+  return 1 + std::clamp(random.normal(sigma), -2 * sigma, 2 * sigma);
+}
+
+}  // namespace
+
+Demonstrator::Demonstrator(std::string user, std::uint64_t seed, const DemonstratorOptions& options)
+    : user_(std::move(user)),
+      options_(options),
+      random_(seed),
+      hand_(drawn_scale(random_, options.scale_sigma)),
+      calibrated_scale_(hand_.scale() * drawn_scale(random_, options.scale_error)) {
+  new_take();
+}
+
+void Demonstrator::new_take() {
+  const Eigen::Matrix3d R_HR = turn(random_, options_.mounting_turn);
+  const Eigen::Vector3d p_HR = direction(random_) * random_.uniform(0, options_.mounting);
+  X_HR_ = make_pose(p_HR, R_HR);
+  for (Eigen::Vector3d& p : p_FS_) p = direction(random_) * random_.uniform(0, options_.mounting);
+}
+
+Features Demonstrator::read(const Closure& closure) {
+  const auto tips = hand_.fingertip_poses(model::HumanHand::posture(closure));
+  Fingertips read;
+  for (std::size_t f = 0; f < tips.size(); ++f)
+    read[f] = {true, X_HR_.inverse() * (tips[f] * p_FS_[f]) + random_.normal3(options_.noise)};
+  return *features(read, calibrated_scale_);  // a hand's own fingertips are always usable
+}
+
+Closure Demonstrator::repeat(const Closure& closure) {
+  Closure repeated = closure;
+  for (double& c : repeated) c = std::clamp(c + random_.normal(options_.posture_sigma), 0.0, 1.0);
+  return repeated;
+}
+
+std::optional<Closure> Demonstrator::grasp(const model::Shape& shape, const Pose& X_OG) {
+  constexpr int attempts = 20;
+  for (int attempt = 0; attempt < attempts; ++attempt) {
+    const double d = options_.approach;
+    const double x = random_.uniform(-d, d), y = random_.uniform(-d, d), z = random_.uniform(-d, d);
+    const Pose error = make_pose({x, y, z}, turn(random_, options_.approach_turn));
+    const Pose X_HO = hand_.X_HG() * (X_OG * error).inverse();
+    const auto closure = hand_.close_on(shape, X_HO);
+    const bool free = std::all_of(closure.begin(), closure.end(), [](double c) { return c > 0; });
+    if (free) return closure;
+  }
+  return std::nullopt;
+}
+
+}  // namespace prehend::mapping

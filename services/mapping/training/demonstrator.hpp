@@ -1,0 +1,60 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <prehend/base/pose.hpp>
+#include <prehend/base/random.hpp>
+#include <prehend/mapping/features.hpp>
+#include <prehend/model/human_hand.hpp>
+#include <prehend/model/shape.hpp>
+#include <string>
+
+namespace prehend::mapping {
+
+/// How people and the sensors on their hands differ.
+struct DemonstratorOptions {
+  double scale_sigma = 0.07;      // of hand sizes; adults, drawn within two sigma
+  double scale_error = 0.02;      // sigma of the calibrated scale's relative error
+  double mounting = 0.005;        // m, each sensor sits up to so far from its place
+  double mounting_turn = 0.026;   // rad, and the one on the back of the hand so crookedly
+  double noise = 0.001;           // m, sigma a coordinate, after the glove's filter
+  double posture_sigma = 0.03;    // of each finger's closure when a posture is repeated
+  double approach = 0.01;         // m, each coordinate of where the hand takes an object
+  double approach_turn = 0.1745;  // rad, largest turn of the same
+};
+
+/// How far each finger is closed, 0 to 1.
+using Closure = std::array<double, model::finger_count>;
+
+/// A synthetic person with four sensors on the hand, repeating postures and grasps as people do:
+/// never twice the same. Everything follows from the seed.
+class Demonstrator {
+ public:
+  Demonstrator(std::string user, std::uint64_t seed, const DemonstratorOptions& options);
+
+  const std::string& user() const { return user_; }
+  const model::HumanHand& hand() const { return hand_; }
+
+  /// Takes the glove off and puts it on again: the sensors then sit elsewhere.
+  void new_take();
+
+  /// What the glove says of fingers closed so far.
+  Features read(const Closure& closure);
+  /// A posture repeated as people do: never exactly.
+  Closure repeat(const Closure& closure);
+  /// How far the fingers close on an object until they touch it, with the grasp frame near X_OG.
+  /// None when no attempt came to a place where the open hand does not already touch.
+  std::optional<Closure> grasp(const model::Shape& shape, const Pose& X_OG);
+
+ private:
+  std::string user_;
+  DemonstratorOptions options_;
+  Random random_;
+  model::HumanHand hand_;
+  double calibrated_scale_;
+  Pose X_HR_ = Pose::Identity();  // where the back of the hand's sensor really sits
+  std::array<Eigen::Vector3d, model::finger_count> p_FS_;  // sensors on the fingertips
+};
+
+}  // namespace prehend::mapping

@@ -1,0 +1,228 @@
+#include "trainer.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <optional>
+#include <prehend/proto/sealed_file.hpp>
+#include <set>
+
+namespace prehend::mapping {
+
+namespace {
+
+/// A grasp's posture with the fingers so far past contact.
+Eigen::VectorXd past_contact(const model::HandModel& hand, const Eigen::VectorXd& dof,
+                             double angle) {
+  Eigen::VectorXd result = dof;
+  for (std::size_t i = 0; i < hand.dofs().size(); ++i)
+    result[static_cast<Eigen::Index>(i)] += angle * hand.dofs()[i].closing;
+  return hand.clamp(result);
+}
+
+/// Columns of inputs and outputs, unscaled. unknown: all pairs, nine inputs; else that shape's
+/// pairs with its size.
+learning::Samples columns(const learning::TrainingSet& set, model::ShapeKind shape) {
+  const bool sized = shape != model::ShapeKind::unknown;
+  std::vector<const learning::TrainingPair*> used;
+  for (const learning::TrainingPair& pair : set.pairs)
+    if (!sized || pair.shape == model::to_string(shape)) used.push_back(&pair);
+  const auto count = static_cast<Eigen::Index>(used.size());
+  learning::Samples samples{Eigen::MatrixXd(feature_count + (sized ? 1 : 0), count),
+                            Eigen::MatrixXd(set.dof_names.size(), count)};
+  for (Eigen::Index k = 0; k < count; ++k) {
+    const learning::TrainingPair& pair = *used[static_cast<std::size_t>(k)];
+    samples.inputs.col(k).head<feature_count>() = pair.features;
+    if (sized) samples.inputs(feature_count, k) = model::characteristic_size({shape, pair.size});
+    samples.outputs.col(k) = pair.dof;
+  }
+  return samples;
+}
+
+learning::Samples scaled(const learning::Samples& samples, const learning::Scaling& input,
+                         const learning::Scaling& output) {
+  learning::Samples result = samples;
+  for (Eigen::Index k = 0; k < samples.inputs.cols(); ++k) {
+    result.inputs.col(k) = input.to_unit(samples.inputs.col(k));
+    result.outputs.col(k) = output.to_unit(samples.outputs.col(k));
+  }
+  return result;
+}
+
+/// eq. 5.1 in rad².
+double error(const MappingNetwork& network, const learning::Samples& samples) {
+  double sum = 0;
+  for (Eigen::Index k = 0; k < samples.inputs.cols(); ++k)
+    sum += (network.output.from_unit(
+                network.network.evaluate(network.input.to_unit(samples.inputs.col(k)))) -
+            samples.outputs.col(k))
+               .squaredNorm();
+  return sum / static_cast<double>(std::max<Eigen::Index>(samples.inputs.cols(), 1));
+}
+
+/// Name of pairs between the open hand and a posture.
+const std::string on_the_way_to = "on the way to ";
+
+/// Room beside the outputs' range, so that the sigmoid can reach its ends.
+constexpr double output_margin = 0.1;
+
+Expected<MappingNetwork> train_network(const Sets& sets, model::ShapeKind shape,
+                                       const TrainerOptions& options,
+                                       const std::function<void(double)>& progress) {
+  const learning::Samples training = columns(sets.training, shape);
+  const learning::Samples validation = columns(sets.validation, shape);
+  auto input = learning::Scaling::fit(training.inputs, learning::ScalingKind::each_feature);
+  if (!input) return tl::unexpected(input.error());
+  auto output =
+      learning::Scaling::fit(training.outputs, learning::ScalingKind::each_feature, output_margin);
+  if (!output) return tl::unexpected(output.error());
+
+  std::optional<learning::TrainingResult> best;
+  for (int restart = 0; restart < options.restarts; ++restart) {
+    learning::TrainingOptions network = options.network;
+    network.seed += static_cast<std::uint32_t>(restart);
+    auto result = learning::train(
+        scaled(training, *input, *output), scaled(validation, *input, *output), network,
+        [&](double share) { progress((restart + share) / options.restarts); });
+    if (!result) return tl::unexpected(result.error());
+    if (!best || result->validation_error < best->validation_error) best = std::move(*result);
+  }
+  MappingNetwork made{shape, std::move(best->network), std::move(*input), std::move(*output), {}};
+  made.errors = {error(made, training), error(made, validation),
+                 error(made, columns(sets.test, shape))};
+  return made;
+}
+
+}  // namespace
+
+std::vector<RobotGrasp> close_on_catalogue(const model::HandModel& hand, const Scheme& scheme,
+                                           const model::Catalogue& catalogue,
+                                           const Progress& progress,
+                                           const std::function<void(const Error&)>& report) {
+  std::vector<RobotGrasp> grasps;
+  double done = 0;
+  for (const model::CatalogueObject& object : catalogue.objects()) {
+    const auto ways = approaches(object.shape, hand.reach());
+    if (ways.empty()) report({"does not fit into the hand", object.name, "left out"});
+    for (const Pose& X_OG : ways) {
+      auto grasp = robot_grasp(hand, scheme, object, X_OG);
+      if (grasp)
+        grasps.push_back(std::move(*grasp));
+      else
+        report({grasp.error().message(), object.name, "this approach is left out"});
+    }
+    progress("closing the hand", ++done / static_cast<double>(catalogue.objects().size()));
+  }
+  return grasps;
+}
+
+learning::TrainingSet demonstrate(const model::HandModel& hand, const Scheme& scheme,
+                                  const std::vector<RobotGrasp>& grasps,
+                                  const SetOptions& options) {
+  learning::TrainingSet set;
+  set.hand = hand.name();
+  set.scheme = scheme.name;
+  for (const model::HandDof& dof : hand.dofs()) set.dof_names.push_back(dof.name);
+
+  const SchemePosture& open = scheme.postures.front();
+  for (int person = 0; person < options.users; ++person) {
+    // Seeds of people must not meet those of other sets' people.
+    const std::uint64_t seed = options.seed * 1000003 + static_cast<std::uint64_t>(person);
+    Demonstrator demonstrator(fmt::format("person {}-{}", options.seed, person), seed,
+                              options.demonstrator);
+    Random random(seed ^ 0x5eed);
+    for (int take = 0; take < options.takes; ++take) {
+      demonstrator.new_take();
+      learning::TrainingPair pair;
+      pair.user = demonstrator.user();
+      pair.take = static_cast<unsigned>(take);
+      pair.source = "synthetic";
+      const auto show = [&](const std::string& name, const Closure& human,
+                            const Eigen::VectorXd& robot, double complete) {
+        pair.posture = name;
+        pair.features = demonstrator.read(human);
+        pair.dof = robot;
+        set.pairs.push_back(pair);
+        for (int i = 0; i < options.on_the_way; ++i) {
+          const double share = random.uniform();
+          Closure part{};
+          for (std::size_t f = 0; f < part.size(); ++f)
+            part[f] = open.human[f] + complete * share * (human[f] - open.human[f]);
+          pair.posture = on_the_way_to + name;
+          pair.features = demonstrator.read(part);
+          pair.dof = open.robot + share * (robot - open.robot);
+          set.pairs.push_back(pair);
+        }
+      };
+      std::set<std::string> posed;
+      for (const RobotGrasp& grasp : grasps) {
+        pair.object = grasp.object;
+        pair.shape = model::to_string(grasp.shape.kind);
+        pair.size = grasp.shape.size;
+        if (posed.insert(grasp.object).second)
+          for (const SchemePosture& posture : scheme.postures)
+            show(posture.name, demonstrator.repeat(posture.human), posture.robot, 1.0);
+        // None: this person's hand does not fit around it.
+        if (const auto closure = demonstrator.grasp(grasp.shape, grasp.X_OG))
+          show(grasp.type, *closure, past_contact(hand, grasp.dof, options.past_contact),
+               options.complete);
+      }
+    }
+  }
+  return set;
+}
+
+Expected<MappingModel> train_mapping(const model::HandModel& hand, const Sets& sets,
+                                     const TrainerOptions& options, const Progress& progress) {
+  for (const learning::TrainingSet* set : {&sets.training, &sets.validation, &sets.test}) {
+    if (auto ok = learning::check(*set); !ok) return tl::unexpected(ok.error());
+    if (set->hand != hand.name())
+      return fail(fmt::format("a training set for the hand «{}»", set->hand), hand.name());
+    if (set->pairs.front().features.size() != feature_count)
+      return fail("a training set with other features", hand.name());
+  }
+  std::vector<model::ShapeKind> kinds{model::ShapeKind::unknown};
+  for (const auto kind :
+       {model::ShapeKind::cylinder, model::ShapeKind::box, model::ShapeKind::sphere})
+    if (std::any_of(sets.training.pairs.begin(), sets.training.pairs.end(),
+                    [&](const auto& pair) { return pair.shape == model::to_string(kind); }))
+      kinds.push_back(kind);
+
+  std::vector<MappingNetwork> networks;
+  for (const model::ShapeKind kind : kinds) {
+    const std::string step = kind == model::ShapeKind::unknown
+                                 ? "training direct"
+                                 : fmt::format("training {}", model::to_string(kind));
+    auto network = train_network(sets, kind, options, [&](double share) { progress(step, share); });
+    if (!network) return tl::unexpected(network.error());
+    networks.push_back(std::move(*network));
+  }
+  return MappingModel::create(hand, sets.training.scheme,
+                              proto::digest(learning::serialise(sets.training)),
+                              std::move(networks));
+}
+
+Comparison compare(const MappingModel& model, const learning::TrainingSet& set,
+                   model::ShapeKind shape, bool grasps_only) {
+  static constexpr std::array grasp_names{"power wrap", "circular sphere", "precision"};
+  Comparison result;
+  for (const learning::TrainingPair& pair : set.pairs) {
+    if (pair.shape != model::to_string(shape)) continue;
+    if (grasps_only &&
+        std::find(grasp_names.begin(), grasp_names.end(), pair.posture) == grasp_names.end())
+      continue;
+    const Features features = pair.features;
+    const auto known = model.intelligent(features, {shape, pair.size});
+    if (!known) continue;
+    result.direct += (model.direct(features).dof - pair.dof).squaredNorm();
+    result.intelligent += (known->dof - pair.dof).squaredNorm();
+    ++result.pairs;
+  }
+  if (result.pairs > 0) {
+    result.direct /= result.pairs;
+    result.intelligent /= result.pairs;
+  }
+  return result;
+}
+
+}  // namespace prehend::mapping

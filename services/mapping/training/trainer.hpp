@@ -1,0 +1,75 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <prehend/base/error.hpp>
+#include <prehend/learning/training.hpp>
+#include <prehend/learning/training_set.hpp>
+#include <prehend/mapping/mapping_model.hpp>
+#include <prehend/model/catalogue.hpp>
+#include <prehend/model/hand_model.hpp>
+#include <string_view>
+#include <vector>
+
+#include "demonstrator.hpp"
+#include "robot_grasps.hpp"
+#include "scheme.hpp"
+
+namespace prehend::mapping {
+
+/// Told which step is being done and how much of it, 0 to 1.
+using Progress = std::function<void(std::string_view step, double share)>;
+
+struct SetOptions {
+  int users = 10;      // of synthetic people
+  int takes = 2;       // each puts the glove on so often
+  int on_the_way = 1;  // pairs between the open hand and each posture shown
+  /// Share of a person's closing on an object at which the robot hand is closed. Takes differ in
+  /// how far the fingers bend around the same object; the robot must grip in all of them.
+  double complete = 0.7;
+  std::uint64_t seed = 1;  // people with another seed are other people
+  /// rad, past the contact posture, that a grasp is trained to: the squeeze, and as much again so
+  /// that an imprecise network still reaches the object.
+  double past_contact = 0.30;
+  DemonstratorOptions demonstrator;
+};
+
+/// Closes the robot hand on every object of the catalogue, from every approach. Objects and
+/// approaches that it cannot grasp are left out; `report` is told of each.
+std::vector<RobotGrasp> close_on_catalogue(const model::HandModel& hand, const Scheme& scheme,
+                                           const model::Catalogue& catalogue,
+                                           const Progress& progress,
+                                           const std::function<void(const Error&)>& report);
+
+/// What synthetic people show: in each take the scheme's postures and every grasp, once for each
+/// object (postures have nothing to do with an object, but its network must know them). Between the
+/// open hand (the scheme's first posture) and each of them lie pairs in proportion: a network that
+/// knows the ends alone jumps somewhere between them.
+learning::TrainingSet demonstrate(const model::HandModel& hand, const Scheme& scheme,
+                                  const std::vector<RobotGrasp>& grasps, const SetOptions& options);
+
+struct TrainerOptions {
+  learning::TrainingOptions network{.hidden = 12, .epochs = 1200, .patience = 150};
+  int restarts = 3;  // first weights that are tried; the best by validation error is kept
+};
+
+/// A set for each purpose; their users are disjoint.
+struct Sets {
+  learning::TrainingSet training, validation, test;
+};
+
+/// Trains direct mapping on all pairs without shape and size, and intelligent mapping for each
+/// shape among them on that shape's pairs with its size.
+Expected<MappingModel> train_mapping(const model::HandModel& hand, const Sets& sets,
+                                     const TrainerOptions& options, const Progress& progress);
+
+/// eq. 5.1 of a model on the pairs of one shape, rad²: of its direct and of its intelligent
+/// answers. Grasps only, or postures as well.
+struct Comparison {
+  double direct = 0, intelligent = 0;
+  int pairs = 0;
+};
+Comparison compare(const MappingModel& model, const learning::TrainingSet& set,
+                   model::ShapeKind shape, bool grasps_only);
+
+}  // namespace prehend::mapping

@@ -1,0 +1,69 @@
+#pragma once
+
+#include <array>
+#include <optional>
+#include <prehend/model/catalogue.hpp>
+#include <string>
+#include <vector>
+
+#include "localise.hpp"
+#include "object_models.hpp"
+#include "scan.hpp"
+
+namespace prehend::recognition {
+
+/// A box in the picture, px.
+struct Box {
+  double x = 0, y = 0, width = 0, height = 0;
+};
+
+/// An object seen in one picture.
+struct Sighting {
+  std::string name;
+  double probability = 0;  // that the name is right
+  Box box;
+  model::Shape shape;  // kind unknown for objects that are in no catalogue
+  /// With a calibrated camera and a known shape: where it stands.
+  std::optional<Standing> at;
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  // of x, y (m), yaw (rad)
+};
+
+struct DetectorOptions {
+  ScanOptions scan;
+  double accept = 0.5;   // least probability of what is reported
+  int most_objects = 6;  // in a picture
+  int hypotheses = 4;    // classes tried at each place
+  int most_tries = 5;    // places in a pass that turn out to be nothing before it ends
+  /// The table top where objects are looked for: low x, high x, low y, high y in W, m.
+  std::array<double, 4> table = {-0.65, 0.65, -0.5, 0.65};
+};
+
+/// Finds the objects of trained models in single pictures. Pure: the same picture gives the same
+/// answer. Not safe for use from several threads.
+class Detector {
+ public:
+  Detector(ObjectModels models, const model::Catalogue& catalogue, DetectorOptions options = {});
+
+  /// On the lab's table, in the picture of its calibrated camera: name, place and turn of every
+  /// object. Fails when the picture has not the camera's size.
+  Expected<std::vector<Sighting>> on_table(const Picture& picture, const CameraModel& camera) const;
+
+  /// In any picture, without knowledge of the camera: names and boxes. Objects that fill the
+  /// picture are found, too.
+  std::vector<Sighting> in_picture(const Picture& picture) const;
+
+  const ObjectModels& models() const { return models_; }
+  const DetectorOptions& options() const { return options_; }
+
+ private:
+  struct Hypothesis;
+  std::optional<Hypothesis> weigh(const Frame& frame, std::size_t class_index, Fit fit) const;
+  std::optional<Hypothesis> examine(const Frame& frame, const CameraModel& camera,
+                                    const Votes& votes, const Region& region) const;
+
+  ObjectModels models_;
+  std::vector<model::Shape> shapes_;  // of each class; kind unknown where the catalogue has none
+  DetectorOptions options_;
+};
+
+}  // namespace prehend::recognition

@@ -1,0 +1,471 @@
+#include "localise.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace prehend::recognition {
+namespace {
+
+constexpr double pi = std::numbers::pi;
+constexpr int side = 16;  // fine RGB bins a channel
+constexpr int bin_count = side * side * side;
+
+/// 1-2-1 along each channel: neighbouring colours are alike, and few pixels must fill many bins.
+void smooth(Eigen::VectorXf& bins) {
+  for (const int stride : {1, side, side * side}) {
+    const Eigen::VectorXf before = bins;
+    for (int i = 0; i < bin_count; ++i) {
+      const int place = i / stride % side;
+      const float low = place > 0 ? before[i - stride] : before[i];
+      const float high = place < side - 1 ? before[i + stride] : before[i];
+      bins[i] = 0.25f * low + 0.5f * before[i] + 0.25f * high;
+    }
+  }
+  const float sum = bins.sum();
+  if (sum > 0) bins /= sum;
+}
+
+/// Adds what the same surfaces look like in a shadow: every colour darker by some shares of itself.
+/// Without it a cast shadow, rare and darker than the table, passes for a part of the object.
+void add_shadows(Eigen::VectorXf& bins) {
+  constexpr float share = 0.06f;  // of the surface for each depth of shadow
+  const Eigen::VectorXf lit = bins;
+  for (int i = 0; i < bin_count; ++i) {
+    if (!(lit[i] > 0)) continue;
+    const Eigen::Array3f colour(static_cast<float>(i / (side * side)) + 0.5f,
+                                static_cast<float>(i / side % side) + 0.5f,
+                                static_cast<float>(i % side) + 0.5f);
+    for (const float darker : {0.9f, 0.82f, 0.74f, 0.66f, 0.58f, 0.5f}) {
+      const Eigen::Array3i dark = (colour * darker).cast<int>();
+      bins[dark[0] * side * side + dark[1] * side + dark[2]] += share * lit[i];
+    }
+  }
+  const float sum = bins.sum();
+  if (sum > 0) bins /= sum;
+}
+
+/// A map of log likelihood ratios over a rectangle of the picture, as running sums of each row.
+class Evidence {
+ public:
+  Evidence(int left, int top, int width, int height)
+      : left_(left),
+        top_(top),
+        width_(width),
+        height_(height),
+        sums_(static_cast<std::size_t>(width + 1) * static_cast<std::size_t>(height)) {}
+
+  template <class Value>
+  void fill(Value value) {
+    for (int y = 0; y < height_; ++y) {
+      double* row = &sums_[static_cast<std::size_t>(y) * static_cast<std::size_t>(width_ + 1)];
+      row[0] = 0;
+      for (int x = 0; x < width_; ++x) row[x + 1] = row[x] + value(left_ + x, top_ + y);
+    }
+  }
+  /// Of one pixel; 0 outside the rectangle.
+  double at(int x, int y) const {
+    if (x < left_ || y < top_ || x >= left_ + width_ || y >= top_ + height_) return 0;
+    const double* row =
+        &sums_[static_cast<std::size_t>(y - top_) * static_cast<std::size_t>(width_ + 1)];
+    return row[x - left_ + 1] - row[x - left_];
+  }
+  double sum(const Silhouette& region) const {
+    double total = 0;
+    for (std::size_t i = 0; i < region.rows.size(); ++i) {
+      const int y = region.top + static_cast<int>(i) - top_;
+      if (y < 0 || y >= height_) continue;
+      const int from = std::clamp(region.rows[i].left - left_, 0, width_);
+      const int to = std::clamp(region.rows[i].right - left_, 0, width_);
+      if (to <= from) continue;
+      const double* row =
+          &sums_[static_cast<std::size_t>(y) * static_cast<std::size_t>(width_ + 1)];
+      total += row[to] - row[from];
+    }
+    return total;
+  }
+
+ private:
+  int left_, top_, width_, height_;
+  std::vector<double> sums_;
+};
+
+/// An outline that agrees less with the first evidence is not looked at any further.
+constexpr double least_promise = 0.25;
+
+struct Candidate {
+  Standing at;
+  double score = -1e18;
+};
+
+/// The turn after which a shape looks the same: a cylinder's any, a box' half, a cube's quarter.
+double yaw_period(const model::Shape& shape) {
+  if (shape.kind != model::ShapeKind::box) return 0;
+  return std::abs(shape.size.x() - shape.size.y()) < 1e-3 ? pi / 2 : pi;
+}
+
+class Fitter {
+ public:
+  Fitter(const Frame& frame, const CameraModel& camera, const model::Shape& shape,
+         const Eigen::VectorXf& known_colours)
+      : frame_(frame), camera_(camera), shape_(shape), known_(known_colours) {}
+
+  std::optional<Fit> run(double x, double y, double reach) {
+    if (!choose_area(x, y, reach)) return std::nullopt;
+    Evidence evidence(left_, top_, right_ - left_, bottom_ - top_);
+    initial_.resize(static_cast<std::size_t>((right_ - left_) * (bottom_ - top_)));
+    const Eigen::VectorXf unlike = log_unlike_surroundings();
+    const Eigen::VectorXf like = log_like_object();
+    evidence.fill([&](int px, int py) {
+      const std::size_t i = frame_.colours.index(px, py);
+      const float value =
+          frame_.taken.values[i] ? 0.f : unlike[frame_.bins[i]] + like[frame_.colours.values[i]];
+      initial_[local(px, py)] = value;
+      return static_cast<double>(value);
+    });
+    std::vector<Candidate> best = search(evidence, x, y, reach);
+    if (best.empty()) return std::nullopt;
+    double promise = 0;
+    for (Candidate& candidate : best) {
+      refine(evidence, candidate, 0.006, 0.13);
+      promise = std::max(promise, first_agreement(candidate.at));
+    }
+    if (promise < least_promise) return std::nullopt;
+    drop_repeated(best);
+
+    // Scores of different estimates do not compare: the hypotheses compete by how well each outline
+    // agrees with its own estimate of what is object and what is around.
+    Candidate winner;
+    double most = -1;
+    Evidence sharp = evidence;
+    for (Candidate& candidate : best) {
+      Evidence own = nearby(candidate.at);
+      // Until it stands still; two rounds are enough where object and table part well.
+      for (int round = 0; round < 8; ++round) {
+        const Standing before = candidate.at;
+        reestimate(own, candidate.at);
+        shift(own, candidate);
+        refine(own, candidate, round == 0 ? 0.008 : 0.004, 0.10);
+        const double moved = std::hypot(candidate.at.x - before.x, candidate.at.y - before.y);
+        if (round > 0 && moved < 0.001) break;
+        if (moved > 0.01) own = nearby(candidate.at);
+      }
+      reestimate(own, candidate.at);
+      const double agreed =
+          agreement(candidate.at, [&](int px, int py) { return own.at(px, py) > 0; }) +
+          first_agreement(candidate.at);
+      if (agreed <= most) continue;
+      most = agreed;
+      winner = candidate;
+      sharp = own;
+    }
+    const auto region = silhouette(camera_, shape_, winner.at);
+    if (!region) return std::nullopt;
+    Fit fit;
+    fit.at = winner.at;
+    fit.at.yaw = wrap(fit.at.yaw);
+    fit.region = *region;
+    fit.agreement = most / 2;
+    fit.covariance = covariance(sharp, winner);
+    // An outline that agrees badly may lie elsewhere altogether: two centimetres at an agreement of
+    // 0.4.
+    const double elsewhere = 0.05 * std::max(0.0, 0.8 - fit.agreement);
+    fit.covariance.diagonal().head<2>().array() += elsewhere * elsewhere;
+    return fit;
+  }
+
+ private:
+  std::size_t local(int px, int py) const {
+    return static_cast<std::size_t>((py - top_) * (right_ - left_) + px - left_);
+  }
+
+  double wrap(double yaw) const {
+    const double period = yaw_period(shape_);
+    return period > 0 ? std::remainder(yaw, period) : 0;
+  }
+
+  /// Room for evidence around a hypothesis that only moves a little any more.
+  Evidence nearby(const Standing& at) const {
+    const auto around = silhouette(camera_, shape_, at, 0.06);
+    if (!around) return Evidence(left_, top_, right_ - left_, bottom_ - top_);
+    int low = right_, high = left_;
+    for (const Silhouette::Span& span : around->rows) {
+      if (span.right <= span.left) continue;
+      low = std::min(low, span.left);
+      high = std::max(high, span.right);
+    }
+    // Below, the outline does not grow with the margin: some rows for moving nearer.
+    const int first = std::clamp(around->top, top_, bottom_);
+    const int last =
+        std::clamp(around->top + static_cast<int>(around->rows.size()) + 30, first, bottom_);
+    low = std::clamp(low, left_, right_);
+    high = std::clamp(high, low, right_);
+    return Evidence(low, first, high - low, last - first);
+  }
+
+  bool choose_area(double x, double y, double reach) {
+    const double around = reach + 0.06;
+    double low_x = 1e9, low_y = 1e9, high_x = -1e9, high_y = -1e9;
+    const Eigen::Vector3d half = model::half_extents(shape_);
+    const double r = std::hypot(half.x(), half.y()) + around;
+    for (const double u : {-r, r})
+      for (const double v : {-r, r})
+        for (const double z : {0.0, 2 * half.z() + 0.02}) {
+          const auto pixel = camera_.project({x + u, y + v, z});
+          if (!pixel) return false;
+          low_x = std::min(low_x, pixel->x());
+          high_x = std::max(high_x, pixel->x());
+          low_y = std::min(low_y, pixel->y());
+          high_y = std::max(high_y, pixel->y());
+        }
+    const auto limit = [](double v, int size) {
+      return static_cast<int>(std::clamp(v, 0.0, double(size)));
+    };
+    left_ = limit(low_x, camera_.width);
+    right_ = limit(high_x + 1, camera_.width);
+    top_ = limit(low_y, camera_.height);
+    bottom_ = limit(high_y + 1, camera_.height);
+    return right_ - left_ > 4 && bottom_ - top_ > 4;
+  }
+
+  /// What is rare in the picture is likely no table. Mild: shadows are rare, too.
+  Eigen::VectorXf log_unlike_surroundings() const {
+    return (0.5f * ((1.0f / 2000) / (frame_.bin_share.array() + 1e-5f)).log())
+        .cwiseMax(-1.5f)
+        .cwiseMin(1.0f);
+  }
+  Eigen::VectorXf log_like_object() const {
+    return ((known_.array() + 0.004f) / (frame_.colour_share.array() + 0.004f))
+        .log()
+        .cwiseMax(-2.f)
+        .cwiseMin(2.f);
+  }
+
+  double score(const Evidence& evidence, const Standing& at) const {
+    const auto region = silhouette(camera_, shape_, at);
+    return region ? evidence.sum(*region) : -1e18;
+  }
+
+  /// A coarse grid over place and turn; the best three that are well parted in either.
+  std::vector<Candidate> search(const Evidence& evidence, double x, double y, double reach) const {
+    const double period = yaw_period(shape_);
+    const int turns = period > 0 ? static_cast<int>(std::lround(period / (pi / 10))) : 1;
+    const double step = std::clamp(reach / 4, 0.008, 0.02);
+    std::vector<Candidate> tried;
+    for (int k = 0; k < turns; ++k)
+      for (double dx = -reach; dx <= reach + 1e-9; dx += step)
+        for (double dy = -reach; dy <= reach + 1e-9; dy += step) {
+          const Standing at{x + dx, y + dy, turns > 1 ? period * k / turns : 0};
+          const double value = score(evidence, at);
+          if (value > -1e17) tried.push_back({at, value});
+        }
+    std::sort(tried.begin(), tried.end(),
+              [](const Candidate& a, const Candidate& b) { return a.score > b.score; });
+    std::vector<Candidate> kept;
+    for (const Candidate& candidate : tried) {
+      const bool close = std::any_of(kept.begin(), kept.end(), [&](const Candidate& other) {
+        return std::abs(wrap(candidate.at.yaw - other.at.yaw)) < 0.4 &&
+               std::hypot(candidate.at.x - other.at.x, candidate.at.y - other.at.y) < 0.03;
+      });
+      if (!close) kept.push_back(candidate);
+      if (kept.size() == 3) break;
+    }
+    return kept;
+  }
+
+  /// Hypotheses that have met in one place are one.
+  void drop_repeated(std::vector<Candidate>& candidates) const {
+    std::vector<Candidate> kept;
+    for (const Candidate& candidate : candidates) {
+      const bool met = std::any_of(kept.begin(), kept.end(), [&](const Candidate& other) {
+        return std::abs(wrap(candidate.at.yaw - other.at.yaw)) < 0.1 &&
+               std::hypot(candidate.at.x - other.at.x, candidate.at.y - other.at.y) < 0.005;
+      });
+      if (!met) kept.push_back(candidate);
+    }
+    candidates = std::move(kept);
+  }
+
+  /// Looks 4 cm around for a better place: the learned colours alone may have been misled by a
+  /// table that resembles the object.
+  void shift(const Evidence& evidence, Candidate& candidate) const {
+    const Standing start = candidate.at;
+    candidate.score = score(evidence, start);
+    for (int i = -2; i <= 2; ++i)
+      for (int j = -2; j <= 2; ++j) {
+        const Standing at{start.x + 0.02 * i, start.y + 0.02 * j, start.yaw};
+        const double value = score(evidence, at);
+        if (value > candidate.score) candidate = {at, value};
+      }
+  }
+
+  /// Pattern search with shrinking steps.
+  void refine(const Evidence& evidence, Candidate& candidate, double step, double turn) const {
+    const bool turns = yaw_period(shape_) > 0;
+    candidate.score = score(evidence, candidate.at);
+    for (; step > 0.0004; step /= 2, turn /= 2)
+      for (int moves = 0; moves < 12; ++moves) {
+        Candidate best = candidate;
+        const auto attempt = [&](double dx, double dy, double dyaw) {
+          const Standing at{candidate.at.x + dx, candidate.at.y + dy, candidate.at.yaw + dyaw};
+          const double value = score(evidence, at);
+          if (value > best.score) best = {at, value};
+        };
+        for (const double s : {-step, step}) {
+          attempt(s, 0, 0);
+          attempt(0, s, 0);
+          attempt(s, s, 0);
+          attempt(s, -s, 0);
+        }
+        if (turns)
+          for (const double t : {-turn, turn}) attempt(0, 0, t);
+        if (best.score <= candidate.score) break;
+        candidate = best;
+      }
+  }
+
+  /// Colours inside against colours around at a hypothesis, from this picture.
+  void reestimate(Evidence& evidence, const Standing& at) const {
+    const auto inside = silhouette(camera_, shape_, at);
+    const auto near = silhouette(camera_, shape_, at, 0.004);
+    const auto around = silhouette(camera_, shape_, at, 0.05);
+    if (!inside || !near || !around) return;
+    Eigen::VectorXf object = Eigen::VectorXf::Zero(bin_count), ring = object;
+    const auto visit = [&](const Silhouette& region, auto&& use) {
+      for (std::size_t i = 0; i < region.rows.size(); ++i)
+        for (int px = region.rows[i].left; px < region.rows[i].right; ++px)
+          use(px, region.top + static_cast<int>(i));
+    };
+    visit(*inside, [&](int px, int py) { object[bin(px, py)] += free(px, py); });
+    visit(*around, [&](int px, int py) { ring[bin(px, py)] += free(px, py); });
+    visit(*near, [&](int px, int py) { ring[bin(px, py)] -= free(px, py); });
+    ring = ring.cwiseMax(0);
+    add_shadows(ring);
+    smooth(object);
+    smooth(ring);
+    const Eigen::VectorXf background = 0.8f * ring + 0.2f * frame_.bin_share;
+    const Eigen::VectorXf ratio = ((object.array() + 2e-4f) / (background.array() + 2e-4f))
+                                      .log()
+                                      .cwiseMax(-2.5f)
+                                      .cwiseMin(2.5f);
+    evidence.fill([&](int px, int py) {
+      const std::size_t i = frame_.colours.index(px, py);
+      if (frame_.taken.values[i]) return 0.0;
+      return static_cast<double>(ratio[frame_.bins[i]] + 0.3f * initial_[local(px, py)]);
+    });
+  }
+
+  Eigen::Index bin(int px, int py) const { return frame_.bins[frame_.colours.index(px, py)]; }
+  float free(int px, int py) const {
+    return frame_.taken.values[frame_.colours.index(px, py)] ? 0.f : 1.f;
+  }
+
+  /// Intersection over union of the outline with the pixels nearby that `yes` takes for the object.
+  template <class Yes>
+  double agreement(const Standing& at, Yes yes) const {
+    const auto region = silhouette(camera_, shape_, at);
+    const auto around = silhouette(camera_, shape_, at, 0.03);
+    if (!region || !around) return 0;
+    const auto count = [&](const Silhouette& r, bool all) {
+      int sum = 0;
+      for (std::size_t i = 0; i < r.rows.size(); ++i) {
+        const int py = r.top + static_cast<int>(i);
+        if (py < top_ || py >= bottom_) continue;
+        for (int px = std::max(left_, r.rows[i].left); px < std::min(right_, r.rows[i].right); ++px)
+          if (!frame_.taken.values[frame_.colours.index(px, py)] && (all || yes(px, py))) ++sum;
+      }
+      return sum;
+    };
+    const int inside = count(*region, false);
+    const int united = count(*region, true) + std::max(0, count(*around, false) - inside);
+    return united > 0 ? static_cast<double>(inside) / united : 0;
+  }
+  double first_agreement(const Standing& at) const {
+    return agreement(at, [&](int px, int py) { return initial_[local(px, py)] > 0; });
+  }
+
+  /// From the curvature of the score at its maximum. Neighbouring pixels repeat each other, so a
+  /// score counts for a tenth; two millimetres and one degree are the least that is claimed.
+  Eigen::Matrix3d covariance(const Evidence& evidence, const Candidate& best) const {
+    const Eigen::Vector3d h(0.004, 0.004, 0.07);
+    const auto value = [&](const Eigen::Vector3d& d) {
+      return 0.1 * score(evidence, {best.at.x + d.x(), best.at.y + d.y(), best.at.yaw + d.z()});
+    };
+    Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
+    const double middle = value(Eigen::Vector3d::Zero());
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j <= i; ++j) {
+        Eigen::Vector3d a = Eigen::Vector3d::Zero(), b = a;
+        a[i] = h[i];
+        b[j] = h[j];
+        const double second =
+            i == j ? value(a) - 2 * middle + value(-a)
+                   : (value(a + b) - value(a - b) - value(b - a) + value(-a - b)) / 4;
+        information(i, j) = information(j, i) = -second / (h[i] * h[j]);
+      }
+    if (!information.allFinite()) information.setZero();
+    // Clamp to what is positive and within what was searched: 5 cm and a quarter turn at most.
+    Eigen::Matrix3d scaled = h.asDiagonal() * information * h.asDiagonal();
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(scaled);
+    const Eigen::Vector3d kept = eigen.eigenvalues().cwiseMax(0.01);
+    const Eigen::Matrix3d inverse =
+        eigen.eigenvectors() * kept.cwiseInverse().asDiagonal() * eigen.eigenvectors().transpose();
+    Eigen::Matrix3d made = h.asDiagonal() * inverse * h.asDiagonal();
+    made.diagonal() += Eigen::Vector3d(4e-6, 4e-6, 3e-4);
+    if (yaw_period(shape_) == 0) {
+      made.row(2).setZero();
+      made.col(2).setZero();
+      made(2, 2) = pi * pi / 3;  // any turn
+    }
+    return made;
+  }
+
+  const Frame& frame_;
+  const CameraModel& camera_;
+  const model::Shape& shape_;
+  const Eigen::VectorXf& known_;
+  int left_ = 0, right_ = 0, top_ = 0, bottom_ = 0;  // the area that is looked at, px
+  std::vector<float> initial_;                       // evidence before re-estimation
+};
+
+}  // namespace
+
+Frame prepare(const Picture& picture, const Palette& palette) {
+  Frame frame{picture, palette.quantise(picture), Plane(picture.width, picture.height), {}, {}, {}};
+  frame.bins.resize(picture.pixels());
+  frame.bin_share = Eigen::VectorXf::Zero(bin_count);
+  frame.colour_share = Eigen::VectorXf::Zero(palette.size());
+  for (std::size_t i = 0; i < frame.bins.size(); ++i) {
+    const std::uint8_t* p = &picture.rgb[3 * i];
+    const int bin = (p[0] >> 4) * side * side + (p[1] >> 4) * side + (p[2] >> 4);
+    frame.bins[i] = static_cast<std::uint16_t>(bin);
+    frame.bin_share[bin] += 1;
+  }
+  add_shadows(frame.bin_share);
+  smooth(frame.bin_share);
+  // The same in colours of the palette.
+  Picture every_bin(bin_count, 1);
+  for (int i = 0; i < bin_count; ++i) {
+    std::uint8_t* p = every_bin.at(i, 0);
+    p[0] = static_cast<std::uint8_t>(i / (side * side) * 16 + 8);
+    p[1] = static_cast<std::uint8_t>(i / side % side * 16 + 8);
+    p[2] = static_cast<std::uint8_t>(i % side * 16 + 8);
+  }
+  const Plane of_bin = palette.quantise(every_bin);
+  for (int i = 0; i < bin_count; ++i) frame.colour_share[of_bin.at(i, 0)] += frame.bin_share[i];
+  return frame;
+}
+
+std::optional<Fit> localise(const Frame& frame, const CameraModel& camera,
+                            const model::Shape& shape, const Eigen::VectorXf& known_colours,
+                            double x, double y, double reach) {
+  if (!model::is_valid(shape) || known_colours.size() != frame.colour_share.size())
+    return std::nullopt;
+  if (camera.width != frame.picture.width || camera.height != frame.picture.height)
+    return std::nullopt;
+  return Fitter(frame, camera, shape, known_colours).run(x, y, reach);
+}
+
+}  // namespace prehend::recognition

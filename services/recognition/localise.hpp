@@ -1,0 +1,41 @@
+#pragma once
+
+#include <optional>
+
+#include "palette.hpp"
+#include "silhouette.hpp"
+
+namespace prehend::recognition {
+
+/// A picture prepared for fitting shapes into it.
+struct Frame {
+  Picture picture;
+  Plane colours;                    // palette indices
+  Plane taken;                      // 1: already explained by another object
+  std::vector<std::uint16_t> bins;  // fine RGB bin of every pixel
+  Eigen::VectorXf bin_share;        // of the whole picture, smoothed
+  Eigen::VectorXf colour_share;     // of the palette's colours in the whole picture
+};
+Frame prepare(const Picture& picture, const Palette& palette);
+
+struct Fit {
+  Standing at;
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  // of x, y (m), yaw (rad)
+  Silhouette region;
+  /// How well the picture agrees with that outline, 0..1: overlap (intersection over union) of the
+  /// region with what looks like the object nearby, by the learned colours and by the picture's
+  /// own.
+  double agreement = 0;
+};
+
+/// Finds where a shape that stands on the table near (x, y) covers the picture best: the sum over
+/// its silhouette of the log likelihood ratio of object against surroundings is greatest. The ratio
+/// starts from the colours that were learned and is then re-estimated twice from the picture
+/// itself, inside against around (as region-based trackers do), so that it follows light and table.
+/// `known_colours`: share of each palette colour on the object. `reach`: how far from (x, y) to
+/// look, m. None when the shape is out of the picture.
+std::optional<Fit> localise(const Frame& frame, const CameraModel& camera,
+                            const model::Shape& shape, const Eigen::VectorXf& known_colours,
+                            double x, double y, double reach = 0.06);
+
+}  // namespace prehend::recognition

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <vector>
+
+#include "object_models.hpp"
+
+namespace prehend::recognition {
+
+struct ScanOptions {
+  int cell_size = 8;                      // px
+  int step = 2;                           // every step-th pixel starts a pair
+  std::vector<int> windows = {4, 8, 13};  // sides of the sub-windows, cells
+  int stride = 2;                         // cells between sub-windows
+  /// Pairs of colours as common as this share in the whole picture count half: they are table. 0:
+  /// no such discount, for pictures that one object fills.
+  double common = 0.01;
+  double least_score = 0.35;  // a window that resembles nothing better votes for nothing
+};
+
+/// The vote matrix of every class: how much the sub-windows that cover a cell resemble it.
+struct Votes {
+  int columns = 0, rows = 0, cell_size = 0;
+  std::vector<Eigen::MatrixXf> classes;  // rows by columns
+};
+
+/// Compares overlapping sub-windows of several sizes with the scan's prototypes of all classes.
+/// Each window votes in its cells for the classes that it resembles most (within a tenth of the
+/// best). `taken`: pixels (1) that are left out because what they show is already known; may be
+/// empty.
+Votes scan(const ObjectModels& models, const Plane& colours, const ScanOptions& options = {},
+           const Plane& taken = {});
+
+/// Cells connected to the strongest one in which a class has at least half as many votes.
+struct Region {
+  int class_index = -1;
+  float strength = 0;                            // votes of the strongest cell
+  Eigen::Vector2d centre;                        // px, mean of the cells weighted by their votes
+  int left = 0, top = 0, right = 0, bottom = 0;  // px, right and bottom exclusive
+  std::vector<Eigen::Vector2i> cells;            // column, row
+};
+
+/// Grows the region of the strongest cell of all classes. None left: class_index is -1.
+Region grow_strongest(const Votes& votes);
+/// Removes the votes of all classes in a rectangle of the picture, px.
+void erase(Votes& votes, int left, int top, int right, int bottom);
+
+}  // namespace prehend::recognition

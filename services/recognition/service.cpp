@@ -1,0 +1,293 @@
+#include "service.hpp"
+
+#include <condition_variable>
+#include <mutex>
+#include <optional>
+#include <prehend/base/log.hpp>
+#include <prehend/dds/convert.hpp>
+#include <prehend/dds/topics.hpp>
+#include <prehend/recognition_cameras/camera.hpp>
+#include <thread>
+
+#include "detector.hpp"
+#include "model_file.hpp"
+#include "picture_file.hpp"
+#include "tracker.hpp"
+
+namespace prehend::recognition {
+namespace {
+
+using Clock = std::chrono::system_clock;
+
+/// Pictures are worked on at this width at most; more costs time and finds nothing more.
+constexpr int longest_side = 640;
+
+v1::ShapeKind to_message(model::ShapeKind kind) {
+  switch (kind) {
+    case model::ShapeKind::cylinder:
+      return v1::SHAPE_CYLINDER;
+    case model::ShapeKind::box:
+      return v1::SHAPE_BOX;
+    case model::ShapeKind::sphere:
+      return v1::SHAPE_SPHERE;
+    case model::ShapeKind::unknown:
+      break;
+  }
+  return v1::SHAPE_UNKNOWN;
+}
+
+/// Reads a camera in a thread of its own and hands over the newest picture only.
+class CameraThread {
+ public:
+  using Take = std::function<void(Picture, Time)>;
+
+  CameraThread(std::unique_ptr<Camera> camera, double rate, service::Shell& shell, Take take)
+      : camera_(std::move(camera)),
+        period_(seconds(1 / rate)),
+        shell_(shell),
+        take_(std::move(take)),
+        thread_([this](std::stop_token stop) { run(stop); }) {}
+
+ private:
+  void run(const std::stop_token& stop) {
+    Clock::time_point due = Clock::now();
+    while (!stop.stop_requested()) {
+      if (!camera_->paces_itself() && !sleep_until(stop, due)) return;
+      auto picture = camera_->next();
+      const auto now = std::chrono::time_point_cast<Duration>(Clock::now());
+      if (!picture) {
+        complain(picture.error());
+        if (camera_->finished()) return;
+        due = Clock::now() + std::chrono::milliseconds(300);
+        if (!sleep_until(stop, due)) return;
+        continue;
+      }
+      if (!said_.empty()) {
+        log::info("the camera gives pictures again");
+        said_.clear();
+        shell_.status().running();
+      }
+      // A tenth of a period early is in time: a camera of the same rate must not lose every other.
+      if (camera_->paces_itself() && now < due - period_ / 10) continue;
+      due = std::max<Clock::time_point>(due + period_, now - period_);
+      hand_over(std::move(*picture), now);
+    }
+  }
+
+  void hand_over(Picture picture, Time stamp) {
+    {
+      const std::lock_guard lock(mutex_);
+      const bool waiting = newest_.has_value();
+      newest_ = {std::move(picture), stamp};
+      if (waiting) {
+        shell_.status().drop("picture overtaken by a newer one");
+        return;
+      }
+    }
+    shell_.post([this] {
+      std::optional<std::pair<Picture, Time>> taken;
+      {
+        const std::lock_guard lock(mutex_);
+        taken.swap(newest_);
+      }
+      if (taken) take_(std::move(taken->first), taken->second);
+    });
+  }
+
+  void complain(const Error& error) {
+    shell_.status().drop(error.what);
+    shell_.status().degraded(error.message());
+    if (said_ != error.what) log::warning("{}", error.message());
+    said_ = error.what;
+  }
+
+  /// False when it is time to stop.
+  bool sleep_until(const std::stop_token& stop, Clock::time_point time) {
+    std::unique_lock lock(mutex_);
+    sleeper_.wait_until(lock, stop, time, [] { return false; });
+    return !stop.stop_requested();
+  }
+
+  std::unique_ptr<Camera> camera_;
+  Duration period_;
+  service::Shell& shell_;
+  Take take_;
+  std::string said_;
+  std::mutex mutex_;
+  std::condition_variable_any sleeper_;
+  std::optional<std::pair<Picture, Time>> newest_;
+  std::jthread thread_;  // last: it uses all of the above
+};
+
+/// The topics' side of Detector and Tracker. Lives as long as the shell runs.
+class Service {
+ public:
+  Service(service::Shell& shell, Detector detector, const CameraModel& camera, bool publishes)
+      : shell_(shell),
+        detector_(std::move(detector)),
+        camera_(camera),
+        name_(shell.config().text("camera.name")),
+        output_(shell.publish(dds::object_detection)) {
+    if (publishes) images_ = shell.publish(dds::camera_image);
+    shell.on_tick(std::chrono::milliseconds(50), [this](Time now) { dispose_gone(now); });
+  }
+
+  /// A picture of our own camera: published, and seen as everyone else sees it, so that a recording
+  /// of the topic gives the same answers.
+  void on_picture(const Picture& picture, Time stamp) {
+    v1::CameraImage image;
+    image.camera(name_);
+    image.sequence_number(number_);
+    image.stamp_ns(to_ns(stamp));
+    image.width(picture.width);
+    image.height(picture.height);
+    image.encoding("jpeg");
+    image.calibration(name_);
+    image.data(encode_jpeg(picture));
+    images_->publish(image);
+    on_image(image);
+    ++number_;
+  }
+
+  void on_image(const v1::CameraImage& image) {
+    const auto begin = std::chrono::steady_clock::now();
+    auto picture = decode_picture(image.data(), "camera/image");
+    if (!picture) return refuse("unreadable picture", picture.error());
+    const Picture small = shrink(*picture, longest_side);
+    const double factor = static_cast<double>(small.width) / camera_.width;
+    if (std::abs(camera_.height * factor - small.height) > 1.01)
+      return refuse("picture of another format than the calibration",
+                    {"a picture has " + std::to_string(picture->width) + "x" +
+                         std::to_string(picture->height) + " px",
+                     "camera", "the sides are not in the ratio of camera.width and camera.height"});
+    CameraModel camera = camera_.scaled(factor);
+    camera.height = small.height;
+    const auto sightings = detector_.on_table(small, camera);
+    if (!sightings) return refuse("picture that cannot be used", sightings.error());
+    if (!said_.empty()) shell_.status().running();
+    said_.clear();
+    const Time stamp = from_ns(image.stamp_ns());
+    for (const Track& track : tracker_.update(stamp, *sightings))
+      publish(track, stamp, image.sequence_number());
+    shell_.status().count("pictures");
+    shell_.status().latency(
+        "picture", std::chrono::duration_cast<Duration>(std::chrono::steady_clock::now() - begin));
+  }
+
+ private:
+  void publish(const Track& track, Time stamp, std::uint64_t number) {
+    v1::ObjectDetection message;
+    message.track(track.id);
+    message.sequence_number(number);
+    message.stamp_ns(to_ns(stamp));
+    message.name(track.seen.name);
+    message.shape(to_message(track.seen.shape.kind));
+    message.size(dds::to_message(track.seen.shape.size));
+    message.X_WO(dds::to_message(standing_pose(track.seen.shape, *track.seen.at)));
+    // x, y, z, yaw: the height is known from the table, give or take a millimetre.
+    Eigen::Matrix4d covariance = Eigen::Matrix4d::Zero();
+    constexpr std::array<int, 3> place{0, 1, 3};
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j)
+        covariance(place[static_cast<std::size_t>(i)], place[static_cast<std::size_t>(j)]) =
+            track.seen.covariance(i, j);
+    covariance(2, 2) = 1e-6;
+    for (int i = 0; i < 16; ++i)
+      message.covariance()[static_cast<std::size_t>(i)] = covariance(i / 4, i % 4);
+    message.probability(track.seen.probability);
+    message.moving(track.moving);
+    message.box().x(track.seen.box.x);
+    message.box().y(track.seen.box.y);
+    message.box().width(track.seen.box.width);
+    message.box().height(track.seen.box.height);
+    output_.publish(message);
+    shell_.status().count("detections");
+  }
+
+  void dispose_gone(Time now) {
+    for (const std::uint32_t id : tracker_.expire(now)) {
+      v1::ObjectDetection key;
+      key.track(id);
+      output_.dispose(key);
+    }
+  }
+
+  void refuse(const std::string& reason, const Error& error) {
+    shell_.status().drop(reason);
+    shell_.status().degraded(error.message());
+    if (said_ != reason) log::warning("{}", error.message());
+    said_ = reason;
+  }
+
+  service::Shell& shell_;
+  Detector detector_;
+  CameraModel camera_;
+  std::string name_;
+  service::Shell::Output<v1::ObjectDetection> output_;
+  std::optional<service::Shell::Output<v1::CameraImage>> images_;
+  Tracker tracker_;
+  std::uint64_t number_ = 0;
+  std::string said_;
+};
+
+int broken(const Error& error) {
+  log::error("{}", error.message());
+  return 3;
+}
+
+}  // namespace
+
+int run_service(service::Shell& shell) {
+  const service::Config& config = shell.config();
+  auto camera = configured_camera(config);
+  if (!camera) return broken(camera.error());
+  auto catalogue = model::Catalogue::load(config.path("lab.catalogue"));
+  if (!catalogue) return broken(catalogue.error());
+  auto models = load_models(config.path("recognition.model"));
+  if (!models) return broken(models.error());
+  std::optional<model::Scene> scene;
+  if (const auto file = config.path("lab.scene"); !file.empty()) {
+    auto loaded = model::load_scene(file, *catalogue);
+    if (!loaded) return broken(loaded.error());
+    scene = std::move(*loaded);
+  }
+  const double rate = config.number("recognition.rate");
+  if (!(rate > 0 && rate <= 200))
+    return broken({"must lie in 0 to 200 Hz", "recognition.rate", "10 is usual"});
+  DetectorOptions options;
+  options.accept = config.number("recognition.accept");
+  Detector detector(std::move(*models), *catalogue, options);
+
+  const std::string& source = config.text("recognition.source");
+  if (source == "topic") {
+    Service service(shell, std::move(detector), *camera, false);
+    const std::string name = config.text("camera.name");
+    shell.subscribe(dds::camera_image,
+                    std::function<void(const v1::CameraImage&, const dds::SampleInfo&)>(
+                        [&](const v1::CameraImage& image, const dds::SampleInfo& info) {
+                          if (info.gone) return;
+                          if (image.camera().to_string() == name)
+                            service.on_image(image);
+                          else
+                            shell.status().drop("picture of another camera");
+                        }));
+    shell.status().running();
+    return shell.run();
+  }
+  if (shell.lockstep())
+    return broken({"in lockstep pictures come by topic only", "recognition.source",
+                   "set recognition.source=topic"});
+  CameraOptions wanted{source, config.text("recognition.path"), *camera, rate};
+  if (source == "folder" || (source == "video" && wanted.path.find("://") == std::string::npos))
+    wanted.path = config.path("recognition.path").string();
+  auto opened = open_camera(wanted, *catalogue, scene ? &*scene : nullptr);
+  if (!opened) return broken(opened.error());
+  Service service(shell, std::move(detector), *camera, true);
+  const CameraThread thread(
+      std::move(*opened), rate, shell,
+      [&](const Picture& picture, Time stamp) { service.on_picture(picture, stamp); });
+  shell.status().running();
+  return shell.run();
+}
+
+}  // namespace prehend::recognition

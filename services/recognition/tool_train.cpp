@@ -1,0 +1,136 @@
+// `prehend objects render` and `prehend objects train`.
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <prehend/base/log.hpp>
+#include <prehend/base/paths.hpp>
+
+#include "dataset.hpp"
+#include "model_file.hpp"
+#include "picture_file.hpp"
+#include "tool.hpp"
+#include "training_views.hpp"
+
+namespace prehend::recognition {
+namespace {
+
+struct RenderArguments {
+  std::string folder, catalogue;
+  std::uint64_t seed = 1;
+  int views = 36;
+  bool json = false;
+};
+
+struct TrainArguments {
+  std::string folder, model;
+  bool json = false;
+};
+
+int broken(const Error& error) {
+  log::error("{}", error.message());
+  return 3;
+}
+
+/// «done 3 of 9» that overwrites itself on a terminal and is silent elsewhere.
+void progress(const std::string& what, std::size_t done, std::size_t all) {
+  if (!isatty(STDERR_FILENO)) return;
+  fmt::print(stderr, "\r{} {} of {}{}", what, done, all, done == all ? "\n" : "");
+}
+
+int render(const RenderArguments& arguments) {
+  const auto file = arguments.catalogue.empty()
+                        ? share_directory() / "models" / "objects" / "catalogue.toml"
+                        : std::filesystem::path(arguments.catalogue);
+  const auto catalogue = model::Catalogue::load(file);
+  if (!catalogue) return broken(catalogue.error());
+  const Renderer renderer(*catalogue);
+  std::size_t written = 0, done = 0;
+  for (const model::CatalogueObject& object : catalogue->objects()) {
+    const auto folder = std::filesystem::path(arguments.folder) / object.name;
+    std::error_code error;
+    std::filesystem::create_directories(folder, error);
+    if (error) return broken({error.message(), folder.string(), "is the place writable?"});
+    const auto views =
+        training_views(renderer, object, CameraModel{}, arguments.views, arguments.seed);
+    for (std::size_t i = 0; i < views.size(); ++i) {
+      const std::string name = fmt::format("view_{:03}", i);
+      // As jpeg, like everything that comes from a camera.
+      for (const auto& saved : {save_jpeg(folder / (name + ".jpg"), views[i].picture),
+                                save_png(folder / (name + ".mask.png"), views[i].mask)})
+        if (!saved) return broken(saved.error());
+      ++written;
+    }
+    progress("rendering object", ++done, catalogue->objects().size());
+  }
+  if (arguments.json)
+    std::cout << nlohmann::ordered_json{{"classes", catalogue->objects().size()},
+                                        {"views", written}}
+              << "\n";
+  else
+    fmt::print("{} views of {} objects in {}\n", written, catalogue->objects().size(),
+               arguments.folder);
+  return 0;
+}
+
+int train_models(const TrainArguments& arguments) {
+  const auto begin = std::chrono::steady_clock::now();
+  const auto folders = class_folders(arguments.folder);
+  if (!folders) return broken(folders.error());
+  std::vector<TrainingClass> classes;
+  for (const ClassFolder& folder : *folders) {
+    classes.push_back({folder.name, {}});
+    for (const auto& file : folder.files) {
+      auto view = load_view(file);
+      if (view)
+        classes.back().views.push_back(std::move(*view));
+      else
+        log::warning("left out: {}", view.error().message());
+    }
+    progress("reading class", classes.size(), folders->size());
+  }
+  const auto models = train(classes);
+  if (!models) return broken(models.error());
+  if (const auto saved = save_models(arguments.model, *models); !saved)
+    return broken(saved.error());
+  const double seconds =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  if (arguments.json)
+    std::cout << nlohmann::ordered_json{{"classes", models->classes.size()},
+                                        {"views", models->view_class.size()},
+                                        {"seconds", seconds}}
+              << "\n";
+  else
+    fmt::print("{} classes from {} views in {:.1f} s: {}\n", models->classes.size(),
+               models->view_class.size(), seconds, arguments.model);
+  return 0;
+}
+
+}  // namespace
+
+void add_render(CLI::App& app, int& exit_code) {
+  auto arguments = std::make_shared<RenderArguments>();
+  CLI::App* command = app.add_subcommand(
+      "render", "Draws labelled training views of the catalogue's objects, a folder each.");
+  command->add_option("folder", arguments->folder, "where to")->required();
+  command->add_option("--seed", arguments->seed, "draws light, place and background");
+  command->add_option("--views", arguments->views, "views an object")->check(CLI::Range(1, 10000));
+  command->add_option("--catalogue", arguments->catalogue, "objects to draw");
+  command->add_flag("--json", arguments->json, "one JSON document");
+  command->callback([arguments, &exit_code] { exit_code = render(*arguments); });
+}
+
+void add_train(CLI::App& app, int& exit_code) {
+  auto arguments = std::make_shared<TrainArguments>();
+  CLI::App* command =
+      app.add_subcommand("train", "Learns object models from a folder of pictures a class.");
+  command->add_option("folder", arguments->folder, "holds a folder a class")->required();
+  command->add_option("--model", arguments->model, "file to write")->required();
+  command->add_flag("--json", arguments->json, "one JSON document");
+  command->callback([arguments, &exit_code] { exit_code = train_models(*arguments); });
+}
+
+}  // namespace prehend::recognition

@@ -1,0 +1,138 @@
+// The main job, as a user runs it: `prehend demo` with all services as processes.
+#include <csignal>
+#include <nlohmann/json.hpp>
+
+#include "rig.hpp"
+
+namespace prehend::integration {
+namespace {
+
+using nlohmann::json;
+
+class Demo : public Rig {
+ protected:
+  /// The demonstration has 45 s, and some more to start and stop processes.
+  Answer demo(Strings arguments) {
+    arguments.insert(arguments.begin(), {"demo", "--json", "--domain", std::to_string(domain_)});
+    return run("prehend", arguments, 55);
+  }
+  static std::string shared(const std::string& file) {
+    const char* given = std::getenv("PREHEND_SHARED");
+    return std::string(given ? given : PREHEND_SHARED_DATA) + "/" + file;
+  }
+};
+
+class DemoOfSeed : public Demo, public testing::WithParamInterface<const char*> {};
+
+TEST_P(DemoOfSeed, HoldsTheRightObjectIntelligently) {
+  const Answer answer = demo({"--seed", GetParam()});
+  ASSERT_EQ(answer.exit_code, 0) << answer.output << answer.log;
+  const json document = json::parse(answer.output);
+  EXPECT_EQ(document["grasp"]["held"], true);
+  EXPECT_GT(document["grasp"]["epsilon"].get<double>(), 0);
+  EXPECT_GE(document["grasp"]["contacts"].get<int>(), 2);
+  EXPECT_EQ(document["mapping"]["mode"], "intelligent");
+  EXPECT_EQ(document["mapping"]["hand"], "barrett");
+  EXPECT_EQ(document["object"]["name"], document["target"]);
+  EXPECT_LT(document["object"]["position_error_m"].get<double>(), 0.02);
+  EXPECT_EQ(document["glove"]["device"], "nest_of_birds");
+  EXPECT_GT(document["glove"]["frames"].get<int>(), 30);
+  EXPECT_GT(document["latency_ms"]["p50"].get<double>(), 0);
+  EXPECT_GE(document["latency_ms"]["p99"].get<double>(),
+            document["latency_ms"]["p50"].get<double>());
+}
+
+INSTANTIATE_TEST_SUITE_P(BoxAndCylinder, DemoOfSeed, testing::Values("1", "2"));
+
+TEST_F(Demo, WithoutRecognitionItMapsDirectly) {
+  const Answer answer = demo({"--seed", "1", "--without", "recognition"});
+  ASSERT_TRUE(answer.exit_code == 0 || answer.exit_code == 1) << answer.log;
+  const json document = json::parse(answer.output);
+  EXPECT_TRUE(document["object"].is_null());
+  EXPECT_EQ(document["mapping"]["mode"], "direct");
+  EXPECT_EQ(document["mapping"]["weight"], 0);
+  EXPECT_EQ(answer.exit_code, document["grasp"]["held"].get<bool>() ? 0 : 1);
+}
+
+TEST_F(Demo, PlaysARecordingToItsEnd) {
+  const std::string file = shared("leap_hand_recordings/grab.csv");
+  if (!std::filesystem::exists(file)) GTEST_SKIP() << file << " is not here";
+  const Answer answer = demo({"--glove", "recording:" + file});
+  ASSERT_TRUE(answer.exit_code == 0 || answer.exit_code == 1) << answer.log;
+  const json document = json::parse(answer.output);
+  EXPECT_GE(document["glove"]["frames"].get<int>(), 300);
+  EXPECT_EQ(document["glove"]["device"], "recording");
+  EXPECT_EQ(answer.exit_code, document["grasp"]["held"].get<bool>() ? 0 : 1);
+}
+
+TEST_F(Demo, WithoutAHandItEndsWithAReason) {
+  const Answer answer = demo({"--without", "glove", "--timeout", "8"});
+  EXPECT_EQ(answer.exit_code, 1) << answer.log;
+  const json document = json::parse(answer.output);
+  EXPECT_EQ(document["glove"]["frames"], 0);
+  EXPECT_EQ(document["grasp"]["held"], false);
+  EXPECT_NE(document["grasp"]["reason"].get<std::string>().find("no glove frame"),
+            std::string::npos);
+}
+
+TEST_F(Demo, LeavesNoProcessBehind) {
+  service::Process process =
+      start_program("prehend", {"demo", "--json", "--domain", std::to_string(domain_)});
+  const std::string rig = "lab.rig=demo-" + std::to_string(process.pid()) + "-";
+  // All five that it starts, the tracker known by its folder apart.
+  ASSERT_TRUE(eventually(30, [&] { return processes_with(rig).size() == 4; }));
+  process.signal(SIGINT);
+  const auto exit = process.wait(seconds(15));
+  ASSERT_TRUE(exit) << "it does not end";
+  EXPECT_EQ(exit->code, 1);
+  EXPECT_TRUE(processes_with(rig).empty());
+}
+
+TEST_F(Demo, KilledItTakesTheServicesAlong) {
+  service::Process process =
+      start_program("prehend", {"demo", "--json", "--domain", std::to_string(domain_)});
+  const std::string rig = "lab.rig=demo-" + std::to_string(process.pid()) + "-";
+  ASSERT_TRUE(eventually(30, [&] { return processes_with(rig).size() == 4; }));
+  ::kill(process.pid(), SIGKILL);
+  ASSERT_TRUE(process.wait(seconds(5)));
+  EXPECT_TRUE(eventually(5, [&] { return processes_with(rig).empty(); }));
+}
+
+TEST_F(Demo, ADeadServiceIsNamedWithItsLastWords) {
+  const Answer answer = demo({"--set", "mapping.model=" + (folder_ / "missing").string()});
+  EXPECT_EQ(answer.exit_code, 3);
+  EXPECT_EQ(answer.output, "");
+  EXPECT_NE(answer.log.find("mapping"), std::string::npos) << answer.log;
+  EXPECT_NE(answer.log.find((folder_ / "missing").string()), std::string::npos) << answer.log;
+}
+
+TEST_F(Demo, WrongUseIsOneLine) {
+  for (const Strings& arguments :
+       {Strings{"--object", "Spoon"}, Strings{"--hand", "claw"}, Strings{"--without", "coffee"},
+        Strings{"--bogus"}, Strings{"--set", "glove.colour=red"}, Strings{"--seeds", "3..1"}}) {
+    const Answer answer = demo(arguments);
+    EXPECT_EQ(answer.exit_code, 2) << arguments.front() << answer.log;
+    EXPECT_EQ(std::count(answer.log.begin(), answer.log.end(), '\n'), 1) << answer.log;
+    EXPECT_EQ(answer.output, "");
+  }
+}
+
+TEST_F(Demo, StatusTellsWhoIsThere) {
+  auto simulation = start("simulation", {"lab.scene=" + scene(1)});
+  Strings arguments = lab_arguments();
+  arguments.insert(arguments.begin(), {"status", "--json"});
+  Strings wait = arguments;
+  wait.insert(wait.end(), {"--wait", "simulation", "--timeout", "20"});
+  const Answer there = run("prehend", wait, 30);
+  ASSERT_EQ(there.exit_code, 0) << there.output << there.log;
+  const json document = json::parse(there.output);
+  ASSERT_EQ(document["services"].size(), 1u);
+  EXPECT_EQ(document["services"][0]["name"], "simulation");
+  EXPECT_EQ(document["services"][0]["state"], "running");
+  wait = arguments;
+  wait.insert(wait.end(), {"--wait", "mapping", "--timeout", "1"});
+  EXPECT_EQ(run("prehend", wait, 30).exit_code, 1);
+}
+
+}  // namespace
+}  // namespace prehend::integration

@@ -1,0 +1,108 @@
+// The documents that others read: their keys are a contract.
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+#include <prehend/cli/outcome.hpp>
+#include <prehend/cli/status_command.hpp>
+
+namespace prehend::cli {
+namespace {
+
+using nlohmann::json;
+
+Outcome held() {
+  Outcome outcome;
+  outcome.object = {{"Talc", {model::ShapeKind::cylinder, {0.024, 0.024, 0.105}}, 0.004}};
+  outcome.mode = v1::MODE_INTELLIGENT;
+  outcome.weight = 0.9;
+  outcome.hand = "barrett";
+  outcome.grasp_type = v1::GRASP_POWER_WRAP;
+  outcome.judged = true;
+  outcome.grasp = {6, 0.05, 0.002, true, true, ""};
+  outcome.latency = {1.25, 3.5};
+  outcome.device = "nest_of_birds";
+  outcome.frames = 120;
+  outcome.rejected = 2;
+  return outcome;
+}
+
+TEST(Outcome, DocumentOfAHeldObject) {
+  const json document = json::parse(to_json(held()));
+  EXPECT_EQ(document["object"]["name"], "Talc");
+  EXPECT_EQ(document["object"]["shape"], "cylinder");
+  EXPECT_EQ(document["object"]["size_m"], json({0.024, 0.024, 0.105}));
+  EXPECT_EQ(document["object"]["position_error_m"], 0.004);
+  EXPECT_EQ(document["mapping"]["mode"], "intelligent");
+  EXPECT_EQ(document["mapping"]["weight"], 0.9);
+  EXPECT_EQ(document["mapping"]["hand"], "barrett");
+  EXPECT_EQ(document["mapping"]["grasp_type"], "power_wrap");
+  EXPECT_EQ(document["grasp"]["contacts"], 6);
+  EXPECT_EQ(document["grasp"]["epsilon"], 0.05);
+  EXPECT_EQ(document["grasp"]["volume"], 0.002);
+  EXPECT_EQ(document["grasp"]["force_closure"], true);
+  EXPECT_EQ(document["grasp"]["held"], true);
+  EXPECT_EQ(document["latency_ms"]["p50"], 1.25);
+  EXPECT_EQ(document["latency_ms"]["p99"], 3.5);
+  EXPECT_EQ(document["glove"]["device"], "nest_of_birds");
+  EXPECT_EQ(document["glove"]["frames"], 120);
+  EXPECT_EQ(document["glove"]["rejected"], 2);
+}
+
+TEST(Outcome, UnknownIsNull) {
+  Outcome outcome;
+  const json nothing = json::parse(to_json(outcome));
+  EXPECT_TRUE(nothing["object"].is_null());
+  EXPECT_TRUE(nothing["latency_ms"]["p50"].is_null());
+  EXPECT_EQ(nothing["mapping"]["mode"], "hold");
+  EXPECT_EQ(nothing["grasp"]["epsilon"], -1);
+  EXPECT_EQ(nothing["grasp"]["held"], false);
+  outcome.object = {{"Talc", {}, std::nullopt}};
+  EXPECT_TRUE(json::parse(to_json(outcome))["object"]["position_error_m"].is_null());
+}
+
+TEST(Outcome, DocumentIsJsonWhateverTheNames) {
+  Outcome outcome = held();
+  outcome.object->name = "quote\" and \xff\xfe";
+  EXPECT_NO_THROW(json::parse(to_json(outcome)));
+  EXPECT_EQ(to_json(outcome).find('\n'), std::string::npos);
+}
+
+TEST(Outcome, TableSaysWhetherAndWhyNot) {
+  EXPECT_NE(to_table(held()).find("result      held\n"), std::string::npos);
+  EXPECT_NE(to_table(held()).find("4.0 mm"), std::string::npos);
+  Outcome dropped = held();
+  dropped.grasp.held = false;
+  dropped.grasp.reason = "slipped 31 mm";
+  EXPECT_NE(to_table(dropped).find("dropped: slipped 31 mm"), std::string::npos);
+  dropped.judged = false;
+  EXPECT_NE(to_table(dropped).find("no grasp: slipped 31 mm"), std::string::npos);
+}
+
+TEST(Status, Document) {
+  v1::ServiceStatus status;
+  status.name("glove");
+  status.host("here");
+  status.state(v1::STATE_DEGRADED);
+  status.rates().resize(1);
+  status.rates()[0].name("frames");
+  status.rates()[0].per_second(30);
+  status.rates()[0].total(90);
+  status.drops().resize(1);
+  status.drops()[0].reason("stale");
+  status.drops()[0].count(4);
+  status.latency().resize(1);
+  status.latency()[0].stage("filter");
+  status.latency()[0].p50_us(12);
+  const json document = json::parse(status_json({{"glove@here/1", status}}));
+  ASSERT_EQ(document["services"].size(), 1u);
+  const json& service = document["services"][0];
+  EXPECT_EQ(service["name"], "glove");
+  EXPECT_EQ(service["host"], "here");
+  EXPECT_EQ(service["state"], "degraded");
+  EXPECT_EQ(service["rates"]["frames"]["per_second"], 30);
+  EXPECT_EQ(service["dropped"]["stale"], 4);
+  EXPECT_EQ(service["latency_us"]["filter"]["p50"], 12);
+}
+
+}  // namespace
+}  // namespace prehend::cli

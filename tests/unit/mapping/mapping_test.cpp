@@ -1,0 +1,414 @@
+// The mapping as a whole, with networks of random weights: its promises hold whatever they answer.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <chrono>
+#include <limits>
+#include <prehend/model/placement.hpp>
+#include <vector>
+
+#include "fixtures.hpp"
+
+namespace prehend::mapping {
+namespace {
+
+using model::ShapeKind;
+using std::chrono::milliseconds;
+
+const model::Shape talc{ShapeKind::cylinder, {0.024, 0.024, 0.105}};
+const Time start_time = Time(std::chrono::seconds(1'700'000'000));
+
+Time at(int ms) {
+  return start_time + milliseconds(ms);
+}
+
+/// A hand whose grasp frame is at X_WG.
+Posture posture(const Pose& X_WG, int ms, double closure = 0) {
+  const Pose X_WH = X_WG * model::HumanHand(1.0).X_HG().inverse();
+  return {at(ms), at(ms - 3), X_WH, 1.0, tips({closure, closure, closure, closure, closure})};
+}
+
+RobotState state_at(const Pose& X_WB, const Eigen::VectorXd& dof, int ms) {
+  const auto joints = static_cast<Eigen::Index>(barrett().joints().size());
+  return {at(ms), dof, Eigen::VectorXd::Zero(joints), Eigen::VectorXd::Zero(joints), X_WB};
+}
+
+Detection detection(const model::Shape& shape, const Pose& X_WO, int ms, std::uint32_t track = 1) {
+  return {track, "object " + std::to_string(track), shape, X_WO, 0.95, at(ms)};
+}
+
+Pose standing(const model::Shape& shape, double x = 0, double y = 0) {
+  return make_pose(Eigen::Vector3d(x, y, half_extents(shape).z()));
+}
+
+/// Where a hand holds the object from the side.
+Pose side_grasp(const model::Shape& shape, const Pose& X_WO) {
+  Eigen::Matrix3d R;
+  R << 0, 0, 1, 0, 1, 0, -1, 0, 0;  // approach along x, fingers close along y
+  return X_WO *
+         *model::nearest_grasp(shape, make_pose(Eigen::Vector3d::Zero(), R), barrett().reach());
+}
+
+Pose base_at(const Pose& X_WG) {
+  return X_WG * barrett().X_BG().inverse();
+}
+
+class MappingTest : public testing::Test {
+ protected:
+  MappingModel model_ = random_model(21);
+  Mapping mapping_{barrett(), model_, {}};
+  Eigen::VectorXd open_ = barrett().postures().at("open");
+};
+
+TEST_F(MappingTest, StartsWhereTheRobotIs) {
+  const Eigen::Vector4d dof(0.1, 0.9, 0.7, 1.1);
+  const Pose X_WB = make_pose(Eigen::Vector3d(0.3, -0.2, 0.5));
+  ASSERT_TRUE(mapping_.on_state(state_at(X_WB, dof, 0)));
+  const auto first = mapping_.on_posture(posture(Pose::Identity(), 1), at(2));
+  ASSERT_TRUE(first);
+  EXPECT_EQ(first->dof, dof);
+  EXPECT_TRUE(first->X_WB.isApprox(X_WB));
+}
+
+TEST_F(MappingTest, WaitsForTheRobotsStateAndThenStartsWithout) {
+  const Pose X_WG = make_pose(Eigen::Vector3d(0, 0, 0.3));
+  for (int ms = 0; ms < 1000; ms += 33) {
+    const auto answer = mapping_.on_posture(posture(X_WG, ms), at(ms));
+    ASSERT_FALSE(answer);
+    EXPECT_EQ(answer.error().what, "no robot state yet");
+    EXPECT_FALSE(mapping_.tick(at(ms + 20)));
+  }
+  const auto answer = mapping_.on_posture(posture(X_WG, 1000), at(1000));
+  ASSERT_TRUE(answer);
+  EXPECT_EQ(answer->dof, open_);
+  EXPECT_TRUE(answer->X_WB.isApprox(base_at(X_WG)));
+}
+
+TEST_F(MappingTest, FollowsTheHandPalmToPalmAndAnswersDirectly) {
+  const Pose X_WG =
+      make_pose(Eigen::Vector3d(0.2, 0.1, 0.3),
+                Eigen::AngleAxisd(0.7, Eigen::Vector3d(1, 2, 3).normalized()).toRotationMatrix());
+  ASSERT_TRUE(mapping_.on_state(state_at(base_at(X_WG), open_, 0)));
+  Expected<Command> last = fail("");
+  for (int ms = 0; ms < 3000; ms += 33)
+    last = mapping_.on_posture(posture(X_WG, ms, 0.4), at(ms + 2));
+  ASSERT_TRUE(last);
+  EXPECT_TRUE(last->X_WB.isApprox(base_at(X_WG), 1e-9));  // products of a few rotations
+  EXPECT_EQ(last->mode, Mode::direct);
+  EXPECT_EQ(last->weight, 0);
+  EXPECT_TRUE(last->object.empty());
+  const Features f = *features(tips({0.4, 0.4, 0.4, 0.4, 0.4}), 1);
+  EXPECT_TRUE(last->dof.isApprox(barrett().clamp(model_.direct(f).dof), 1e-9));
+}
+
+TEST_F(MappingTest, KnowsTheObjectInReachAndCorrectsThePlacement) {
+  const Pose X_WO = standing(talc);
+  const Pose grasp = side_grasp(talc, X_WO);
+  // 2 cm and 8 degrees off: all of that can be corrected.
+  const Pose X_WG =
+      grasp * make_pose(Eigen::Vector3d(0, 0.02, 0),
+                        Eigen::AngleAxisd(0.14, Eigen::Vector3d::UnitZ()).toRotationMatrix());
+  ASSERT_TRUE(mapping_.on_state(state_at(base_at(X_WG), open_, 0)));
+  double weight = 0;
+  Expected<Command> last = fail("");
+  for (int ms = 0; ms < 3000; ms += 33) {
+    ASSERT_TRUE(mapping_.on_detection(detection(talc, X_WO, ms)));
+    last = mapping_.on_posture(posture(X_WG, ms, 0.4), at(ms + 2));
+    ASSERT_TRUE(last);
+    EXPECT_GE(last->weight, weight);
+    weight = last->weight;
+  }
+  EXPECT_EQ(weight, 1);
+  EXPECT_EQ(last->mode, Mode::intelligent);
+  EXPECT_EQ(last->object, "object 1");
+  const Pose expected =
+      X_WO * *model::nearest_grasp(talc, X_WO.inverse() * X_WG, barrett().reach());
+  EXPECT_LT(((last->X_WB * barrett().X_BG()).translation() - expected.translation()).norm(), 1e-6);
+  EXPECT_LT(angle_between((last->X_WB * barrett().X_BG()).linear(), expected.linear()), 1e-6);
+  const Features f = *features(tips({0.4, 0.4, 0.4, 0.4, 0.4}), 1);
+  EXPECT_TRUE(last->dof.isApprox(barrett().clamp(model_.intelligent(f, talc)->dof), 1e-9));
+}
+
+TEST_F(MappingTest, CorrectsNoMoreThanThreeCentimetresAndTwentyDegrees) {
+  const Pose X_WO = standing(talc);
+  const Pose X_WG = side_grasp(talc, X_WO) *
+                    make_pose(Eigen::Vector3d(0, 0.05, -0.10),
+                              Eigen::AngleAxisd(0.6, Eigen::Vector3d::UnitZ()).toRotationMatrix());
+  ASSERT_TRUE(mapping_.on_state(state_at(base_at(X_WG), open_, 0)));
+  Expected<Command> last = fail("");
+  for (int ms = 0; ms < 2000; ms += 33) {
+    ASSERT_TRUE(mapping_.on_detection(detection(talc, X_WO, ms)));
+    last = mapping_.on_posture(posture(X_WG, ms), at(ms + 2));
+  }
+  const Pose commanded = last->X_WB * barrett().X_BG();
+  EXPECT_EQ(last->weight, 1);
+  EXPECT_NEAR((commanded.translation() - X_WG.translation()).norm(), 0.03, 1e-9);
+  EXPECT_NEAR(angle_between(commanded.linear(), X_WG.linear()), 20 * M_PI / 180, 1e-5);
+}
+
+TEST_F(MappingTest, ReturnsToDirectWhenTheDetectionIsGone) {
+  for (const bool disposed : {false, true}) {
+    Mapping mapping(barrett(), model_, {});
+    const Pose X_WO = standing(talc), X_WG = side_grasp(talc, X_WO);
+    ASSERT_TRUE(mapping.on_state(state_at(base_at(X_WG), open_, 0)));
+    for (int ms = 0; ms < 1000; ms += 20) {
+      ASSERT_TRUE(mapping.on_detection(detection(talc, X_WO, ms)));
+      ASSERT_TRUE(mapping.on_posture(posture(X_WG, ms), at(ms)));
+    }
+    EXPECT_EQ(mapping.phase(), Phase::engaged);
+    if (disposed) mapping.on_detection_gone(1);
+    double weight = 1;
+    for (int ms = 1000; ms < 2000; ms += 20) {
+      const auto answer = mapping.on_posture(posture(X_WG, ms), at(ms));
+      ASSERT_TRUE(answer);
+      EXPECT_LE(answer->weight, weight);
+      weight = answer->weight;
+      if (!disposed && ms <= 1480) {
+        EXPECT_EQ(weight, 1) << "still fresh at " << ms;
+      }
+      if (ms >= (disposed ? 1320 : 1820)) {
+        EXPECT_EQ(weight, 0) << ms;
+      }
+      if (weight == 0) {
+        EXPECT_TRUE(answer->object.empty());
+      }
+    }
+    EXPECT_EQ(mapping.phase(), Phase::direct);
+  }
+}
+
+TEST_F(MappingTest, IsDirectOnlyWhenToldSo) {
+  Mapping mapping(barrett(), model_, {.intelligent = false});
+  const Pose X_WO = standing(talc), X_WG = side_grasp(talc, X_WO);
+  ASSERT_TRUE(mapping.on_state(state_at(base_at(X_WG), open_, 0)));
+  for (int ms = 0; ms < 1000; ms += 20) {
+    ASSERT_TRUE(mapping.on_detection(detection(talc, X_WO, ms)));
+    EXPECT_EQ(mapping.on_posture(posture(X_WG, ms), at(ms))->mode, Mode::direct);
+  }
+}
+
+TEST_F(MappingTest, TheNearestObjectWinsAndStaysUntilAnotherIsClearlyNearer) {
+  const Pose left = standing(talc, 0, 0.05), right = standing(talc, 0, -0.05);
+  const auto run = [&](int from, int to, double y) {
+    Pose X_WG = side_grasp(talc, standing(talc));
+    X_WG.translation().y() = y;
+    std::vector<std::string> objects;
+    for (int ms = from; ms < to; ms += 20) {
+      EXPECT_TRUE(mapping_.on_detection(detection(talc, left, ms, 1)));
+      EXPECT_TRUE(mapping_.on_detection(detection(talc, right, ms, 2)));
+      objects.push_back(mapping_.on_posture(posture(X_WG, ms), at(ms))->object);
+    }
+    return objects;
+  };
+  ASSERT_TRUE(mapping_.on_state(state_at(base_at(side_grasp(talc, left)), open_, 0)));
+  EXPECT_EQ(run(0, 1000, 0.04).back(), "object 1");
+  // 1 cm beyond the middle is 2 cm nearer to the other: not enough.
+  EXPECT_THAT(run(1000, 2000, -0.01), testing::Each("object 1"));
+  const auto change = run(2000, 3000, -0.04);
+  EXPECT_EQ(change.back(), "object 2");
+  EXPECT_THAT(change, testing::Contains(""));  // through weight 0
+}
+
+TEST_F(MappingTest, AGripKeepsObjectAndPlacementWithoutACamera) {
+  const Pose X_WO = standing(talc);
+  Pose X_WG = side_grasp(talc, X_WO);
+  X_WG.translation().y() += 0.015;
+  ASSERT_TRUE(mapping_.on_state(state_at(base_at(X_WG), open_, 0)));
+  Expected<Command> last = fail("");
+  int ms = 0;
+  for (; ms < 1500; ms += 10) {
+    ASSERT_TRUE(mapping_.on_detection(detection(talc, X_WO, ms)));
+    last = mapping_.on_posture(posture(X_WG, ms, 0.5), at(ms));
+  }
+  // Something stops the fingers 0.1 rad before where they are told to be.
+  Eigen::VectorXd stopped = last->dof;
+  stopped.tail<3>().array() -= 0.1;
+  for (; ms < 1800; ms += 10) {
+    ASSERT_TRUE(mapping_.on_state(state_at(last->X_WB, stopped, ms)));
+    last = mapping_.on_posture(posture(X_WG, ms, 0.5), at(ms));
+  }
+  ASSERT_EQ(mapping_.phase(), Phase::gripping);
+  EXPECT_TRUE(((last->dof - stopped).tail<3>().array() >= 0.15 - 1e-9).all());
+  const Pose correction = base_at(X_WG).inverse() * last->X_WB;
+  // The hand lifts; the camera has lost the object for seconds, or sees it elsewhere.
+  for (; ms < 6000; ms += 10) {
+    X_WG.translation().z() += 0.0003;
+    if (ms > 4000) {
+      ASSERT_TRUE(mapping_.on_detection(detection(talc, standing(talc, 0.05, 0.06), ms)));
+    }
+    ASSERT_TRUE(mapping_.on_state(state_at(last->X_WB, stopped, ms)));
+    last = mapping_.on_posture(posture(X_WG, ms, 0.5), at(ms));
+    ASSERT_EQ(last->object, "object 1");
+    ASSERT_EQ(last->weight, 1);
+    ASSERT_TRUE((base_at(X_WG).inverse() * last->X_WB).isApprox(correction, 1e-6));
+  }
+}
+
+TEST_F(MappingTest, HoldsWhenPosturesStop) {
+  const Pose X_WG = make_pose(Eigen::Vector3d(0, 0, 0.3));
+  ASSERT_TRUE(mapping_.on_state(state_at(base_at(X_WG), open_, 0)));
+  Expected<Command> last = fail("");
+  for (int ms = 0; ms <= 300; ms += 30) {
+    last = mapping_.on_posture(posture(X_WG, ms, 0.3), at(ms));
+    EXPECT_FALSE(mapping_.tick(at(ms + 20)));
+  }
+  for (int ms = 360; ms < 2000; ms += 20) {
+    const auto hold = mapping_.tick(at(ms));
+    ASSERT_TRUE(hold) << ms;
+    EXPECT_EQ(hold->mode, Mode::hold);
+    EXPECT_EQ(hold->dof, last->dof);
+    EXPECT_TRUE(hold->X_WB.isApprox(last->X_WB, 0));
+    EXPECT_FALSE(hold->origin);
+    EXPECT_EQ(hold->stamp, at(ms));
+  }
+  EXPECT_EQ(mapping_.on_posture(posture(X_WG, 2000), at(2000))->mode, Mode::direct);
+}
+
+TEST_F(MappingTest, RefusesBadPosturesAndThenHolds) {
+  const Pose X_WG = make_pose(Eigen::Vector3d(0, 0, 0.3));
+  ASSERT_TRUE(mapping_.on_state(state_at(base_at(X_WG), open_, 0)));
+  const auto last = mapping_.on_posture(posture(X_WG, 0), at(0));
+  ASSERT_TRUE(last);
+  const auto reason = [&](const Posture& bad, Time now) {
+    const auto answer = mapping_.on_posture(bad, now);
+    return answer ? "answered" : answer.error().what;
+  };
+  Posture bad = posture(X_WG, 30);
+  bad.fingertips[0].valid = false;
+  EXPECT_EQ(reason(bad, at(30)), "fingertip missing");
+  bad = posture(X_WG, 30);
+  bad.X_WH.translation().z() = std::numeric_limits<double>::infinity();
+  EXPECT_EQ(reason(bad, at(30)), "pose of the hand not finite");
+  EXPECT_EQ(reason(posture(X_WG, 30), at(630)), "posture stale");
+  EXPECT_EQ(reason(posture(X_WG, 1000), at(30)), "posture stale");
+  ASSERT_TRUE(mapping_.tick(at(80)));
+  EXPECT_EQ(mapping_.tick(at(100))->dof, last->dof);
+}
+
+TEST_F(MappingTest, RefusesBadDetectionsAndStates) {
+  EXPECT_FALSE(mapping_.on_detection(detection({ShapeKind::unknown, {1, 1, 1}}, {}, 0)));
+  EXPECT_FALSE(mapping_.on_detection(detection({ShapeKind::box, {1, -1, 1}}, {}, 0)));
+  Detection doubtful = detection(talc, standing(talc), 0);
+  doubtful.probability = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_FALSE(mapping_.on_detection(doubtful));
+  EXPECT_FALSE(mapping_.on_state(state_at(Pose::Identity(), Eigen::VectorXd::Zero(3), 0)));
+  RobotState state = state_at(Pose::Identity(), open_, 0);
+  state.torque[0] = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_FALSE(mapping_.on_state(state));
+}
+
+/// A wild operator, a camera that loses and invents objects, a robot that is stopped here and
+/// there.
+class WildInput : public testing::TestWithParam<int> {};
+
+TEST_P(WildInput, NeverMovesFasterThanTheLimits) {
+  const auto seed = static_cast<std::uint64_t>(GetParam());
+  Random random(seed);
+  const MappingModel model = random_model(seed);
+  const MappingOptions options;
+  Mapping mapping(barrett(), model, options);
+  const model::Shape box{ShapeKind::box, {0.04, 0.12, 0.20}};
+  Eigen::VectorXd robot = barrett().postures().at("open");
+  Pose base = make_pose(Eigen::Vector3d(0.5, 0.5, 0.5));
+  std::optional<Command> before;
+  int ms = 0, intelligent = 0, holds = 0, grips = 0;
+  Time commanded{};
+  for (int step = 0; step < 4000; ++step) {
+    ms += 1 + static_cast<int>(random.index(40));
+    const bool silent = random.uniform() < 0.03;
+    if (silent) ms += 100;
+    if (random.uniform() < 0.4) {
+      const model::Shape& shape = random.uniform() < 0.5 ? talc : box;
+      const Pose X_WO = standing(shape, random.uniform(-0.1, 0.1), random.uniform(-0.1, 0.1));
+      (void)mapping.on_detection(
+          detection(shape, X_WO, ms, static_cast<std::uint32_t>(random.index(3))));
+    }
+    if (random.uniform() < 0.02)
+      mapping.on_detection_gone(static_cast<std::uint32_t>(random.index(3)));
+    if (before) {
+      // The robot follows, but stops at 0.7 rad in phases.
+      robot = before->dof;
+      if ((step / 400) % 2 == 1) robot.tail<3>() = robot.tail<3>().cwiseMin(0.7);
+      base = before->X_WB;
+    }
+    ASSERT_TRUE(mapping.on_state(state_at(base, robot, ms)));
+    // Mostly near the objects, at times anywhere.
+    const double far = random.uniform() < 0.1 ? 2.0 : 0.1;
+    Pose X_WG = side_grasp(talc, standing(talc));
+    X_WG.translation() += Eigen::Vector3d(random.uniform(-far, far), random.uniform(-far, far),
+                                          random.uniform(0, far));
+    Posture p = posture(X_WG, ms - static_cast<int>(random.index(20)), random.uniform());
+    if (silent || random.uniform() < 0.05) p.fingertips[1].valid = false;
+    std::optional<Command> command;
+    if (const auto answer = mapping.on_posture(p, at(ms)))
+      command = *answer;
+    else
+      command = mapping.tick(at(ms));
+    if (!command) continue;
+    holds += command->mode == Mode::hold;
+    intelligent += command->mode == Mode::intelligent;
+    grips += mapping.phase() == Phase::gripping;
+    ASSERT_TRUE(command->dof.allFinite() && is_finite(command->X_WB));
+    ASSERT_TRUE(barrett().clamp(command->dof).isApprox(command->dof, 1e-12));
+    if (before) {
+      const double t = std::min(0.1, std::max(0.0, to_seconds(command->stamp - commanded)));
+      for (Eigen::Index i = 0; i < 4; ++i)
+        ASSERT_LE(std::abs(command->dof[i] - before->dof[i]),
+                  barrett().dofs()[static_cast<std::size_t>(i)].max_velocity * t + 1e-12);
+      ASSERT_LE((command->X_WB.translation() - before->X_WB.translation()).norm(), 1.0 * t + 1e-9);
+      // An angle near 0 is the arc cosine of nearly 1: 1e-7.
+      ASSERT_LE(angle_between(command->X_WB.linear(), before->X_WB.linear()), 3.0 * t + 1e-7);
+      ASSERT_LE(std::abs(command->weight - before->weight), t / 0.3 + 1e-9);
+    }
+    commanded = std::max(commanded, command->stamp);
+    before = command;
+  }
+  EXPECT_GT(holds, 10);
+  EXPECT_GT(intelligent, 100);
+  EXPECT_GT(grips, 10);
+}
+
+INSTANTIATE_TEST_SUITE_P(Mapping, WildInput, testing::Range(1, 7));
+
+TEST_F(MappingTest, GivesTheSameAnswersAgain) {
+  Mapping again(barrett(), model_, {});
+  for (Mapping* mapping : {&mapping_, &again})
+    ASSERT_TRUE(mapping->on_state(state_at(Pose::Identity(), open_, 0)));
+  Random random(9);
+  for (int ms = 0; ms < 5000; ms += 33) {
+    const Pose X_WG = make_pose(random.normal3(0.1));
+    const double closure = random.uniform();
+    for (Mapping* mapping : {&mapping_, &again})
+      (void)mapping->on_detection(detection(talc, standing(talc), ms));
+    const auto a = mapping_.on_posture(posture(X_WG, ms, closure), at(ms));
+    const auto b = again.on_posture(posture(X_WG, ms, closure), at(ms));
+    ASSERT_TRUE(a && b);
+    ASSERT_EQ(a->dof, b->dof);
+    ASSERT_EQ(a->X_WB.matrix(), b->X_WB.matrix());
+  }
+}
+
+// 30 µs is the aim of the design; the median leaves out what else runs on this machine.
+TEST_F(MappingTest, AnswersWithinThirtyMicroseconds) {
+  const Pose X_WO = standing(talc), X_WG = side_grasp(talc, X_WO);
+  ASSERT_TRUE(mapping_.on_state(state_at(base_at(X_WG), open_, 0)));
+  std::vector<double> took;
+  for (int ms = 0; ms < 10000; ms += 5) {
+    for (std::uint32_t track = 0; track < 9; ++track)
+      ASSERT_TRUE(mapping_.on_detection(detection(talc, X_WO, ms, track)));
+    const Posture p = posture(X_WG, ms, 0.3);
+    const auto begin = std::chrono::steady_clock::now();
+    const auto answer = mapping_.on_posture(p, at(ms));
+    took.push_back(
+        std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - begin)
+            .count());
+    ASSERT_TRUE(answer);
+  }
+  std::nth_element(took.begin(), took.begin() + took.size() / 2, took.end());
+  RecordProperty("median_us", std::to_string(took[took.size() / 2]));
+  EXPECT_LT(took[took.size() / 2], 30);
+}
+
+}  // namespace
+}  // namespace prehend::mapping

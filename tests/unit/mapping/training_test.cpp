@@ -1,0 +1,167 @@
+// Training sets of synthetic people and the networks made of them. The model under test is the one
+// that the build has made, judged on people who were in none of its sets.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <prehend/training/trainer.hpp>
+#include <set>
+
+#include "fixtures.hpp"
+
+namespace prehend::mapping {
+namespace {
+
+const Scheme& scheme() {
+  static const Scheme loaded =
+      *Scheme::load(PREHEND_SOURCE "/services/mapping/schemes/barrett.toml", barrett());
+  return loaded;
+}
+
+const model::Catalogue& catalogue() {
+  static const model::Catalogue loaded =
+      *model::Catalogue::load(PREHEND_SOURCE "/common/models/objects/catalogue.toml");
+  return loaded;
+}
+
+/// Closed in Bullet once for all tests.
+const std::vector<RobotGrasp>& grasps() {
+  static const std::vector<RobotGrasp> closed = close_on_catalogue(
+      barrett(), scheme(), catalogue(), [](auto, auto) {}, [](const Error&) {});
+  return closed;
+}
+
+learning::TrainingSet people(std::uint64_t seed, int users, int takes) {
+  SetOptions options;
+  options.seed = seed;
+  options.users = users;
+  options.takes = takes;
+  return demonstrate(barrett(), scheme(), grasps(), options);
+}
+
+TEST(Scheme, IsReadAndChecked) {
+  EXPECT_EQ(scheme().postures.size(), 7u);
+  EXPECT_EQ(scheme().postures.front().name, "open");
+  const auto file = std::filesystem::path(testing::TempDir()) / "prehend_scheme_test.toml";
+  const auto refusal = [&](const std::string& text) {
+    std::ofstream(file) << text;
+    const auto loaded = Scheme::load(file, barrett());
+    return loaded ? "loaded" : loaded.error().message();
+  };
+  EXPECT_THAT(refusal("hand = 'dlr'"), testing::HasSubstr("not for the hand «barrett»"));
+  EXPECT_THAT(
+      refusal("hand = 'barrett'\n[[posture]]\nname='a'\nhuman=[0,0,0,0,2]\nrobot=[0,0,0,0]"),
+      testing::HasSubstr("outside 0 to 1"));
+  EXPECT_THAT(refusal("hand = 'barrett'\n[[posture]]\nname='a'\nhuman=[0,0,0,0,1]\nrobot=[0,0,0]"),
+              testing::HasSubstr("not 4 numbers"));
+  EXPECT_THAT(
+      refusal("hand = 'barrett'\n[[posture]]\nname='a'\nhuman=[0,0,0,0,1]\nrobot=[0,0,0,500]"),
+      testing::HasSubstr("outside the hand's limits"));
+  EXPECT_THAT(refusal("hand = 'barrett'"), testing::HasSubstr("fewer than two postures"));
+  EXPECT_THAT(refusal("hand = "), testing::HasSubstr("prehend_scheme_test.toml"));
+  std::filesystem::remove(file);
+}
+
+TEST(Approaches, CoverAboveAndSides) {
+  const model::Reach reach = barrett().reach();
+  EXPECT_EQ(approaches({model::ShapeKind::cylinder, {0.024, 0.024, 0.105}}, reach).size(), 2u);
+  // Too wide for the hand.
+  EXPECT_TRUE(approaches({model::ShapeKind::cylinder, {0.1, 0.1, 0.1}}, reach).empty());
+  for (const Pose& X_OG : approaches({model::ShapeKind::box, {0.04, 0.123, 0.2}}, reach))
+    EXPECT_NEAR(std::abs(X_OG.linear()(0, 1)), 1, 1e-9) << "closes across the only face that fits";
+}
+
+TEST(RobotGrasps, AreClosedOnTheObjects) {
+  std::map<std::string, int> held;
+  std::set<std::string> types;
+  for (const RobotGrasp& grasp : grasps()) {
+    EXPECT_TRUE(barrett().clamp(grasp.dof).isApprox(grasp.dof, 1e-6));
+    EXPECT_GT(grasp.dof.tail<3>().maxCoeff(), 0.1);
+    held[grasp.object] += grasp.held;
+    types.insert(grasp.type);
+  }
+  EXPECT_EQ(types.size(), 3u);
+  // Every object that fits can be held in at least one way.
+  for (const auto& [object, count] : held) EXPECT_GT(count, 0) << object;
+  EXPECT_GE(held.size(), 7u);
+}
+
+TEST(TrainingSet, HoldsPosturesAndGraspsOfEveryTake) {
+  const learning::TrainingSet set = people(5, 2, 2);
+  ASSERT_TRUE(learning::check(set));
+  std::map<std::string, int> postures;
+  std::set<std::string> users;
+  for (const learning::TrainingPair& pair : set.pairs) {
+    ++postures[pair.posture];
+    users.insert(pair.user);
+    EXPECT_FALSE(pair.shape.empty());
+    EXPECT_TRUE(barrett().clamp(pair.dof).isApprox(pair.dof, 1e-9));
+  }
+  EXPECT_EQ(users.size(), 2u);
+  std::set<std::string> objects;
+  for (const RobotGrasp& grasp : grasps()) objects.insert(grasp.object);
+  for (const SchemePosture& posture : scheme().postures)
+    EXPECT_EQ(postures[posture.name], 2 * 2 * static_cast<int>(objects.size()));
+  const int shown = postures["power wrap"] + postures["circular sphere"] + postures["precision"];
+  EXPECT_GE(shown, 2 * 2 * static_cast<int>(grasps().size()) * 8 / 10);
+  EXPECT_GT(postures["on the way to power wrap"], 0);
+  // The same people again, and others.
+  EXPECT_EQ(learning::serialise(set), learning::serialise(people(5, 2, 2)));
+  EXPECT_NE(learning::serialise(set), learning::serialise(people(6, 2, 2)));
+}
+
+TEST(Training, RepeatsBitForBit) {
+  const Sets sets{people(1, 2, 1), people(2, 1, 1), people(3, 1, 1)};
+  TrainerOptions options;
+  options.network.epochs = 60;
+  const auto a = train_mapping(barrett(), sets, options, [](auto, auto) {});
+  const auto b = train_mapping(barrett(), sets, options, [](auto, auto) {});
+  ASSERT_TRUE(a && b);
+  ASSERT_EQ(a->networks().size(), 3u);
+  for (std::size_t i = 0; i < 3; ++i)
+    for (std::size_t layer = 0; layer < 2; ++layer)
+      EXPECT_EQ(a->networks()[i].network.layers()[layer], b->networks()[i].network.layers()[layer]);
+}
+
+TEST(Training, RefusesSetsThatDoNotFit) {
+  Sets sets{people(1, 1, 1), people(2, 1, 1), people(3, 1, 1)};
+  sets.validation.hand = "dlr";
+  EXPECT_FALSE(train_mapping(barrett(), sets, {}, [](auto, auto) {}));
+  sets.validation.hand = sets.training.hand;
+  for (auto& pair : sets.training.pairs) pair.posture = "open";
+  EXPECT_FALSE(train_mapping(barrett(), sets, {}, [](auto, auto) {}));
+}
+
+// The thesis's claim: knowing shape and size makes the grasp more exact, on takes not seen before.
+TEST(TrainedModel, IntelligentErrorIsBelowDirectOnOtherPeople) {
+  const auto model = MappingModel::load(PREHEND_TRAINED "/barrett.mapping", barrett());
+  ASSERT_TRUE(model) << model.error().message();
+  const learning::TrainingSet unseen = people(100, 12, 2);
+  for (const auto shape : {model::ShapeKind::cylinder, model::ShapeKind::box}) {
+    const Comparison all = compare(*model, unseen, shape, false);
+    const Comparison grasping = compare(*model, unseen, shape, true);
+    EXPECT_GT(grasping.pairs, 30);
+    EXPECT_LT(all.intelligent, all.direct) << to_string(shape);
+    EXPECT_LT(grasping.intelligent, grasping.direct) << to_string(shape);
+    RecordProperty(std::string(to_string(shape)) + "_direct", std::to_string(grasping.direct));
+    RecordProperty(std::string(to_string(shape)) + "_intelligent",
+                   std::to_string(grasping.intelligent));
+  }
+}
+
+// An open human hand is an open robot hand: within 10 degrees a finger, whatever is there to grasp.
+TEST(TrainedModel, OpensWithTheHand) {
+  const auto model = MappingModel::load(PREHEND_TRAINED "/barrett.mapping", barrett());
+  ASSERT_TRUE(model);
+  const Features open = *features(tips({}), 1);
+  EXPECT_LT(model->direct(open).dof.tail<3>().maxCoeff(), 0.175);
+  for (const model::CatalogueObject& object : catalogue().objects())
+    if (const auto answer = model->intelligent(open, object.shape)) {
+      EXPECT_LT(answer->dof.tail<3>().maxCoeff(), 0.175) << object.name;
+    }
+}
+
+}  // namespace
+}  // namespace prehend::mapping

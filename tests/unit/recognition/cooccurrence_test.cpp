@@ -1,0 +1,120 @@
+// The sliding sums against the definition of a colour cooccurrence histogram, written out naively.
+// Counts are whole numbers below 2^24, so they must be equal exactly.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <prehend/base/random.hpp>
+#include <prehend/recognition/cooccurrence.hpp>
+#include <prehend/recognition/object_models.hpp>
+#include <prehend/recognition/palette.hpp>
+
+namespace prehend::recognition {
+namespace {
+
+constexpr int colours = 5;
+
+Plane random_plane(int width, int height, std::uint64_t seed) {
+  Random random(seed);
+  Plane made(width, height);
+  for (auto& value : made.values) value = static_cast<std::uint8_t>(random.index(colours));
+  return made;
+}
+
+/// All pairs whose first pixel lies in the rectangle, on every step-th pixel.
+Eigen::VectorXf naive(const Plane& plane, const std::vector<Offset>& offsets, int left, int top,
+                      int side, int step) {
+  Eigen::VectorXf made = Eigen::VectorXf::Zero(pair_count(colours));
+  for (int y = top; y < top + side; ++y)
+    for (int x = left; x < left + side; ++x) {
+      if (x % step != 0 || y % step != 0) continue;
+      for (const Offset& o : offsets) {
+        const int u = x + o.dx, v = y + o.dy;
+        if (u < 0 || v < 0 || u >= plane.width || v >= plane.height) continue;
+        if (plane.at(x, y) >= colours || plane.at(u, v) >= colours) continue;
+        made[pair_index(plane.at(x, y), plane.at(u, v))] += 1;
+      }
+    }
+  return made;
+}
+
+TEST(Cooccurrence, SlidingWindowsEqualNaiveOnes) {
+  Plane plane = random_plane(83, 61, 3);
+  for (int i = 0; i < 200; ++i) plane.values[static_cast<std::size_t>(i * 17)] = 255;  // left out
+  const auto offsets = offsets_at({1, 3, 6});
+  for (const int step : {1, 2}) {
+    const CellGrid grid(plane, colours, offsets, 8, step);
+    for (const auto& [size, stride] : {std::pair(1, 1), std::pair(2, 1), std::pair(3, 2)}) {
+      const Eigen::MatrixXf windows = grid.windows(size, stride);
+      const int across = (grid.columns() - size) / stride + 1;
+      const int down = (grid.rows() - size) / stride + 1;
+      ASSERT_EQ(windows.cols(), across * down);
+      for (int j = 0; j < down; ++j)
+        for (int i = 0; i < across; ++i)
+          ASSERT_EQ(windows.col(j * across + i),
+                    naive(plane, offsets, 8 * i * stride, 8 * j * stride, 8 * size, step))
+              << size << " " << stride << " at " << i << " " << j;
+    }
+  }
+}
+
+TEST(Cooccurrence, MaskedCountsOnlyPairsInsideTheMask) {
+  const Plane plane = random_plane(20, 20, 4);
+  Plane mask(20, 20);
+  for (int y = 5; y < 12; ++y)
+    for (int x = 4; x < 15; ++x) mask.at(x, y) = 1;
+  const auto offsets = offsets_at({1, 2});
+  Eigen::VectorXf expected = Eigen::VectorXf::Zero(pair_count(colours));
+  for (int y = 0; y < 20; ++y)
+    for (int x = 0; x < 20; ++x)
+      for (const Offset& o : offsets) {
+        const int u = x + o.dx, v = y + o.dy;
+        if (u < 0 || v < 0 || u >= 20 || v >= 20 || !mask.at(x, y) || !mask.at(u, v)) continue;
+        expected[pair_index(plane.at(x, y), plane.at(u, v))] += 1;
+      }
+  EXPECT_EQ(cooccurrence(plane, colours, offsets, mask), expected);
+}
+
+TEST(Cooccurrence, PairsAreUnorderedAndNumberedWithoutGaps) {
+  std::vector<int> seen(static_cast<std::size_t>(pair_count(9)), 0);
+  for (int a = 0; a < 9; ++a)
+    for (int b = 0; b < 9; ++b) {
+      EXPECT_EQ(pair_index(a, b), pair_index(b, a));
+      ++seen[static_cast<std::size_t>(pair_index(a, b))];
+    }
+  for (const int count : seen) EXPECT_GE(count, 1);
+}
+
+TEST(Palette, TellsItsOwnCentresApart) {
+  Random random(5);
+  std::vector<Eigen::Vector3f> features;
+  for (int i = 0; i < 2000; ++i)
+    features.push_back(colour_feature({}, static_cast<std::uint8_t>(random.index(256)),
+                                      static_cast<std::uint8_t>(random.index(256)),
+                                      static_cast<std::uint8_t>(random.index(256))));
+  const Palette palette = Palette::learn({}, features, 32, 1);
+  ASSERT_EQ(palette.size(), 32);
+  for (int k = 0; k < 32; ++k)
+    EXPECT_EQ(palette.nearest(palette.centres()[static_cast<std::size_t>(k)]), k);
+}
+
+TEST(Palette, OneColourGivesOneCentre) {
+  const Palette palette = Palette::learn({}, {50, Eigen::Vector3f(0.3f, 0.3f, 0.1f)}, 16, 1);
+  EXPECT_EQ(palette.size(), 1);
+}
+
+TEST(Descriptor, IsOfNormOneAndZeroForNothing) {
+  const Eigen::VectorXf weights = Eigen::VectorXf::Ones(6);
+  Eigen::VectorXf counts(6);
+  counts << 4, 0, 1, 9, 0, 2;
+  EXPECT_NEAR(descriptor(counts, weights).norm(), 1, 1e-6);
+  // Bhattacharyya: with equal weights the dot product is the sum of roots of products of shares.
+  Eigen::VectorXf other(6);
+  other << 0, 3, 1, 4, 0, 0;
+  double expected = 0;
+  for (int i = 0; i < 6; ++i) expected += std::sqrt(counts[i] / 16. * other[i] / 8.);
+  EXPECT_NEAR(descriptor(counts, weights).dot(descriptor(other, weights)), expected, 1e-6);
+  EXPECT_EQ(descriptor(Eigen::VectorXf::Zero(6), weights).norm(), 0);
+}
+
+}  // namespace
+}  // namespace prehend::recognition

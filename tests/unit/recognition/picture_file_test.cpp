@@ -1,0 +1,141 @@
+// Pictures of every kind become 8-bit RGB or a clear error.
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <prehend/base/random.hpp>
+#include <prehend/recognition/picture_file.hpp>
+#include <prehend/recognition_cameras/camera.hpp>
+
+#include "fixture.hpp"
+
+namespace prehend::recognition {
+namespace {
+
+class PictureFile : public ::testing::Test {
+ protected:
+  PictureFile() { std::filesystem::create_directories(folder_); }
+  ~PictureFile() override { std::filesystem::remove_all(folder_); }
+  std::filesystem::path folder_ =
+      std::filesystem::temp_directory_path() / ("pictures" + std::to_string(getpid()));
+};
+
+Picture gradient(int width, int height) {
+  Picture made(width, height);
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x) {
+      made.at(x, y)[0] = static_cast<std::uint8_t>(255 * x / width);
+      made.at(x, y)[1] = static_cast<std::uint8_t>(255 * y / height);
+      made.at(x, y)[2] = 40;
+    }
+  return made;
+}
+
+TEST_F(PictureFile, PngComesBackExactlyAndJpegNearly) {
+  const Picture picture = gradient(60, 40);
+  ASSERT_TRUE(save_png(folder_ / "a.png", picture));
+  EXPECT_EQ(load_picture(folder_ / "a.png")->rgb, picture.rgb);
+  const auto bytes = encode_jpeg(picture, 95);
+  const auto back = decode_picture(bytes, "memory");
+  ASSERT_TRUE(back);
+  double difference = 0;
+  for (std::size_t i = 0; i < back->rgb.size(); ++i)
+    difference += std::abs(int(back->rgb[i]) - int(picture.rgb[i]));
+  EXPECT_LT(difference / static_cast<double>(back->rgb.size()), 6);  // chroma is subsampled
+}
+
+TEST_F(PictureFile, GreyAndSixteenBitAreRead) {
+  // Binary PGM and PPM, which need no encoder: grey 8 bit, colour 16 bit.
+  std::ofstream(folder_ / "g.bmp", std::ios::binary) << "P5 16 16 255\n"
+                                                     << std::string(256, '\x50');
+  const auto grey = load_picture(folder_ / "g.bmp");  // the contents count, not the name
+  ASSERT_TRUE(grey);
+  EXPECT_EQ(grey->at(3, 3)[0], 0x50);
+  EXPECT_EQ(grey->at(3, 3)[2], 0x50);
+  std::ofstream(folder_ / "s.ppm", std::ios::binary) << "P6 16 16 65535\n"
+                                                     << std::string(16 * 16 * 6, '\x40');
+  const auto deep = load_picture(folder_ / "s.ppm");
+  ASSERT_TRUE(deep);
+  EXPECT_NEAR(deep->at(0, 0)[1], 0x40, 1);
+}
+
+TEST_F(PictureFile, TruncatedAndBrokenFilesNeverCrash) {
+  const auto bytes = encode_jpeg(gradient(80, 60));
+  Random random(1);
+  for (int i = 0; i < 300; ++i) {
+    auto bad = bytes;
+    if (i % 2 == 0) bad.resize(random.index(bad.size()));
+    for (int k = 0; k < 5 && !bad.empty(); ++k)
+      bad[random.index(bad.size())] = static_cast<std::uint8_t>(random.bits());
+    const auto picture = decode_picture(bad, "memory");
+    if (picture) {
+      EXPECT_EQ(picture->rgb.size(), 3 * picture->pixels());
+    }
+  }
+  EXPECT_FALSE(decode_picture({}, "memory"));
+  EXPECT_FALSE(load_picture(folder_ / "absent.png"));
+  EXPECT_FALSE(load_picture(folder_));
+}
+
+TEST_F(PictureFile, HugeOnesAreRefusedBeforeTheyAreUnpacked) {
+  std::vector<std::uint8_t> png{0x89, 'P', 'N',  'G',  13,  10,  26, 10, 0,    0,
+                                0,    13,  'I',  'H',  'D', 'R', 0,  1,  0x86, 0xa0,
+                                0,    1,   0x86, 0xa0, 8,   2,   0,  0,  0};  // 100000²
+  const auto refused = decode_picture(png, "memory");
+  ASSERT_FALSE(refused);
+  EXPECT_NE(refused.error().what.find("40 million"), std::string::npos);
+  ASSERT_TRUE(save_png(folder_ / "tiny.png", gradient(4, 4)));
+  EXPECT_FALSE(load_picture(folder_ / "tiny.png"));
+}
+
+TEST_F(PictureFile, ShrinkKeepsTheRatioAndNeverGrows) {
+  const Picture small = shrink(gradient(400, 300), 200);
+  EXPECT_EQ(small.width, 200);
+  EXPECT_EQ(small.height, 150);
+  EXPECT_EQ(shrink(gradient(30, 20), 200).width, 30);
+}
+
+TEST_F(PictureFile, FolderCameraGoesOnAfterAnUnreadablePicture) {
+  ASSERT_TRUE(save_png(folder_ / "a.png", gradient(32, 32)));
+  std::ofstream(folder_ / "b.jpg") << "no picture";
+  CameraOptions options;
+  options.source = "folder";
+  options.path = folder_.string();
+  auto camera = open_camera(options, catalogue(), nullptr);
+  ASSERT_TRUE(camera);
+  EXPECT_TRUE((*camera)->next());
+  EXPECT_FALSE((*camera)->next());
+  EXPECT_TRUE((*camera)->next());  // the first again
+}
+
+TEST_F(PictureFile, MissingCamerasAreErrors) {
+  CameraOptions options;
+  for (const auto& [source, path] :
+       {std::pair("device", "/dev/video_absent"), std::pair("video", "/absent.mp4"),
+        std::pair("folder", "/absent"), std::pair("synthetic", ""), std::pair("nonsense", "")}) {
+    options.source = source;
+    options.path = path;
+    EXPECT_FALSE(open_camera(options, catalogue(), nullptr)) << source;
+  }
+}
+
+TEST_F(PictureFile, VideoOfAHandPlaysToItsEnd) {
+  const char* shared = std::getenv("PREHEND_SHARED");
+  const auto file =
+      std::filesystem::path(shared ? std::string(shared) + "/data" : PREHEND_SHARED_DATA) /
+      "landmark_hand_recording" / "human_hand_video.mp4";
+  if (!std::filesystem::exists(file)) GTEST_SKIP() << "no " << file;
+  CameraOptions options;
+  options.source = "video";
+  options.path = file.string();
+  auto camera = open_camera(options, catalogue(), nullptr);
+  ASSERT_TRUE(camera) << camera.error().message();
+  int pictures = 0;
+  while (!(*camera)->finished() && pictures < 100000) pictures += (*camera)->next().has_value();
+  EXPECT_GT(pictures, 100);
+  EXPECT_LT(pictures, 100000);
+}
+
+}  // namespace
+}  // namespace prehend::recognition
