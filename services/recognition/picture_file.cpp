@@ -129,6 +129,18 @@ Expected<Plane> load_mask(const std::filesystem::path& file) {
   return mask;
 }
 
+void draw_frame(Picture& picture, double x, double y, double width, double height,
+                const std::string& text) {
+  cv::Mat image(picture.height, picture.width, CV_8UC3, picture.rgb.data());
+  const cv::Scalar colour(255, 220, 0);
+  const cv::Point corner(static_cast<int>(x), static_cast<int>(y));
+  cv::rectangle(image,
+                cv::Rect(corner, cv::Size(static_cast<int>(width), static_cast<int>(height))),
+                colour, 2);
+  cv::putText(image, text, corner + cv::Point(0, -6), cv::FONT_HERSHEY_SIMPLEX, 0.5, colour, 1,
+              cv::LINE_AA);
+}
+
 Picture shrink(const Picture& picture, int longest) {
   const int side = std::max(picture.width, picture.height);
   if (side <= longest) return picture;

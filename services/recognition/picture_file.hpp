@@ -25,6 +25,10 @@ Expected<void> save_png(const std::filesystem::path& file, const Plane& mask);
 /// A mask that save_png wrote: 1 where the file is brighter than half.
 Expected<Plane> load_mask(const std::filesystem::path& file);
 
+/// A frame (px) and a line of text above it, for people to look at.
+void draw_frame(Picture& picture, double x, double y, double width, double height,
+                const std::string& text);
+
 /// Made smaller, never larger, so that its longer side has at most that many px.
 Picture shrink(const Picture& picture, int longest);
 Plane shrink_mask(const Plane& mask, int width, int height);

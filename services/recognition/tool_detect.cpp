@@ -12,6 +12,7 @@
 #include "detector.hpp"
 #include "model_file.hpp"
 #include "picture_file.hpp"
+#include "renderer.hpp"
 #include "service.hpp"
 #include "tool.hpp"
 
@@ -22,7 +23,7 @@ using Json = nlohmann::ordered_json;
 
 struct DetectArguments {
   std::vector<std::string> images, overrides;
-  std::string model, config;
+  std::string model, config, scene, drawing;
   double accept = 0.5;
   bool json = false;
 };
@@ -74,7 +75,19 @@ Json to_json(const Sighting& sighting) {
   return made;
 }
 
+/// What the synthetic camera sees of a scene.
+Expected<Picture> see(const std::string& file, const model::Catalogue& catalogue,
+                      const CameraModel& camera) {
+  const auto scene = model::load_scene(file, catalogue);
+  if (!scene) return tl::unexpected(scene.error());
+  return Renderer(catalogue).render(*scene, camera);
+}
+
 int detect(const DetectArguments& arguments) {
+  if (arguments.images.empty() && arguments.scene.empty()) {
+    log::error("nothing to look at (name pictures, or --scene FILE)");
+    return 2;
+  }
   const auto file = arguments.config.empty() ? share_directory() / "lab.toml"
                                              : std::filesystem::path(arguments.config);
   const auto config = service::Config::load(file, arguments.overrides);
@@ -90,8 +103,10 @@ int detect(const DetectArguments& arguments) {
   options.accept = arguments.accept;
   const Detector detector(std::move(*models), *catalogue, options);
   bool unreadable = false, any = false;
-  for (const std::string& image : arguments.images) {
-    const auto picture = load_picture(image);
+  std::vector<std::string> images = arguments.images;
+  if (!arguments.scene.empty()) images.push_back(arguments.scene);
+  for (const std::string& image : images) {
+    auto picture = image == arguments.scene ? see(image, *catalogue, *camera) : load_picture(image);
     if (!picture) {
       log::error("{}", picture.error().message());
       unreadable = true;
@@ -99,6 +114,14 @@ int detect(const DetectArguments& arguments) {
     }
     const std::vector<Sighting> found = look(detector, *picture, *camera);
     any = any || !found.empty();
+    if (!arguments.drawing.empty()) {
+      for (const Sighting& sighting : found)
+        draw_frame(*picture, sighting.box.x, sighting.box.y, sighting.box.width,
+                   sighting.box.height,
+                   fmt::format("{} {:.0f} %", sighting.name, 100 * sighting.probability));
+      if (const auto saved = save_jpeg(arguments.drawing, *picture); !saved)
+        return broken(saved.error());
+    }
     if (arguments.json) {
       Json objects = Json::array();
       for (const Sighting& sighting : found) objects.push_back(to_json(sighting));
@@ -181,7 +204,10 @@ int evaluate(const EvaluateArguments& arguments) {
 void add_detect(CLI::App& app, int& exit_code) {
   auto arguments = std::make_shared<DetectArguments>();
   CLI::App* command = app.add_subcommand("detect", "Names the objects in pictures.");
-  command->add_option("images", arguments->images, "picture files")->required();
+  auto* images = command->add_option("images", arguments->images, "picture files");
+  command->add_option("--scene", arguments->scene, "a scene, seen by the synthetic camera")
+      ->excludes(images);
+  command->add_option("--draw", arguments->drawing, "jpeg with what was found drawn in");
   command->add_option("--model", arguments->model, "trained models; else those of lab.toml");
   command->add_option("--config", arguments->config, "lab.toml with the camera's calibration");
   command->add_option("--set", arguments->overrides, "table.key=value");
