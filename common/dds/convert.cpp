@@ -30,6 +30,33 @@ Expected<Pose> from_message(const v1::Pose& X) {
   return checked_pose(from_message(X.position()), Eigen::Quaterniond(q.w(), q.x(), q.y(), q.z()));
 }
 
+v1::ShapeKind to_message(model::ShapeKind kind) {
+  switch (kind) {
+    case model::ShapeKind::cylinder:
+      return v1::SHAPE_CYLINDER;
+    case model::ShapeKind::box:
+      return v1::SHAPE_BOX;
+    case model::ShapeKind::sphere:
+      return v1::SHAPE_SPHERE;
+    case model::ShapeKind::unknown:
+      break;
+  }
+  return v1::SHAPE_UNKNOWN;
+}
+
+model::ShapeKind from_message(v1::ShapeKind kind) {
+  switch (kind) {
+    case v1::SHAPE_CYLINDER:
+      return model::ShapeKind::cylinder;
+    case v1::SHAPE_BOX:
+      return model::ShapeKind::box;
+    case v1::SHAPE_SPHERE:
+      return model::ShapeKind::sphere;
+    default:  // a newer sender may know more
+      return model::ShapeKind::unknown;
+  }
+}
+
 std::vector<double> to_message(const Eigen::VectorXd& v) {
   return std::vector<double>(v.data(), v.data() + v.size());
 }

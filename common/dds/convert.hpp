@@ -3,6 +3,7 @@
 #include <prehend/idl/Geometry.h>
 
 #include <prehend/base/pose.hpp>
+#include <prehend/model/shape.hpp>
 #include <string>
 #include <vector>
 
@@ -14,6 +15,10 @@ v1::Pose to_message(const Pose& X);
 Eigen::Vector3d from_message(const v1::Vector3& v);
 /// Refuses poses that are not finite or whose quaternion has no norm.
 Expected<Pose> from_message(const v1::Pose& X);
+
+/// Kinds that are not known here become `unknown`.
+v1::ShapeKind to_message(model::ShapeKind kind);
+model::ShapeKind from_message(v1::ShapeKind kind);
 
 std::vector<double> to_message(const Eigen::VectorXd& v);
 Eigen::VectorXd from_message(const std::vector<double>& v);

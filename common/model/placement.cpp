@@ -6,19 +6,19 @@
 #include <limits>
 
 namespace prehend::model {
-namespace {
 
-using Eigen::Matrix3d;
-using Eigen::Vector3d;
-
-/// Frame from the approach (z) and the closing direction (y).
-Matrix3d frame(const Vector3d& approach, const Vector3d& closing) {
-  Matrix3d R;
+Eigen::Matrix3d grasp_axes(const Eigen::Vector3d& approach, const Eigen::Vector3d& closing) {
+  Eigen::Matrix3d R;
   R.col(2) = approach;
   R.col(1) = closing;
   R.col(0) = closing.cross(approach);
   return R;
 }
+
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
 
 /// Keeps the better of the candidates: turned least, then moved least.
 struct Nearest {
@@ -55,7 +55,7 @@ void offer_cylinder(const Shape& shape, const Reach& reach, Nearest& nearest) {
   const Vector3d down = -Vector3d::UnitZ();
 
   const double above = height_from_above(height, reach) - 0.5 * height;
-  nearest.offer(frame(down, horizontal(R.col(1), Vector3d::UnitY())), Vector3d(0, 0, above));
+  nearest.offer(grasp_axes(down, horizontal(R.col(1), Vector3d::UnitY())), Vector3d(0, 0, above));
   // From the side the palm's width must find room above the table and some of the object to hold.
   const double lowest = reach.half_width - 0.5 * height;
   const double highest = 0.5 * height - 0.03;
@@ -64,7 +64,7 @@ void offer_cylinder(const Shape& shape, const Reach& reach, Nearest& nearest) {
   const Vector3d sideways = Vector3d::UnitZ().cross(toward_axis);
   const double level = std::clamp(p.z(), lowest, highest);
   for (const double sign : {1.0, -1.0})
-    nearest.offer(frame(toward_axis, sign * sideways), Vector3d(0, 0, level));
+    nearest.offer(grasp_axes(toward_axis, sign * sideways), Vector3d(0, 0, level));
 }
 
 void offer_box(const Shape& shape, const Reach& reach, Nearest& nearest) {
@@ -80,7 +80,7 @@ void offer_box(const Shape& shape, const Reach& reach, Nearest& nearest) {
       const double slack = std::max(0.0, half[along] - reach.half_width);
       place[along] = std::clamp(p[along], -slack, slack);
       place.z() = height_from_above(shape.size.z(), reach) - half.z();
-      nearest.offer(frame(-Vector3d::UnitZ(), closing_direction), place);
+      nearest.offer(grasp_axes(-Vector3d::UnitZ(), closing_direction), place);
       // From either end, with the palm upright.
       const double lowest = reach.half_width - half.z();
       const double highest = half.z() - 0.03;
@@ -89,7 +89,7 @@ void offer_box(const Shape& shape, const Reach& reach, Nearest& nearest) {
         Vector3d end = Vector3d::Zero();
         end[along] = -side * std::max(0.0, half[along] - reach.engage);
         end.z() = std::clamp(p.z(), lowest, highest);
-        nearest.offer(frame(side * Vector3d::Unit(along), closing_direction), end);
+        nearest.offer(grasp_axes(side * Vector3d::Unit(along), closing_direction), end);
       }
     }
   }

@@ -19,6 +19,10 @@ struct Reach {
   double half_width = 0.055;  // the same from the side: half the palm's width along x and some air
 };
 
+/// Axes of a grasp frame from its approach (z) and closing direction (y), both unit and at right
+/// angles.
+Eigen::Matrix3d grasp_axes(const Eigen::Vector3d& approach, const Eigen::Vector3d& closing);
+
 /// The grasp frame nearest to X_OG among those from which a standing object can be grasped:
 /// cylinders and boxes from above, cylinders taller than the palm from any side, boxes across any
 /// pair of faces that fits into the opening. Freedoms that do not matter (turn about a cylinder,

@@ -54,7 +54,8 @@ Expected<void> Conductor::step(Time now, std::chrono::milliseconds patience) {
       if (sample.info.gone || sample.data.cycle() != cycle_) continue;
       const std::string service = sample.data.service().c_str();
       auto& counts = by_service_[service];
-      for (const auto& entry : sample.data.published()) counts[entry.topic().c_str()] = entry.count();
+      for (const auto& entry : sample.data.published())
+        counts[entry.topic().c_str()] = entry.count();
       missing.erase(service);
     }
   }

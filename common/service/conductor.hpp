@@ -3,18 +3,18 @@
 #include <chrono>
 #include <cstdint>
 #include <map>
+#include <prehend/base/time.hpp>
+#include <prehend/dds/participant.hpp>
 #include <set>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include <prehend/base/time.hpp>
-#include <prehend/dds/participant.hpp>
-
 namespace prehend::service {
 
-/// Leads services through time in lockstep: publishes lab/clock, waits for lab/progress. Whoever feeds
-/// the services (a replayer, a test) publishes with a Participant in lockstep and tells the conductor.
+/// Leads services through time in lockstep: publishes lab/clock, waits for lab/progress. Whoever
+/// feeds the services (a replayer, a test) publishes with a Participant in lockstep and tells the
+/// conductor.
 ///
 /// Every cycle names how many samples of each topic have been published so far, so that what a
 /// service takes in a cycle does not depend on when messages arrive. What services publish in one

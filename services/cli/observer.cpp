@@ -26,19 +26,6 @@ double horizontal_distance(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
   return (a - b).head<2>().norm();
 }
 
-model::ShapeKind from_message(v1::ShapeKind kind) {
-  switch (kind) {
-    case v1::SHAPE_CYLINDER:
-      return model::ShapeKind::cylinder;
-    case v1::SHAPE_BOX:
-      return model::ShapeKind::box;
-    case v1::SHAPE_SPHERE:
-      return model::ShapeKind::sphere;
-    default:
-      return model::ShapeKind::unknown;
-  }
-}
-
 }  // namespace
 
 Observer::Observer(std::optional<model::Scene> truth) : truth_(std::move(truth)) {}
@@ -142,7 +129,7 @@ Outcome Observer::outcome() const {
   if (const v1::ObjectDetection* seen = recognised()) {
     Outcome::Object object;
     object.name = seen->name().to_string();
-    object.shape = {from_message(seen->shape()), dds::from_message(seen->size())};
+    object.shape = {dds::from_message(seen->shape()), dds::from_message(seen->size())};
     const Eigen::Vector3d p_WO = dds::from_message(seen->X_WO().position());
     // Against the object that it was taken for; against the nearest where that stands nowhere.
     std::optional<double> nearest, same;

@@ -16,10 +16,7 @@ std::optional<Pose> grasp_of(const model::Scene& scene, const model::CatalogueOb
                              const Pose& X_WO, const model::Reach& reach) {
   const double yaw = scene.demonstrator.grasp_yaw;
   const Eigen::Vector3d approach(-std::cos(yaw), -std::sin(yaw), 0);
-  Eigen::Matrix3d R;
-  R.col(2) = approach;
-  R.col(1) = Eigen::Vector3d::UnitZ().cross(approach);
-  R.col(0) = R.col(1).cross(approach);
+  const Eigen::Matrix3d R = model::grasp_axes(approach, approach.cross(Eigen::Vector3d::UnitZ()));
   const auto X_OG =
       model::nearest_grasp(object.shape, X_WO.inverse() * make_pose(X_WO.translation(), R), reach);
   if (!X_OG) return std::nullopt;

@@ -48,14 +48,6 @@ Pose moved(const Pose& X_WH, const Vector3d& p_W) {
   return X;
 }
 
-Matrix3d grasp_axes(const Vector3d& approach, const Vector3d& closing) {
-  Matrix3d R;
-  R.col(2) = approach;
-  R.col(1) = closing;
-  R.col(0) = closing.cross(approach);
-  return R;
-}
-
 /// How a person would come at the object before taking its size into account, X_OG.
 Pose intended_grasp(const model::Shape& shape, const Pose& X_WO, double grasp_yaw) {
   Matrix3d R_WG;
@@ -64,10 +56,10 @@ Pose intended_grasp(const model::Shape& shape, const Pose& X_WO, double grasp_ya
     const Vector3d depth = X_WO.linear().col(0);
     const Vector3d closing =
         (Vector3d(depth.x(), depth.y(), 0).normalized()) * (depth.y() < 0 ? -1.0 : 1.0);
-    R_WG = grasp_axes(-Vector3d::UnitZ(), closing);
+    R_WG = model::grasp_axes(-Vector3d::UnitZ(), closing);
   } else {
     const Vector3d toward(-std::cos(grasp_yaw), -std::sin(grasp_yaw), 0);
-    R_WG = grasp_axes(toward, toward.cross(Vector3d::UnitZ()));
+    R_WG = model::grasp_axes(toward, toward.cross(Vector3d::UnitZ()));
   }
   return X_WO.inverse() * make_pose(X_WO.translation(), R_WG);
 }
@@ -108,7 +100,8 @@ Expected<SyntheticHand> SyntheticHand::create(const model::Scene& scene,
   SyntheticHand made(scene, options);
   const model::Demonstrator& person = made.person_;
   const Pose X_HG = made.hand_.X_HG();
-  Pose X_WG = make_pose(Vector3d(0, 0, 0.10), grasp_axes(-Vector3d::UnitY(), Vector3d::UnitX()));
+  Pose X_WG =
+      make_pose(Vector3d(0, 0, 0.10), model::grasp_axes(-Vector3d::UnitY(), Vector3d::UnitX()));
   const Pose error = make_pose(
       person.approach_offset,
       AngleAxisd(person.approach_turn.norm(), person.approach_turn.norm() > 0

@@ -39,20 +39,6 @@ v1::GraspType to_message(GraspType type) {
   return v1::GRASP_NONE;
 }
 
-model::ShapeKind from_message(v1::ShapeKind kind) {
-  switch (kind) {
-    case v1::SHAPE_CYLINDER:
-      return model::ShapeKind::cylinder;
-    case v1::SHAPE_BOX:
-      return model::ShapeKind::box;
-    case v1::SHAPE_SPHERE:
-      return model::ShapeKind::sphere;
-    case v1::SHAPE_UNKNOWN:
-      break;
-  }
-  return model::ShapeKind::unknown;
-}
-
 Expected<Posture> from_message(const v1::HandPosture& message) {
   auto X_WH = dds::from_message(message.X_WH());
   if (!X_WH) return fail("pose of the hand not usable");
@@ -70,7 +56,7 @@ Expected<Detection> from_message(const v1::ObjectDetection& message) {
   if (!X_WO) return fail("pose of a detection not usable");
   return Detection{message.track(),
                    message.name().to_string(),
-                   {from_message(message.shape()), dds::from_message(message.size())},
+                   {dds::from_message(message.shape()), dds::from_message(message.size())},
                    *X_WO,
                    message.probability(),
                    from_ns(message.stamp_ns())};

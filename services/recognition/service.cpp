@@ -22,20 +22,6 @@ using Clock = std::chrono::system_clock;
 /// Pictures are worked on at this width at most; more costs time and finds nothing more.
 constexpr int longest_side = 640;
 
-v1::ShapeKind to_message(model::ShapeKind kind) {
-  switch (kind) {
-    case model::ShapeKind::cylinder:
-      return v1::SHAPE_CYLINDER;
-    case model::ShapeKind::box:
-      return v1::SHAPE_BOX;
-    case model::ShapeKind::sphere:
-      return v1::SHAPE_SPHERE;
-    case model::ShapeKind::unknown:
-      break;
-  }
-  return v1::SHAPE_UNKNOWN;
-}
-
 /// Reads a camera in a thread of its own and hands over the newest picture only.
 class CameraThread {
  public:
@@ -181,7 +167,7 @@ class Service {
     message.sequence_number(number);
     message.stamp_ns(to_ns(stamp));
     message.name(track.seen.name);
-    message.shape(to_message(track.seen.shape.kind));
+    message.shape(dds::to_message(track.seen.shape.kind));
     message.size(dds::to_message(track.seen.shape.size));
     message.X_WO(dds::to_message(standing_pose(track.seen.shape, *track.seen.at)));
     // x, y, z, yaw: the height is known from the table, give or take a millimetre.

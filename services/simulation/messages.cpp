@@ -4,36 +4,6 @@
 #include <prehend/dds/convert.hpp>
 
 namespace prehend::simulation {
-namespace {
-
-model::ShapeKind kind_of(v1::ShapeKind kind) {
-  switch (kind) {
-    case v1::SHAPE_CYLINDER:
-      return model::ShapeKind::cylinder;
-    case v1::SHAPE_BOX:
-      return model::ShapeKind::box;
-    case v1::SHAPE_SPHERE:
-      return model::ShapeKind::sphere;
-    default:
-      return model::ShapeKind::unknown;
-  }
-}
-
-v1::ShapeKind kind_of(model::ShapeKind kind) {
-  switch (kind) {
-    case model::ShapeKind::cylinder:
-      return v1::SHAPE_CYLINDER;
-    case model::ShapeKind::box:
-      return v1::SHAPE_BOX;
-    case model::ShapeKind::sphere:
-      return v1::SHAPE_SPHERE;
-    default:
-      return v1::SHAPE_UNKNOWN;
-  }
-}
-
-}  // namespace
-
 Expected<Command> from_message(const v1::HandCommand& message) {
   const auto X_WB = dds::from_message(message.X_WB());
   if (!X_WB) return fail("command not finite");
@@ -58,7 +28,7 @@ Expected<Sighting> from_message(const v1::ObjectDetection& message,
   sighting.X_WO = *X_WO;
   grasping::Body& body = sighting.body;
   body.name = message.name().to_string();
-  body.shape = {kind_of(message.shape()), dds::from_message(message.size())};
+  body.shape = {dds::from_message(message.shape()), dds::from_message(message.size())};
   if (const model::CatalogueObject* known = catalogue.find(body.name)) {
     body.mass = known->mass;
     body.material = known->material;
@@ -91,7 +61,7 @@ v1::ObjectState to_message(const grasping::Body& body, const grasping::BodyMotio
 v1::BodyDescription to_message(const grasping::Body& body) {
   v1::BodyDescription message;
   message.name(body.name);
-  message.shape(kind_of(body.shape.kind));
+  message.shape(dds::to_message(body.shape.kind));
   message.size(dds::to_message(body.shape.size));
   message.mass(body.mass);
   message.material(body.material);

@@ -4,25 +4,23 @@
 // side in slices, so that a machine that changes its speed changes both.
 //
 //   benchmark_latency [--json] [--seconds S]      at 30 and at 500 Hz
+#include <fmt/format.h>
 #include <unistd.h>
 
 #include <atomic>
 #include <cstdlib>
 #include <cstring>
+#include <fastdds/dds/subscriber/DataReaderListener.hpp>
 #include <filesystem>
 #include <iostream>
 #include <mutex>
 #include <nlohmann/json.hpp>
-#include <random>
-#include <thread>
-
-#include <fmt/format.h>
-
-#include <fastdds/dds/subscriber/DataReaderListener.hpp>
 #include <prehend/base/paths.hpp>
 #include <prehend/dds/participant.hpp>
 #include <prehend/service/process.hpp>
 #include <prehend/service/status.hpp>
+#include <random>
+#include <thread>
 
 namespace prehend {
 namespace {
@@ -30,7 +28,9 @@ namespace {
 using namespace std::chrono_literals;
 namespace fdds = eprosima::fastdds::dds;
 
-Time now() { return std::chrono::time_point_cast<Duration>(std::chrono::system_clock::now()); }
+Time now() {
+  return std::chrono::time_point_cast<Duration>(std::chrono::system_clock::now());
+}
 
 struct Place {
   int domain;
@@ -140,9 +140,9 @@ Figures measure_lab(double rate, std::size_t wanted, int domain) {
   const std::string rig = fmt::format("lab-{}-{}", getpid(), rate);
   const auto bin = program_directory();
   const auto spawn = [&](const std::string& name, std::vector<std::string> more) {
-    std::vector<std::string> command{(bin / ("prehend-" + name)).string(),
-                                     "--set", "lab.rig=" + rig,
-                                     "--set", "lab.domain=" + std::to_string(domain)};
+    std::vector<std::string> command{(bin / ("prehend-" + name)).string(), "--set",
+                                     "lab.rig=" + rig, "--set",
+                                     "lab.domain=" + std::to_string(domain)};
     for (std::string& argument : more) {
       command.push_back("--set");
       command.push_back(std::move(argument));
@@ -163,11 +163,13 @@ Figures measure_lab(double rate, std::size_t wanted, int domain) {
   Figures figures;
   std::uint64_t accepted = 0;
   // A full window that was begun after the start: the world keeps the last 1024.
-  const std::uint64_t needed = static_cast<std::uint64_t>(rate) + std::max<std::uint64_t>(wanted, 0);
+  const std::uint64_t needed =
+      static_cast<std::uint64_t>(rate) + std::max<std::uint64_t>(wanted, 0);
   while (accepted < needed) {
     statuses.raw().wait_for_unread_message({5, 0});
     for (const auto& sample : statuses.take()) {
-      if (sample.info.gone || std::string_view(sample.data.name().c_str()) != "simulation") continue;
+      if (sample.info.gone || std::string_view(sample.data.name().c_str()) != "simulation")
+        continue;
       for (const auto& stage : sample.data.latency())
         if (std::string_view(stage.stage().c_str()) == "glove to accepted")
           figures = {stage.p50_us(), stage.p99_us(), static_cast<std::size_t>(stage.count())};
@@ -198,9 +200,10 @@ int run(bool json, double seconds, const std::string& self) {
                     {"ratio_of_medians", lab.p50 / floor},
                     {"samples", lab.count}});
     if (!json)
-      fmt::print("{:5.0f} Hz: floor p50 {:.0f} p99 {:.0f} us, lab p50 {:.0f} p99 {:.0f} us, "
-                 "ratio of medians {:.2f}\n",
-                 rate, floor, 0.5 * (before.p99 + after.p99), lab.p50, lab.p99, lab.p50 / floor);
+      fmt::print(
+          "{:5.0f} Hz: floor p50 {:.0f} p99 {:.0f} us, lab p50 {:.0f} p99 {:.0f} us, "
+          "ratio of medians {:.2f}\n",
+          rate, floor, 0.5 * (before.p99 + after.p99), lab.p50, lab.p99, lab.p50 / floor);
   }
   if (json) std::cout << rows.dump() << "\n";
   return 0;

@@ -11,14 +11,6 @@ namespace {
 
 using Eigen::Vector3d;
 
-Pose frame(const Vector3d& approach, const Vector3d& closing) {
-  Eigen::Matrix3d R;
-  R.col(2) = approach;
-  R.col(1) = closing;
-  R.col(0) = closing.cross(approach);
-  return make_pose(Vector3d::Zero(), R);
-}
-
 std::string type_of(const model::Shape& shape, const Pose& X_OG) {
   if (std::abs(X_OG.linear()(2, 2)) < 0.7) return "power wrap";
   return shape.kind == model::ShapeKind::box ? "precision" : "circular sphere";
@@ -47,11 +39,12 @@ bool above_table(const model::HandModel& hand, const Pose& X_OB, const Eigen::Ve
 
 std::vector<Pose> approaches(const model::Shape& shape, const model::Reach& reach) {
   const Vector3d x = Vector3d::UnitX(), y = Vector3d::UnitY(), z = Vector3d::UnitZ();
-  std::vector<Pose> seeds{frame(-z, y), frame(x, y)};
+  std::vector<Pose> seeds{make_pose(Vector3d::Zero(), model::grasp_axes(-z, y)),
+                          make_pose(Vector3d::Zero(), model::grasp_axes(x, y))};
   // Turning about a round object's axis is nothing new.
   if (shape.kind == model::ShapeKind::box) {
-    seeds.push_back(frame(-z, x));
-    seeds.push_back(frame(y, x));
+    seeds.push_back(make_pose(Vector3d::Zero(), model::grasp_axes(-z, x)));
+    seeds.push_back(make_pose(Vector3d::Zero(), model::grasp_axes(y, x)));
   }
   std::vector<Pose> found;
   for (const Pose& seed : seeds) {

@@ -9,7 +9,8 @@ namespace {
 
 Pose random_pose(Random& random) {
   return make_pose(random.normal3(1), Eigen::Quaterniond(random.normal(), random.normal(),
-                                                         random.normal(), random.normal()).normalized());
+                                                         random.normal(), random.normal())
+                                          .normalized());
 }
 
 TEST(Pose, RefusesWhatIsNoPose) {

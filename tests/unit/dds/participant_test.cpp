@@ -4,15 +4,16 @@
 #include <unistd.h>
 
 #include <chrono>
-#include <random>
-
 #include <prehend/dds/convert.hpp>
 #include <prehend/dds/participant.hpp>
+#include <random>
 
 namespace prehend::dds {
 namespace {
 
-int random_domain() { return static_cast<int>(std::random_device{}() % 200); }
+int random_domain() {
+  return static_cast<int>(std::random_device{}() % 200);
+}
 
 Participant join(int domain, const std::string& rig) {
   auto made = Participant::create({.name = "test", .domain = domain, .rig = rig});

@@ -3,11 +3,10 @@
 
 #include <fstream>
 #include <map>
+#include <prehend/dds/topics.hpp>
 #include <sstream>
 #include <string>
 #include <vector>
-
-#include <prehend/dds/topics.hpp>
 
 namespace prehend::dds {
 namespace {
@@ -30,7 +29,9 @@ std::map<std::string, std::vector<std::string>> documented() {
   return rows;
 }
 
-std::string depth(int n) { return n == 0 ? "all" : "last " + std::to_string(n); }
+std::string depth(int n) {
+  return n == 0 ? "all" : "last " + std::to_string(n);
+}
 
 TEST(Topics, TheDocumentedTableIsTheOneInCode) {
   const auto rows = documented();
@@ -42,8 +43,11 @@ TEST(Topics, TheDocumentedTableIsTheOneInCode) {
     EXPECT_EQ(cells[3], std::string(topic.reliable ? "reliable" : "best effort") + ", " +
                             (topic.transient_local ? "transient local" : "volatile"))
         << topic.name;
-    EXPECT_EQ(cells[4], depth(topic.writer_depth) + " / " + depth(topic.reader_depth)) << topic.name;
-    const auto says = [&](const std::string& what) { return cells[5].find(what) != std::string::npos; };
+    EXPECT_EQ(cells[4], depth(topic.writer_depth) + " / " + depth(topic.reader_depth))
+        << topic.name;
+    const auto says = [&](const std::string& what) {
+      return cells[5].find(what) != std::string::npos;
+    };
     EXPECT_EQ(says("exclusive"), topic.exclusive) << topic.name;
     EXPECT_EQ(says("deadline " + std::to_string(topic.deadline.count()) + " ms"),
               topic.deadline.count() > 0);

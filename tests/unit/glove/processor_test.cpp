@@ -199,8 +199,8 @@ TEST(Processor, HoldsItsPromiseAtThirtyHertz) {
   EXPECT_LT(lag_error / published, 0.008);
 }
 
-// Lag of the filter by itself: above 20 cm/s a ramp without noise arrives late by at most one frame;
-// below, where the filter steadies the hand, by at most 4 mm.
+// Lag of the filter by itself: above 20 cm/s a ramp without noise arrives late by at most one
+// frame; below, where the filter steadies the hand, by at most 4 mm.
 TEST(Processor, LagsAtMostOneFrame) {
   for (const double speed : {0.01, 0.03, 0.1, 0.2, 0.5, 1.0}) {
     Processor processor({});

@@ -1,6 +1,6 @@
 // Where a hand goes to grasp a standing object. For every object of the catalogue and random hands:
-// the answer is a rigid frame, closes across something that fits, does not reach below the table, and
-// is a fixed point (the nearest grasp to a grasp is itself).
+// the answer is a rigid frame, closes across something that fits, does not reach below the table,
+// and is a fixed point (the nearest grasp to a grasp is itself).
 #include <gtest/gtest.h>
 
 #include <prehend/base/random.hpp>
@@ -22,8 +22,9 @@ TEST(Placement, PropertiesOverAllCatalogueObjects) {
     const Vector3d half = half_extents(object.shape);
     for (int i = 0; i < 200; ++i) {
       const Pose X_OG = make_pose(
-          random.normal3(0.1), Eigen::Quaterniond(random.normal(), random.normal(), random.normal(),
-                                                  random.normal()).normalized());
+          random.normal3(0.1),
+          Eigen::Quaterniond(random.normal(), random.normal(), random.normal(), random.normal())
+              .normalized());
       const auto grasp = nearest_grasp(object.shape, X_OG, reach);
       ASSERT_TRUE(grasp) << object.name;
       const Eigen::Matrix3d R = grasp->linear();
@@ -35,9 +36,9 @@ TEST(Placement, PropertiesOverAllCatalogueObjects) {
       EXPECT_LE(R.col(2).z(), 1e-12) << object.name << " approached from below";
       // The width between the faces that the fingers close on.
       const Vector3d y = R.col(1);
-      const double width = object.shape.kind == ShapeKind::cylinder
-                               ? 2 * object.shape.size.x()
-                               : std::abs(y.x()) > 0.5 ? object.shape.size.x() : object.shape.size.y();
+      const double width = object.shape.kind == ShapeKind::cylinder ? 2 * object.shape.size.x()
+                           : std::abs(y.x()) > 0.5                  ? object.shape.size.x()
+                                                                    : object.shape.size.y();
       EXPECT_LE(width, reach.opening) << object.name;
       // The fingers close centred on those faces.
       EXPECT_NEAR(p.dot(y), 0, 1e-9) << object.name;

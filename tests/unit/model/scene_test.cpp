@@ -1,13 +1,12 @@
-// Scenes drawn from seeds: they stand on the table, keep clear of one another, differ between seeds,
-// repeat for one seed, and survive the way through a file exactly.
+// Scenes drawn from seeds: they stand on the table, keep clear of one another, differ between
+// seeds, repeat for one seed, and survive the way through a file exactly.
 #include <gtest/gtest.h>
 #include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
-#include <set>
-
 #include <prehend/model/scene.hpp>
+#include <set>
 
 namespace prehend::model {
 namespace {
@@ -19,8 +18,8 @@ Catalogue catalogue() {
 }
 
 std::filesystem::path write(const std::string& text) {
-  const auto file = std::filesystem::temp_directory_path() /
-                    ("scene-" + std::to_string(::getpid()) + ".toml");
+  const auto file =
+      std::filesystem::temp_directory_path() / ("scene-" + std::to_string(::getpid()) + ".toml");
   std::ofstream(file) << text;
   return file;
 }
@@ -62,7 +61,8 @@ TEST(Scene, AFileGivesBackTheSameScene) {
     for (std::size_t i = 0; i < scene.objects.size(); ++i) {
       EXPECT_EQ(read->objects[i].name, scene.objects[i].name);
       // Rotations pass through quaternions, which costs a digit.
-      EXPECT_NEAR((read->objects[i].X_WO.matrix() - scene.objects[i].X_WO.matrix()).norm(), 0, 1e-14);
+      EXPECT_NEAR((read->objects[i].X_WO.matrix() - scene.objects[i].X_WO.matrix()).norm(), 0,
+                  1e-14);
     }
     EXPECT_EQ(read->name, scene.name);
     EXPECT_EQ(read->texture_seed, scene.texture_seed);

@@ -1,14 +1,13 @@
-// The signed distance of each primitive against its definition: the distance to the nearest point of
-// the surface, found by brute force over a dense sample of the surface.
+// The signed distance of each primitive against its definition: the distance to the nearest point
+// of the surface, found by brute force over a dense sample of the surface.
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <limits>
 #include <numbers>
-#include <vector>
-
 #include <prehend/base/random.hpp>
 #include <prehend/model/shape.hpp>
+#include <vector>
 
 namespace prehend::model {
 namespace {
@@ -59,7 +58,8 @@ TEST(Shape, SignedDistanceIsTheDistanceToTheSurface) {
 }
 
 TEST(Shape, NamesRoundTripAndBadSizesAreInvalid) {
-  for (const ShapeKind kind : {ShapeKind::unknown, ShapeKind::cylinder, ShapeKind::box, ShapeKind::sphere})
+  for (const ShapeKind kind :
+       {ShapeKind::unknown, ShapeKind::cylinder, ShapeKind::box, ShapeKind::sphere})
     EXPECT_EQ(shape_from_string(to_string(kind)), kind);
   EXPECT_FALSE(shape_from_string("Cylinder").has_value());
   EXPECT_FALSE(is_valid({ShapeKind::box, {0.1, 0, 0.1}}));

@@ -5,7 +5,6 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
-
 #include <prehend/service/config.hpp>
 
 namespace prehend::service {
@@ -60,7 +59,8 @@ TEST(Config, MistakesAreNamed) {
   for (const auto& [text, expected] : files) {
     const auto config = Config::load(write(text));
     ASSERT_FALSE(config) << text;
-    EXPECT_NE(config.error().message().find(expected), std::string::npos) << config.error().message();
+    EXPECT_NE(config.error().message().find(expected), std::string::npos)
+        << config.error().message();
     EXPECT_EQ(config.error().message().find('\n'), std::string::npos) << "one line";
   }
   const auto file = write("");

@@ -4,11 +4,10 @@
 #include <unistd.h>
 
 #include <atomic>
-#include <random>
-#include <thread>
-
 #include <prehend/service/conductor.hpp>
 #include <prehend/service/shell.hpp>
+#include <random>
+#include <thread>
 
 namespace prehend::service {
 namespace {
@@ -26,9 +25,14 @@ Played play(unsigned seed, int domain, const std::string& rig) {
   int exit_code = 0;
   const std::string rig_setting = "lab.rig=" + rig;
   const std::string domain_setting = "lab.domain=" + std::to_string(domain);
-  const char* arguments[] = {"test",        "--config", PREHEND_SOURCE "/deploy/lab.toml",
-                             "--lockstep",  "--set",    rig_setting.c_str(),
-                             "--set",       domain_setting.c_str()};
+  const char* arguments[] = {"test",
+                             "--config",
+                             PREHEND_SOURCE "/deploy/lab.toml",
+                             "--lockstep",
+                             "--set",
+                             rig_setting.c_str(),
+                             "--set",
+                             domain_setting.c_str()};
   auto shell = Shell::create(8, const_cast<char**>(arguments), {"summing", "sums"}, exit_code);
   EXPECT_TRUE(shell);
   if (!shell) return run;
@@ -82,7 +86,10 @@ Played play(unsigned seed, int domain, const std::string& rig) {
       }
     };
     // What differs between runs: the order of writing and how long it takes.
-    if (random() % 2) post(), detect(); else detect(), post();
+    if (random() % 2)
+      post(), detect();
+    else
+      detect(), post();
     if (random() % 4 == 0) std::this_thread::sleep_for(std::chrono::microseconds(random() % 3000));
     const auto stepped = conductor->step(now, 5s);
     EXPECT_TRUE(stepped) << stepped.error().message();
@@ -113,8 +120,10 @@ TEST(Lockstep, AnswersDoNotDependOnArrival) {
 
 TEST(Lockstep, AMissingServiceIsNamed) {
   std::random_device device;
-  auto participant = dds::Participant::create(
-      {.name = "test", .domain = static_cast<int>(device() % 200), .rig = "empty", .lockstep = true});
+  auto participant = dds::Participant::create({.name = "test",
+                                               .domain = static_cast<int>(device() % 200),
+                                               .rig = "empty",
+                                               .lockstep = true});
   auto conductor = Conductor::create(*participant, {"nobody"});
   const auto stepped = conductor->step(from_ns(1), 50ms);
   ASSERT_FALSE(stepped);

@@ -1,4 +1,5 @@
-// Health of a service: totals never shrink, rates are per second, quantiles are those of the window.
+// Health of a service: totals never shrink, rates are per second, quantiles are those of the
+// window.
 #include <gtest/gtest.h>
 
 #include <prehend/service/status.hpp>
