@@ -89,7 +89,7 @@ Expected<ClosedGrasp> close_hand(const model::HandModel& hand, const Body& objec
   grasp.contacts = world->contacts(0);
   if (grasp.contacts.size() < 2)
     return fail("fewer than two contacts", object.name, "the object is out of the fingers' reach");
-  auto quality = grasp_quality(grasp.contacts, object.shape);
+  auto quality = analysis::grasp_quality(grasp.contacts, object.shape);
   if (!quality) return tl::unexpected(quality.error());
   grasp.quality = *quality;
   if (options.hold_test) {

@@ -2,15 +2,15 @@
 
 #include <Eigen/Core>
 #include <optional>
+#include <prehend/analysis/contact.hpp>
+#include <prehend/analysis/wrench_space.hpp>
 #include <prehend/base/error.hpp>
 #include <prehend/base/pose.hpp>
 #include <prehend/model/hand_model.hpp>
 #include <vector>
 
-#include "contact.hpp"
 #include "hold_test.hpp"
 #include "world.hpp"
-#include "wrench_space.hpp"
 
 namespace prehend::grasping {
 
@@ -32,8 +32,8 @@ struct ClosedGrasp {
   Eigen::VectorXd dof;     // rad: the contact posture; command dof + squeeze * closing to grip
   Eigen::VectorXd joints;  // rad
   Pose X_BO;               // where the object ended up
-  std::vector<Contact> contacts;
-  Quality quality;
+  std::vector<analysis::Contact> contacts;
+  analysis::Quality quality;
   std::optional<HoldResult> hold;
 };
 

@@ -14,9 +14,8 @@
 #include <cmath>
 #include <deque>
 #include <limits>
+#include <prehend/analysis/materials.hpp>
 #include <utility>
-
-#include "materials.hpp"
 
 namespace prehend::grasping {
 namespace {
@@ -59,7 +58,7 @@ Pose from_bullet(const btTransform& X) {
 
 /// What a collider is made of and whose it is.
 struct Surface {
-  Material material = Material::wood;
+  analysis::Material material = analysis::Material::wood;
   std::optional<double> friction;
   int body = -1;  // number of the body; -1: table
   int link = -1;  // of the hand; -1: not the hand
@@ -69,7 +68,7 @@ double friction_between(const Surface& a, const Surface& b) {
   if (a.friction || b.friction)
     return std::min(a.friction.value_or(std::numeric_limits<double>::infinity()),
                     b.friction.value_or(std::numeric_limits<double>::infinity()));
-  return friction(a.material, b.material);
+  return analysis::friction(a.material, b.material);
 }
 
 const Surface& surface_of(const btCollisionObject* object) {
@@ -206,7 +205,8 @@ struct World::State {
 
   double dt() const { return 1.0 / options.rate; }
 
-  Surface* add_surface(Material material, std::optional<double> own_friction, int body, int link) {
+  Surface* add_surface(analysis::Material material, std::optional<double> own_friction, int body,
+                       int link) {
     return &surfaces.emplace_back(Surface{material, own_friction, body, link});
   }
 
@@ -226,11 +226,11 @@ struct World::State {
     shapes.push_back(std::make_unique<btStaticPlaneShape>(btVector3(0, 0, 1), 0.0));
     btRigidBody::btRigidBodyConstructionInfo info(0, nullptr, shapes.back().get());
     table = std::make_unique<btRigidBody>(info);
-    make_touchable(*table, add_surface(Material::wood, std::nullopt, -1, -1));
+    make_touchable(*table, add_surface(analysis::Material::wood, std::nullopt, -1, -1));
     bullet.addRigidBody(table.get());
   }
 
-  void add_hand(const std::vector<Material>& materials) {
+  void add_hand(const std::vector<analysis::Material>& materials) {
     const auto& links = hand.links();
     const auto& joints = hand.joints();
     const int count = static_cast<int>(joints.size());
@@ -404,9 +404,9 @@ Expected<std::unique_ptr<World>> World::create(const model::HandModel& hand, con
   if (dof.size() != static_cast<Eigen::Index>(hand.dofs().size()) || !dof.allFinite())
     return fail("the hand needs " + std::to_string(hand.dofs().size()) + " finite DoF values",
                 "world");
-  std::vector<Material> materials;
+  std::vector<analysis::Material> materials;
   for (const model::HandLink& link : hand.links()) {
-    const auto material = material_from_string(link.material);
+    const auto material = analysis::material_from_string(link.material);
     if (!material)
       return fail("unknown material " + link.material, link.name,
                   "glass, metal, plastic, wood, rubber or stone");
@@ -446,7 +446,7 @@ Expected<int> World::add_body(const Body& body, const Pose& X_WO) {
   if (!is_finite(X_WO)) return fail("pose must be finite", body.name);
   if (body.friction && !(*body.friction >= 0 && std::isfinite(*body.friction)))
     return fail("friction must be 0 or more", body.name);
-  const auto material = material_from_string(body.material);
+  const auto material = analysis::material_from_string(body.material);
   if (!material) return fail("unknown material " + body.material, body.name);
 
   State::Placed placed{body, make_shape(body.shape), nullptr};
@@ -560,8 +560,8 @@ BodyMotion World::body_motion(int index) const {
           from_bullet(rigid.getAngularVelocity())};
 }
 
-std::vector<Contact> World::contacts(int body) const {
-  std::vector<Contact> found;
+std::vector<analysis::Contact> World::contacts(int body) const {
+  std::vector<analysis::Contact> found;
   const Pose X_OW = body_motion(body).X_WO.inverse();
   state_->each_contact([&](const btManifoldPoint& point, const Surface& a, const Surface& b) {
     const bool hand_first = a.link >= 0 && b.body == body;

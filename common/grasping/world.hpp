@@ -3,14 +3,13 @@
 #include <Eigen/Core>
 #include <memory>
 #include <optional>
+#include <prehend/analysis/contact.hpp>
 #include <prehend/base/error.hpp>
 #include <prehend/base/pose.hpp>
 #include <prehend/model/hand_model.hpp>
 #include <prehend/model/shape.hpp>
 #include <string>
 #include <vector>
-
-#include "contact.hpp"
 
 namespace prehend::grasping {
 
@@ -96,7 +95,7 @@ class World {
   BodyMotion body_motion(int index) const;
 
   /// Touches of the hand on a body in the last step.
-  std::vector<Contact> contacts(int body) const;
+  std::vector<analysis::Contact> contacts(int body) const;
   /// True if the body touches anything but the hand.
   bool touches_others(int body) const;
   bool hand_touches_anything() const;

@@ -22,7 +22,7 @@ struct CatalogueObject {
   std::string name;
   Shape shape;
   double mass = 0;       // kg
-  std::string material;  // one of the friction table (see grasping/materials.hpp)
+  std::string material;  // one of the friction table (see analysis/materials.hpp)
   Appearance appearance;
 };
 

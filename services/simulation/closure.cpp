@@ -24,7 +24,7 @@ int count_ahead(const model::HandModel& hand, const VectorXd& command, const Vec
   return count;
 }
 
-bool is_gripped(const std::vector<grasping::Contact>& contacts) {
+bool is_gripped(const std::vector<analysis::Contact>& contacts) {
   return std::any_of(contacts.begin(), contacts.end(),
                      [&](const auto& contact) { return contact.link != contacts.front().link; });
 }
@@ -35,9 +35,9 @@ Verdict judge(Closure& closure) {
   Verdict verdict;
   // Contacts come from the simulation and are finite; should the hull fail all the same, the grasp
   // has no force closure that anyone could show.
-  if (auto quality = grasping::grasp_quality(closure.contacts, closure.object.shape))
+  if (auto quality = analysis::grasp_quality(closure.contacts, closure.object.shape))
     verdict.quality = std::move(*quality);
-  for (const grasping::Contact& contact : closure.contacts)
+  for (const analysis::Contact& contact : closure.contacts)
     verdict.penetration = std::max(verdict.penetration, contact.depth);
   verdict.hold = grasping::hold_test(*closure.world, closure.body);
   return verdict;

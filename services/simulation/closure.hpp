@@ -4,10 +4,10 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <prehend/analysis/wrench_space.hpp>
 #include <prehend/base/error.hpp>
 #include <prehend/grasping/hold_test.hpp>
 #include <prehend/grasping/world.hpp>
-#include <prehend/grasping/wrench_space.hpp>
 #include <vector>
 
 #include "command.hpp"
@@ -23,12 +23,12 @@ struct Closure {
   grasping::Body object;
   Eigen::VectorXd dof;  // rad
   Pose X_BO = Pose::Identity();
-  std::vector<grasping::Contact> contacts;
+  std::vector<analysis::Contact> contacts;
   std::unique_ptr<grasping::World> world;  // a copy, to be used up
 };
 
 struct Verdict {
-  grasping::Quality quality;
+  analysis::Quality quality;
   double penetration = 0;  // m, deepest contact
   grasping::HoldResult hold;
 };

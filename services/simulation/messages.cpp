@@ -81,7 +81,7 @@ v1::GraspReport to_message(const Closure& closure, const Verdict& verdict) {
   message.grasp_type(static_cast<v1::GraspType>(closure.command.grasp_type));
   message.believed_object(closure.command.object);
   const std::size_t most = 64;  // of the message
-  for (const grasping::Contact& contact : grasping::spread_contacts(closure.contacts, most)) {
+  for (const analysis::Contact& contact : analysis::spread_contacts(closure.contacts, most)) {
     v1::Contact entry;
     entry.link(contact.link);
     entry.p_OC(dds::to_message(contact.p_OC));

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
-#include <prehend/grasping/wrench_space.hpp>
+#include <prehend/analysis/wrench_space.hpp>
 #include <string>
 #include <vector>
 
@@ -52,12 +52,12 @@ Expected<Eigen::MatrixXd> from_contacts(const Json& root) {
   const Json edges = root.value("edges", Json(8));
   if (!edges.is_number_integer() || edges.get<std::int64_t>() < 3 || edges.get<std::int64_t>() > 64)
     return fail("\"edges\" must be 3 to 64");
-  std::vector<grasping::Contact> contacts;
+  std::vector<analysis::Contact> contacts;
   std::vector<Vector3d> tangents;
   for (const Json& entry : list) {
     const std::string where = "contact " + std::to_string(contacts.size());
     if (!entry.is_object()) return fail("is no object", where);
-    grasping::Contact contact;
+    analysis::Contact contact;
     if (!read_numbers(entry.value("position_m", Json()), contact.p_OC.data(), 3))
       return fail("\"position_m\" is not three finite numbers", where);
     contact.p_OC -= center;
@@ -75,7 +75,7 @@ Expected<Eigen::MatrixXd> from_contacts(const Json& root) {
     contacts.push_back(std::move(contact));
     tangents.push_back(tangent);
   }
-  return grasping::contact_wrenches(contacts, scale.get<double>(), edges.get<int>(), tangents);
+  return analysis::contact_wrenches(contacts, scale.get<double>(), edges.get<int>(), tangents);
 }
 
 }  // namespace

@@ -3,8 +3,8 @@
 #include <chrono>
 #include <cstdio>
 #include <nlohmann/json.hpp>
+#include <prehend/analysis/wrench_space.hpp>
 #include <prehend/base/log.hpp>
-#include <prehend/grasping/wrench_space.hpp>
 #include <string>
 #include <vector>
 
@@ -19,7 +19,7 @@ int quality(const std::string& file, bool json) {
     return 2;
   }
   const auto before = std::chrono::steady_clock::now();
-  const auto measured = prehend::grasping::wrench_quality(*wrenches);
+  const auto measured = prehend::analysis::wrench_quality(*wrenches);
   const double milliseconds =
       std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - before).count();
   if (!measured) {

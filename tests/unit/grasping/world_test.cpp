@@ -115,7 +115,7 @@ TEST(World, HandAndFingersKeepToTheirLimits) {
 TEST(World, AClosedHandLiftsAndHolds) {
   auto world = gripped(talc);
   EXPECT_GE(world->contacts(0).size(), 3u);
-  for (const Contact& contact : world->contacts(0)) {
+  for (const analysis::Contact& contact : world->contacts(0)) {
     EXPECT_EQ(contact.friction, 1.0);  // rubber on plastic
     EXPECT_GT(contact.force, 0);
     EXPECT_LT(contact.depth, 0.001);

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
-#include <prehend/grasping/wrench_space.hpp>
+#include <prehend/analysis/wrench_space.hpp>
 #include <prehend/simulation/quality_file.hpp>
 
 namespace {
@@ -24,7 +24,7 @@ TEST(QualityFile, CrossPolytope) {
           [0,0,0,0,0,1],[-1,0,0,0,0,0],[0,-1,0,0,0,0],[0,0,-1,0,0,0],[0,0,0,-1,0,0],
           [0,0,0,0,-1,0],[0,0,0,0,0,-1]]})"));
   ASSERT_TRUE(wrenches) << wrenches.error().message();
-  const auto quality = grasping::wrench_quality(*wrenches);
+  const auto quality = analysis::wrench_quality(*wrenches);
   ASSERT_TRUE(quality);
   EXPECT_NEAR(quality->epsilon, 1 / std::sqrt(6.0), 1e-9);
 }

@@ -2,7 +2,7 @@
 
 #include <array>
 
-namespace prehend::grasping {
+namespace prehend::analysis {
 namespace {
 
 constexpr std::array<std::string_view, 6> names{"glass", "metal",  "plastic",
@@ -29,4 +29,4 @@ double friction(Material a, Material b) {
   return table[static_cast<std::size_t>(a)][static_cast<std::size_t>(b)];
 }
 
-}  // namespace prehend::grasping
+}  // namespace prehend::analysis

@@ -7,7 +7,7 @@
 
 #include "contact.hpp"
 
-namespace prehend::grasping {
+namespace prehend::analysis {
 
 /// How well a grasp resists disturbances: measures of the convex hull of its wrenches.
 struct Quality {
@@ -34,4 +34,4 @@ double torque_scale(const model::Shape& shape);
 /// Quality of contacts on a shape whose centre of mass is its centre (at most ten contacts count).
 Expected<Quality> grasp_quality(const std::vector<Contact>& contacts, const model::Shape& shape);
 
-}  // namespace prehend::grasping
+}  // namespace prehend::analysis

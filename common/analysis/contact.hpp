@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-namespace prehend::grasping {
+namespace prehend::analysis {
 
 /// A touch between hand and object. O: the object's frame, whose origin is its centre of mass.
 struct Contact {
@@ -20,4 +20,4 @@ struct Contact {
 /// first, beginning with the strongest contact). Keeps the cost of a wrench space bounded.
 std::vector<Contact> spread_contacts(const std::vector<Contact>& contacts, std::size_t most);
 
-}  // namespace prehend::grasping
+}  // namespace prehend::analysis

@@ -10,7 +10,7 @@ extern "C" {
 #include <libqhull_r/qhull_ra.h>
 }
 
-namespace prehend::grasping {
+namespace prehend::analysis {
 namespace {
 
 using Eigen::MatrixXd;
@@ -118,4 +118,4 @@ Expected<Quality> grasp_quality(const std::vector<Contact>& contacts, const mode
       contact_wrenches(spread_contacts(contacts, most_contacts), torque_scale(shape)));
 }
 
-}  // namespace prehend::grasping
+}  // namespace prehend::analysis

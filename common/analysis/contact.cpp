@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <limits>
 
-namespace prehend::grasping {
+namespace prehend::analysis {
 
 std::vector<Contact> spread_contacts(const std::vector<Contact>& contacts, std::size_t most) {
   if (contacts.size() <= most) return contacts;
@@ -24,4 +24,4 @@ std::vector<Contact> spread_contacts(const std::vector<Contact>& contacts, std::
   return chosen;
 }
 
-}  // namespace prehend::grasping
+}  // namespace prehend::analysis

@@ -11,13 +11,13 @@
 #include <fstream>
 #include <limits>
 #include <numbers>
+#include <prehend/analysis/wrench_space.hpp>
 #include <prehend/base/random.hpp>
-#include <prehend/grasping/wrench_space.hpp>
 
 namespace {
 
 using namespace prehend;
-using namespace prehend::grasping;
+using namespace prehend::analysis;
 using Eigen::MatrixXd;
 using Eigen::Vector3d;
 

@@ -3,7 +3,7 @@
 #include <optional>
 #include <string_view>
 
-namespace prehend::grasping {
+namespace prehend::analysis {
 
 /// What a surface is made of.
 enum class Material { glass, metal, plastic, wood, rubber, stone };
@@ -14,4 +14,4 @@ std::string_view to_string(Material material);
 /// Static Coulomb friction coefficient between two materials (the table that GraspIt! uses).
 double friction(Material a, Material b);
 
-}  // namespace prehend::grasping
+}  // namespace prehend::analysis

@@ -1,12 +1,12 @@
 // The friction table against figures read from it, and the choice of contacts.
 #include <gtest/gtest.h>
 
-#include <prehend/grasping/contact.hpp>
-#include <prehend/grasping/materials.hpp>
+#include <prehend/analysis/contact.hpp>
+#include <prehend/analysis/materials.hpp>
 
 namespace {
 
-using namespace prehend::grasping;
+using namespace prehend::analysis;
 
 TEST(Materials, FrictionIsSymmetricAndAsTabulated) {
   for (int a = 0; a < 6; ++a)
