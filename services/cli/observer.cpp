@@ -12,6 +12,9 @@ namespace {
 /// The simulation's name for the time from a glove frame to its effect in the world.
 constexpr std::string_view stage_to_world = "glove to accepted";
 
+/// A grasp is judged within this time of its closure; older detections are not behind it.
+constexpr std::int64_t remembered_ns = 10'000'000'000;
+
 /// Where the grasped body was when the hand closed, in W.
 std::optional<Eigen::Vector3d> grasped_at(const v1::GraspReport& report,
                                           const std::optional<v1::HandCommand>& command) {
@@ -37,7 +40,14 @@ void Observer::hear(const v1::GloveFrame& frame) {
 }
 
 void Observer::hear(const v1::ObjectDetection& detection) {
-  detections_.push_back(detection);
+  if (report_ && detection.stamp_ns() > report_->stamp_ns()) return;
+  auto& heard = detections_[detection.name().to_string()];
+  const auto after = std::upper_bound(heard.begin(), heard.end(), detection.stamp_ns(),
+                                      [](std::int64_t stamp, const v1::ObjectDetection& other) {
+                                        return stamp < other.stamp_ns();
+                                      });
+  heard.insert(after, detection);
+  while (heard.back().stamp_ns() - heard.front().stamp_ns() > remembered_ns) heard.pop_front();
 }
 
 void Observer::hear(const v1::HandCommand& command) {
@@ -92,11 +102,9 @@ const v1::ObjectDetection* Observer::recognised() const {
   const std::int64_t closure =
       report_ ? report_->stamp_ns() : std::numeric_limits<std::int64_t>::max();
   std::map<std::string, const v1::ObjectDetection*> newest;
-  for (const v1::ObjectDetection& detection : detections_) {
-    if (detection.stamp_ns() > closure) continue;
-    const v1::ObjectDetection*& kept = newest[detection.name().to_string()];
-    if (!kept || detection.stamp_ns() >= kept->stamp_ns()) kept = &detection;
-  }
+  for (const auto& [name, heard] : detections_)
+    for (const v1::ObjectDetection& detection : heard)
+      if (detection.stamp_ns() <= closure) newest[name] = &detection;
   if (newest.empty()) return nullptr;
   const std::string believed = report_    ? report_->believed_object().to_string()
                                : command_ ? command_->object().to_string()

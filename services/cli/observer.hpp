@@ -6,6 +6,7 @@
 #include <prehend/idl/Robot.h>
 #include <prehend/idl/World.h>
 
+#include <deque>
 #include <map>
 #include <optional>
 #include <prehend/model/scene.hpp>
@@ -50,7 +51,7 @@ class Observer {
 
   std::optional<model::Scene> truth_;
   std::map<std::string, v1::ServiceStatus> services_;  // by key
-  std::vector<v1::ObjectDetection> detections_;
+  std::map<std::string, std::deque<v1::ObjectDetection>> detections_;  // by name, in order of stamp
   std::optional<v1::HandCommand> command_;
   std::optional<v1::GraspReport> report_;
   std::string device_;
