@@ -70,10 +70,13 @@ struct Participant::State {
 
   Expected<fdds::Topic*> topic(std::string_view name, fdds::TypeSupport& type) {
     if (const auto found = topics.find(name); found != topics.end()) return found->second;
-    type.get()->auto_fill_type_object(false);
-    type.get()->auto_fill_type_information(false);
-    if (type.register_type(participant) != ReturnCode_t::RETCODE_OK)
-      return fail("type of the topic cannot be registered", std::string(name));
+    // Several raw topics may have one type.
+    if (participant->find_type(type.get_type_name()).empty()) {
+      type.get()->auto_fill_type_object(false);
+      type.get()->auto_fill_type_information(false);
+      if (type.register_type(participant) != ReturnCode_t::RETCODE_OK)
+        return fail("type of the topic cannot be registered", std::string(name));
+    }
     fdds::Topic* made =
         participant->create_topic(std::string(name), type.get_type_name(), fdds::TOPIC_QOS_DEFAULT);
     if (!made)
@@ -103,7 +106,8 @@ Expected<Participant> Participant::create(const ParticipantOptions& options) {
   udp->sendBufferSize = 1 << 21;
   udp->receiveBufferSize = 1 << 21;
   qos.transport().user_transports.push_back(udp);
-  state->participant = factory->create_participant(options.domain, qos);
+  state->participant =
+      factory->create_participant(options.domain, qos, options.listener, fdds::StatusMask::none());
   if (!state->participant)
     return fail("cannot join the domain", "dds", "is a network interface up, at least loopback?");
 
@@ -119,35 +123,46 @@ Expected<Participant> Participant::create(const ParticipantOptions& options) {
   return Participant(std::move(state));
 }
 
-Expected<fdds::DataWriter*> Participant::make_writer(std::string_view name,
-                                                     fdds::TypeSupport type) {
+Expected<TopicQos> Participant::table_entry(std::string_view name) {
   const TopicQos* topic = find_topic(name);
   if (!topic) return fail("is not in the table of topics", std::string(name));
-  const auto handle = state_->topic(name, type);
+  return *topic;
+}
+
+fdds::Subscriber* Participant::subscriber() {
+  return state_->subscriber;
+}
+
+Expected<fdds::DataWriter*> Participant::make_writer(const TopicQos& topic, fdds::TypeSupport type,
+                                                     bool raw) {
+  const auto handle = state_->topic(topic.name, type);
   if (!handle) return tl::unexpected(handle.error());
   fdds::DataWriterQos qos = state_->publisher->get_default_datawriter_qos();
-  apply(qos, *topic, topic->writer_depth, state_->options.lockstep);
-  if (topic->lifespan.count() > 0 && !state_->options.lockstep)
-    qos.lifespan().duration = duration(topic->lifespan);
+  apply(qos, topic, topic.writer_depth, state_->options.lockstep);
+  if (topic.lifespan.count() > 0 && !state_->options.lockstep)
+    qos.lifespan().duration = duration(topic.lifespan);
+  qos.writer_data_lifecycle().autodispose_unregistered_instances = !raw;
   // With the default of 3 s a lost single sample is noticed very late.
   qos.reliable_writer_qos().times.heartbeatPeriod = duration(std::chrono::milliseconds(100));
   qos.reliability().max_blocking_time = duration(std::chrono::milliseconds(100));
   fdds::DataWriter* writer = state_->publisher->create_datawriter(*handle, qos);
-  if (!writer) return fail("writer cannot be created", std::string(name));
+  if (!writer) return fail("writer cannot be created", std::string(topic.name));
   return writer;
 }
 
-Expected<fdds::DataReader*> Participant::make_reader(std::string_view name, fdds::TypeSupport type,
-                                                     fdds::DataReaderListener* listener) {
-  const TopicQos* topic = find_topic(name);
-  if (!topic) return fail("is not in the table of topics", std::string(name));
-  const auto handle = state_->topic(name, type);
+Expected<fdds::DataReader*> Participant::make_reader(const TopicQos& topic, fdds::TypeSupport type,
+                                                     fdds::DataReaderListener* listener, bool raw) {
+  const auto handle = state_->topic(topic.name, type);
   if (!handle) return tl::unexpected(handle.error());
   fdds::DataReaderQos qos = state_->subscriber->get_default_datareader_qos();
-  apply(qos, *topic, topic->reader_depth, state_->options.lockstep);
-  fdds::DataReader* reader = state_->subscriber->create_datareader(
-      *handle, qos, listener, fdds::StatusMask::data_available());
-  if (!reader) return fail("reader cannot be created", std::string(name));
+  apply(qos, topic, topic.reader_depth, state_->options.lockstep);
+  fdds::StatusMask mask = fdds::StatusMask::data_available();
+  if (raw) {
+    mask << fdds::StatusMask::subscription_matched();
+    qos.expects_inline_qos(true);  // without it instances have no key and merge
+  }
+  fdds::DataReader* reader = state_->subscriber->create_datareader(*handle, qos, listener, mask);
+  if (!reader) return fail("reader cannot be created", std::string(topic.name));
   return reader;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <fastdds/dds/domain/DomainParticipantListener.hpp>
 #include <fastdds/dds/publisher/DataWriter.hpp>
 #include <fastdds/dds/subscriber/DataReader.hpp>
 #include <fastdds/dds/subscriber/DataReaderListener.hpp>
@@ -21,6 +22,8 @@ struct ParticipantOptions {
   std::string rig;   // partition: samples stay within a rig
   /// All topics reliable and complete, without deadlines: for recordings in lockstep.
   bool lockstep = false;
+  /// Told of discovery, in its thread; must outlive the participant.
+  eprosima::fastdds::dds::DomainParticipantListener* listener = nullptr;
 };
 
 /// Provenance of a received sample.
@@ -103,7 +106,9 @@ class Participant {
 
   template <class P>
   Expected<Writer<typename P::type>> writer(const Topic<P>& topic) {
-    auto made = make_writer(topic.name, eprosima::fastdds::dds::TypeSupport(new P()));
+    const auto qos = table_entry(topic.name);
+    if (!qos) return tl::unexpected(qos.error());
+    auto made = make_writer(*qos, eprosima::fastdds::dds::TypeSupport(new P()));
     if (!made) return tl::unexpected(made.error());
     return Writer<typename P::type>(*made);
   }
@@ -111,19 +116,27 @@ class Participant {
   template <class P>
   Expected<Reader<typename P::type>> reader(
       const Topic<P>& topic, eprosima::fastdds::dds::DataReaderListener* listener = nullptr) {
-    auto made = make_reader(topic.name, eprosima::fastdds::dds::TypeSupport(new P()), listener);
+    const auto qos = table_entry(topic.name);
+    if (!qos) return tl::unexpected(qos.error());
+    auto made = make_reader(*qos, eprosima::fastdds::dds::TypeSupport(new P()), listener);
     if (!made) return tl::unexpected(made.error());
     return Reader<typename P::type>(*made);
   }
 
  private:
+  friend class RawReader;
+  friend class RawWriter;
   struct State;
   explicit Participant(std::unique_ptr<State> state);
+  static Expected<TopicQos> table_entry(std::string_view topic);
   Expected<eprosima::fastdds::dds::DataWriter*> make_writer(
-      std::string_view topic, eprosima::fastdds::dds::TypeSupport type);
+      const TopicQos& topic, eprosima::fastdds::dds::TypeSupport type, bool raw = false);
+  /// raw: the reader asks for keys beside the samples and is told also of matches; the writer
+  /// unregisters an instance without disposing it.
   Expected<eprosima::fastdds::dds::DataReader*> make_reader(
-      std::string_view topic, eprosima::fastdds::dds::TypeSupport type,
-      eprosima::fastdds::dds::DataReaderListener* listener);
+      const TopicQos& topic, eprosima::fastdds::dds::TypeSupport type,
+      eprosima::fastdds::dds::DataReaderListener* listener, bool raw = false);
+  eprosima::fastdds::dds::Subscriber* subscriber();
   std::unique_ptr<State> state_;
 };
 

@@ -1,0 +1,236 @@
+#include "raw.hpp"
+
+#include <algorithm>
+#include <cstring>
+#include <fastdds/dds/subscriber/Subscriber.hpp>
+#include <map>
+#include <mutex>
+#include <set>
+
+namespace prehend::dds {
+
+namespace fdds = eprosima::fastdds::dds;
+namespace rtps = eprosima::fastrtps::rtps;
+
+namespace {
+
+Guid guid_of(const rtps::GUID_t& guid) {
+  Guid bytes{};
+  std::copy_n(guid.guidPrefix.value, 12, bytes.begin());
+  std::copy_n(guid.entityId.value, 4, bytes.begin() + 12);
+  return bytes;
+}
+
+Guid guid_of(const rtps::InstanceHandle_t& handle) {
+  Guid bytes{};
+  std::copy_n(static_cast<const rtps::octet*>(handle.value), 16, bytes.begin());
+  return bytes;
+}
+
+/// A type that is nothing but its bytes. The key cannot be read out of them: it is the one that
+/// came with the sample.
+class RawType : public fdds::TopicDataType {
+ public:
+  RawType(const std::string& name, bool keyed) {
+    setName(name.c_str());
+    m_isGetKeyDefined = keyed;
+    m_typeSize = 256;  // to begin with; histories grow as needed
+  }
+  bool serialize(void* data, rtps::SerializedPayload_t* payload) override {
+    const auto& bytes = static_cast<const RawSample*>(data)->payload;
+    if (bytes.size() > payload->max_size || bytes.size() < 4) return false;
+    std::memcpy(payload->data, bytes.data(), bytes.size());
+    payload->length = static_cast<std::uint32_t>(bytes.size());
+    payload->encapsulation = bytes[1] & 1 ? CDR_LE : CDR_BE;
+    return true;
+  }
+  bool deserialize(rtps::SerializedPayload_t* payload, void* data) override {
+    static_cast<RawSample*>(data)->payload.assign(payload->data, payload->data + payload->length);
+    return true;
+  }
+  std::function<std::uint32_t()> getSerializedSizeProvider(void* data) override {
+    return [data] {
+      return static_cast<std::uint32_t>(static_cast<RawSample*>(data)->payload.size());
+    };
+  }
+  bool getKey(void* data, rtps::InstanceHandle_t* handle, bool) override {
+    if (!m_isGetKeyDefined) return false;
+    const Guid& key = static_cast<const RawSample*>(data)->instance;
+    std::copy(key.begin(), key.end(), static_cast<rtps::octet*>(handle->value));
+    return true;
+  }
+  void* createData() override { return new RawSample; }
+  void deleteData(void* data) override { delete static_cast<RawSample*>(data); }
+};
+
+std::chrono::milliseconds milliseconds_of(const eprosima::fastrtps::Duration_t& period) {
+  if (period == eprosima::fastrtps::c_TimeInfinite) return std::chrono::milliseconds(0);
+  return std::chrono::milliseconds(period.to_ns() / 1'000'000);
+}
+
+}  // namespace
+
+void Discovery::on_publisher_discovery(fdds::DomainParticipant*,
+                                       rtps::WriterDiscoveryInfo&& discovered) {
+  const rtps::WriterProxyData& info = discovered.info;
+  Discovered found;
+  found.writer = guid_of(info.guid());
+  found.gone = discovered.status == rtps::WriterDiscoveryInfo::REMOVED_WRITER;
+  found.topic.name = info.topicName().to_string();
+  found.topic.type = info.typeName().to_string();
+  found.topic.keyed = info.topicKind() == rtps::WITH_KEY;
+  TopicQos& qos = found.topic.qos;
+  qos.reliable = info.m_qos.m_reliability.kind == fdds::RELIABLE_RELIABILITY_QOS;
+  // Whatever lasts longer than transient local we can neither ask for nor offer.
+  qos.transient_local = info.m_qos.m_durability.kind != fdds::VOLATILE_DURABILITY_QOS;
+  qos.exclusive = info.m_qos.m_ownership.kind == fdds::EXCLUSIVE_OWNERSHIP_QOS;
+  qos.deadline = milliseconds_of(info.m_qos.m_deadline.period);
+  qos.lifespan = milliseconds_of(info.m_qos.m_lifespan.duration);
+  const TopicQos* known = find_topic(found.topic.name);
+  qos.writer_depth = known ? known->writer_depth : qos.transient_local ? 1 : 64;
+  for (const std::string& name : info.m_qos.m_partition.getNames()) found.rigs.push_back(name);
+  found_(found);
+}
+
+class RawReader::Listener : public fdds::DataReaderListener {
+ public:
+  explicit Listener(Take take) : take_(std::move(take)) {}
+
+  void on_subscription_matched(fdds::DataReader*,
+                               const fdds::SubscriptionMatchedStatus& status) override {
+    const std::scoped_lock lock(mutex_);
+    const Guid writer = guid_of(status.last_publication_handle);
+    if (status.current_count_change > 0)
+      writers_[writer].matched = std::chrono::system_clock::now();
+    else if (status.current_count_change < 0)
+      writers_.erase(writer);
+  }
+
+  void on_data_available(fdds::DataReader* reader) override {
+    const std::scoped_lock lock(mutex_);
+    std::vector<RawSample> samples;
+    std::vector<fdds::SampleInfo> infos;
+    while (true) {
+      fdds::SampleInfo& info = infos.emplace_back();
+      RawSample& sample = samples.emplace_back();
+      if (reader->take_next_sample(&sample, &info) != ReturnCode_t::RETCODE_OK) break;
+      sample.instance = guid_of(info.instance_handle);
+      sample.writer = guid_of(info.sample_identity.writer_guid());
+      sample.sequence = info.sample_identity.sequence_number().to64long();
+      sample.sent = from_ns(info.source_timestamp.to_ns());
+      sample.received = from_ns(info.reception_timestamp.to_ns());
+    }
+    samples.pop_back();
+    infos.pop_back();
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+      samples[i].kind = kind_of(samples, infos, i);
+      count(samples[i]);
+    }
+    for (RawSample& sample : samples) take_(std::move(sample));
+  }
+
+  std::atomic<std::uint64_t> lost = 0, received = 0;
+
+ private:
+  struct Seen {
+    Time matched{}, sent{};
+    std::uint64_t sequence = 0;
+  };
+
+  /// The wire says whether an instance was disposed or unregistered, the middleware only how it is
+  /// now: with several changes at once, the next life of the instance tells how this one ended.
+  RawSample::Kind kind_of(const std::vector<RawSample>& samples,
+                          const std::vector<fdds::SampleInfo>& infos, std::size_t i) {
+    using Kind = RawSample::Kind;
+    const auto ended = std::pair(samples[i].instance, samples[i].writer);
+    if (infos[i].valid_data) {
+      disposed_.erase(ended);
+      return Kind::data;
+    }
+    bool disposed = infos[i].instance_state == fdds::NOT_ALIVE_DISPOSED_INSTANCE_STATE;
+    for (std::size_t j = i + 1; j < samples.size(); ++j)
+      if (infos[j].valid_data && samples[j].instance == samples[i].instance) {
+        disposed = infos[j].disposed_generation_count > infos[i].disposed_generation_count;
+        break;
+      }
+    // What was disposed by this writer can only be unregistered by it next.
+    if (disposed && disposed_.insert(ended).second) return Kind::disposed;
+    disposed_.erase(ended);
+    return Kind::unregistered;
+  }
+
+  void count(const RawSample& sample) {
+    ++received;
+    Seen& seen = writers_[sample.writer];
+    // What a writer kept from before may have gaps that are no losses.
+    if (seen.sequence > 0 && seen.sent >= seen.matched && sample.sequence > seen.sequence + 1)
+      lost += sample.sequence - seen.sequence - 1;
+    seen.sequence = std::max(seen.sequence, sample.sequence);
+    seen.sent = sample.sent;
+  }
+
+  Take take_;
+  std::mutex mutex_;
+  std::map<Guid, Seen> writers_;
+  std::set<std::pair<Guid, Guid>> disposed_;  // instance and writer, until its next change
+};
+
+RawReader::RawReader(std::unique_ptr<Listener> listener, fdds::Subscriber* subscriber,
+                     fdds::DataReader* reader)
+    : listener_(std::move(listener)), subscriber_(subscriber), reader_(reader) {}
+
+RawReader::~RawReader() {
+  reader_->set_listener(nullptr);
+  subscriber_->delete_datareader(reader_);
+}
+
+Expected<std::unique_ptr<RawReader>> RawReader::create(Participant& participant,
+                                                       const RawTopic& topic, Take take) {
+  auto listener = std::make_unique<Listener>(std::move(take));
+  TopicQos qos = topic.qos;
+  qos.name = topic.name;
+  qos.reader_depth = 0;
+  qos.deadline = {};  // nobody waits here
+  auto made = participant.make_reader(qos, fdds::TypeSupport(new RawType(topic.type, topic.keyed)),
+                                      listener.get(), true);
+  if (!made) return tl::unexpected(made.error());
+  return std::unique_ptr<RawReader>(
+      new RawReader(std::move(listener), participant.subscriber(), *made));
+}
+
+std::uint64_t RawReader::lost() const {
+  return listener_->lost;
+}
+std::uint64_t RawReader::received() const {
+  return listener_->received;
+}
+
+Expected<RawWriter> RawWriter::create(Participant& participant, const RawTopic& topic) {
+  TopicQos qos = topic.qos;
+  qos.name = topic.name;
+  auto made =
+      participant.make_writer(qos, fdds::TypeSupport(new RawType(topic.type, topic.keyed)), true);
+  if (!made) return tl::unexpected(made.error());
+  return RawWriter(*made);
+}
+
+bool RawWriter::write(const RawSample& sample, Time sent) {
+  auto* data = const_cast<RawSample*>(&sample);
+  if (sample.kind == RawSample::Kind::data) {
+    rtps::WriteParams parameters;
+    rtps::Time_t stamp;
+    stamp.from_ns(to_ns(sent));
+    parameters.source_timestamp(stamp);
+    return writer_->write(data, parameters);
+  }
+  const eprosima::fastrtps::Time_t stamp(static_cast<std::int32_t>(to_ns(sent) / 1'000'000'000),
+                                         static_cast<std::uint32_t>(to_ns(sent) % 1'000'000'000));
+  // What was written before the recording began is not known to this writer.
+  const auto handle = writer_->register_instance(data);
+  const auto code = sample.kind == RawSample::Kind::disposed
+                        ? writer_->dispose_w_timestamp(data, handle, stamp)
+                        : writer_->unregister_instance_w_timestamp(data, handle, stamp);
+  return code == ReturnCode_t::RETCODE_OK;
+}
+
+}  // namespace prehend::dds

@@ -1,0 +1,95 @@
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <fastdds/dds/domain/DomainParticipantListener.hpp>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "participant.hpp"
+
+/// Topics whose type is not known here: found by discovery, read and written as the bytes on the
+/// wire.
+namespace prehend::dds {
+
+using Guid = std::array<std::uint8_t, 16>;
+
+/// A topic as discovery tells of it.
+struct RawTopic {
+  std::string name, type;
+  bool keyed = true;
+  /// What its writer offers. The depth is not told by discovery: it comes from topic_table, else it
+  /// is 1 for transient local topics and 64 for others. `name` is not used.
+  TopicQos qos;
+};
+
+/// A change of an instance: its bytes, or its end.
+struct RawSample {
+  enum class Kind : std::uint8_t { data, disposed, unregistered };
+  Kind kind = Kind::data;
+  std::vector<std::uint8_t> payload;  // with the encapsulation header; empty unless data
+  Guid instance{}, writer{};          // the key, or its hash; zero where the topic has no key
+  std::uint64_t sequence = 0;         // counts the writer's samples, from 1
+  Time sent, received;                // clocks of the writer and of this machine
+};
+
+/// A writer that has appeared, changed its QoS or gone.
+struct Discovered {
+  RawTopic topic;
+  Guid writer{};
+  std::vector<std::string> rigs;  // its partitions
+  bool gone = false;
+};
+
+/// Tells of every writer in the domain, in the discovery's thread, where no endpoint may be made.
+/// Give it to ParticipantOptions::listener; it must outlive the participant.
+class Discovery : public eprosima::fastdds::dds::DomainParticipantListener {
+ public:
+  explicit Discovery(std::function<void(const Discovered&)> found) : found_(std::move(found)) {}
+  void on_publisher_discovery(eprosima::fastdds::dds::DomainParticipant*,
+                              eprosima::fastrtps::rtps::WriterDiscoveryInfo&& info) override;
+
+ private:
+  std::function<void(const Discovered&)> found_;
+};
+
+/// Reads any topic, keeping all. Lives no longer than its Participant.
+class RawReader {
+ public:
+  /// Called for every change in the thread that received it, one call at a time.
+  using Take = std::function<void(RawSample&&)>;
+  static Expected<std::unique_ptr<RawReader>> create(Participant& participant,
+                                                     const RawTopic& topic, Take take);
+  ~RawReader();
+
+  /// Samples that were sent after their writer was matched and never came: gaps in the writers'
+  /// numbers. Safe from every thread.
+  std::uint64_t lost() const;
+  std::uint64_t received() const;
+
+ private:
+  class Listener;
+  RawReader(std::unique_ptr<Listener> listener, eprosima::fastdds::dds::Subscriber* subscriber,
+            eprosima::fastdds::dds::DataReader* reader);
+  std::unique_ptr<Listener> listener_;
+  eprosima::fastdds::dds::Subscriber* subscriber_;
+  eprosima::fastdds::dds::DataReader* reader_;
+};
+
+/// Writes any topic, with keys and QoS as given. Lives no longer than its Participant.
+class RawWriter {
+ public:
+  static Expected<RawWriter> create(Participant& participant, const RawTopic& topic);
+  /// Writes or ends the sample's instance; `sent` becomes its source time stamp. False when it
+  /// could not be queued.
+  bool write(const RawSample& sample, Time sent);
+  eprosima::fastdds::dds::DataWriter& raw() { return *writer_; }
+
+ private:
+  explicit RawWriter(eprosima::fastdds::dds::DataWriter* writer) : writer_(writer) {}
+  eprosima::fastdds::dds::DataWriter* writer_;
+};
+
+}  // namespace prehend::dds

@@ -1,0 +1,228 @@
+// Raw topics over real DDS: what a typed writer says is found by discovery, read as bytes, written
+// again by a raw writer and read by a typed reader, and nothing has changed on the way: bytes,
+// keys, ends of instances, source time stamps, QoS.
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <condition_variable>
+#include <map>
+#include <prehend/dds/raw.hpp>
+#include <random>
+
+namespace prehend::dds {
+namespace {
+
+using Kind = RawSample::Kind;
+
+/// Collects what other threads say.
+template <class T>
+class Collector {
+ public:
+  void add(T value) {
+    const std::scoped_lock lock(mutex_);
+    values_.push_back(std::move(value));
+    news_.notify_all();
+  }
+  /// All so far, as soon as `enough` of them say so or after 5 s.
+  std::vector<T> wait(const std::function<bool(const std::vector<T>&)>& enough) {
+    std::unique_lock lock(mutex_);
+    news_.wait_for(lock, std::chrono::seconds(5), [&] { return enough(values_); });
+    return values_;
+  }
+  std::vector<T> wait(std::size_t count) {
+    return wait([count](const auto& values) { return values.size() >= count; });
+  }
+
+ private:
+  std::mutex mutex_;
+  std::condition_variable news_;
+  std::vector<T> values_;
+};
+
+struct Raw : testing::Test {
+  int domain = static_cast<int>(std::random_device{}() % 200);
+  std::string rig = "raw-" + std::to_string(getpid());
+
+  Participant join(const std::string& where,
+                   eprosima::fastdds::dds::DomainParticipantListener* listener = nullptr) {
+    auto made = Participant::create(
+        {.name = "test", .domain = domain, .rig = rig + where, .listener = listener});
+    EXPECT_TRUE(made) << made.error().message();
+    return std::move(*made);
+  }
+  static void meet(eprosima::fastdds::dds::DataWriter& writer) {
+    const auto give_up = std::chrono::steady_clock::now() + std::chrono::seconds(5);
+    eprosima::fastdds::dds::PublicationMatchedStatus status;
+    while (status.current_count == 0 && std::chrono::steady_clock::now() < give_up)
+      writer.get_publication_matched_status(status);
+    ASSERT_GT(status.current_count, 0);
+  }
+  static bool match(Discovered& out, Collector<Discovered>& found, const std::string& topic) {
+    const auto there = [&](const Discovered& one) { return one.topic.name == topic && !one.gone; };
+    const auto all =
+        found.wait([&](const auto& list) { return std::any_of(list.begin(), list.end(), there); });
+    const auto one = std::find_if(all.begin(), all.end(), there);
+    if (one == all.end()) return false;
+    out = *one;
+    return true;
+  }
+};
+
+v1::ObjectDetection detection(std::uint32_t track, const std::string& name) {
+  v1::ObjectDetection message;
+  message.track(track);
+  message.stamp_ns(123456789);
+  message.name(name.c_str());
+  message.probability(0.75);
+  return message;
+}
+
+TEST_F(Raw, DiscoveryTellsTypeKeyAndQosOfATopic) {
+  Collector<Discovered> found;
+  Discovery discovery([&](const Discovered& one) { found.add(one); });
+  const Participant listener = join("", &discovery);
+  Participant lab = join("");
+  auto commands = lab.writer(robot_command);
+  auto clock = lab.writer(lab_clock);
+  ASSERT_TRUE(commands && clock);
+  Discovered command, tick;
+  ASSERT_TRUE(match(command, found, "robot/command"));
+  ASSERT_TRUE(match(tick, found, "lab/clock"));
+  EXPECT_EQ(command.topic.type, "prehend::v1::HandCommand");
+  EXPECT_TRUE(command.topic.keyed);
+  EXPECT_FALSE(tick.topic.keyed);
+  EXPECT_EQ(command.rigs, std::vector{rig});
+  EXPECT_TRUE(command.topic.qos.reliable);
+  EXPECT_FALSE(command.topic.qos.transient_local);
+  EXPECT_TRUE(command.topic.qos.exclusive);
+  EXPECT_EQ(command.topic.qos.deadline, std::chrono::milliseconds(100));
+  EXPECT_EQ(command.topic.qos.lifespan, std::chrono::milliseconds(200));
+  EXPECT_EQ(command.topic.qos.writer_depth, 64);
+  EXPECT_EQ(tick.topic.qos.writer_depth, 0);
+}
+
+TEST_F(Raw, BytesKeysEndsAndStampsPassThrough) {
+  Collector<Discovered> found;
+  Discovery discovery([&](const Discovered& one) { found.add(one); });
+  Participant recorder = join("a", &discovery);
+  Participant lab = join("a");
+  auto writer = lab.writer(object_detection);
+  ASSERT_TRUE(writer);
+  Discovered topic;
+  ASSERT_TRUE(match(topic, found, "object/detection"));
+  Collector<RawSample> taken;
+  auto reader = RawReader::create(recorder, topic.topic,
+                                  [&](RawSample&& sample) { taken.add(std::move(sample)); });
+  ASSERT_TRUE(reader) << reader.error().message();
+  meet(writer->raw());
+
+  ASSERT_TRUE(writer->write(detection(4, "Talc")));
+  ASSERT_TRUE(writer->write(detection(7, "Cup")));
+  ASSERT_TRUE(writer->dispose(detection(4, "")));
+  ASSERT_TRUE(writer->write(detection(4, "Talc again")));
+  ASSERT_TRUE(writer->write(detection(7, std::string(60, 'x'))));
+  const auto first = taken.wait(5);
+  ASSERT_EQ(first.size(), 5u);
+  EXPECT_EQ(first[2].kind, Kind::disposed);
+  EXPECT_EQ(first[2].instance, first[0].instance);
+  EXPECT_NE(first[0].instance, first[1].instance);
+  EXPECT_EQ(first[3].instance, first[0].instance);
+  EXPECT_GE(first[0].received, first[0].sent);
+  for (std::size_t i = 0; i < first.size(); ++i) EXPECT_EQ(first[i].sequence, i + 1);
+
+  // Again, elsewhere: written raw, read raw and typed.
+  Participant player = join("b"), listener = join("b");
+  Collector<RawSample> again;
+  auto second_reader = RawReader::create(listener, topic.topic,
+                                         [&](RawSample&& sample) { again.add(std::move(sample)); });
+  Participant viewer = join("b");
+  auto typed = viewer.reader(object_detection);
+  auto raw = RawWriter::create(player, topic.topic);
+  ASSERT_TRUE(raw && typed && second_reader);
+  const auto give_up = std::chrono::steady_clock::now() + std::chrono::seconds(5);
+  eprosima::fastdds::dds::PublicationMatchedStatus status;
+  while (status.current_count < 2 && std::chrono::steady_clock::now() < give_up)
+    raw->raw().get_publication_matched_status(status);
+  for (const RawSample& sample : first) EXPECT_TRUE(raw->write(sample, sample.sent));
+  const auto second = again.wait(5);
+  ASSERT_EQ(second.size(), 5u);
+  for (std::size_t i = 0; i < second.size(); ++i) {
+    EXPECT_EQ(second[i].kind, first[i].kind) << i;
+    EXPECT_EQ(second[i].payload, first[i].payload) << i;
+    EXPECT_EQ(second[i].instance, first[i].instance) << i;
+    EXPECT_EQ(second[i].sent, first[i].sent) << i;
+  }
+  std::map<std::uint32_t, std::string> names;
+  while (names.size() < 2 || names[7].size() != 60) {
+    ASSERT_TRUE(typed->raw().wait_for_unread_message({5, 0}));
+    for (const auto& sample : typed->take())
+      if (!sample.info.gone) names[sample.data.track()] = sample.data.name().to_string();
+  }
+  EXPECT_EQ(names[4], "Talc again");
+}
+
+TEST_F(Raw, DisposeAndUnregisterAreKeptApart) {
+  Participant player = join(""), listener = join("");
+  const RawTopic topic{.name = "some/topic",
+                       .type = "some::Type",
+                       .keyed = true,
+                       .qos = {.name = "", .writer_depth = 0}};
+  Collector<RawSample> taken;
+  auto reader =
+      RawReader::create(listener, topic, [&](RawSample&& sample) { taken.add(std::move(sample)); });
+  auto writer = RawWriter::create(player, topic);
+  ASSERT_TRUE(reader && writer);
+  meet(writer->raw());
+  const auto change = [](std::uint8_t key, Kind kind) {
+    RawSample sample;
+    sample.kind = kind;
+    sample.instance[0] = key;
+    if (kind == Kind::data) sample.payload = {0, 1, 0, 0, key, 2, 3, 4};
+    return sample;
+  };
+  std::vector<RawSample> sent;
+  for (const auto& [key, kind] : std::vector<std::pair<int, Kind>>{{1, Kind::data},
+                                                                   {2, Kind::data},
+                                                                   {1, Kind::unregistered},
+                                                                   {2, Kind::disposed},
+                                                                   {1, Kind::data},
+                                                                   {2, Kind::unregistered},
+                                                                   {1, Kind::disposed},
+                                                                   {1, Kind::data},
+                                                                   {3, Kind::data}})
+    sent.push_back(change(static_cast<std::uint8_t>(key), kind));
+  for (std::size_t i = 0; i < sent.size(); ++i)
+    ASSERT_TRUE(writer->write(sent[i], from_ns(1'700'000'000'123'456'789 + static_cast<int>(i))));
+  const auto got = taken.wait(sent.size());
+  ASSERT_EQ(got.size(), sent.size());
+  for (std::size_t i = 0; i < sent.size(); ++i) {
+    EXPECT_EQ(got[i].kind, sent[i].kind) << i;
+    EXPECT_EQ(got[i].instance, sent[i].instance) << i;
+    EXPECT_EQ(got[i].payload, sent[i].payload) << i;
+    EXPECT_EQ(to_ns(got[i].sent), 1'700'000'000'123'456'789 + static_cast<int>(i));
+  }
+}
+
+TEST_F(Raw, WhatAKeepLastWriterHasForgottenIsNoLoss) {
+  Participant lab = join(""), listener = join("");
+  auto writer = lab.writer(object_detection);
+  ASSERT_TRUE(writer);
+  for (int i = 0; i < 20; ++i) ASSERT_TRUE(writer->write(detection(1, "Cup")));
+  Collector<RawSample> taken;
+  const RawTopic topic{.name = "object/detection",
+                       .type = "prehend::v1::ObjectDetection",
+                       .qos = {.name = "", .transient_local = true}};
+  auto reader =
+      RawReader::create(listener, topic, [&](RawSample&& sample) { taken.add(std::move(sample)); });
+  ASSERT_TRUE(reader);
+  ASSERT_EQ(taken.wait(1).size(), 1u);
+  ASSERT_TRUE(writer->write(detection(2, "Talc")));
+  EXPECT_EQ(taken.wait(2).size(), 2u);
+  EXPECT_EQ((*reader)->lost(), 0u);
+  EXPECT_EQ((*reader)->received(), 2u);
+}
+
+}  // namespace
+}  // namespace prehend::dds
