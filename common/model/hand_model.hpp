@@ -2,9 +2,11 @@
 
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <prehend/base/error.hpp>
 #include <prehend/base/pose.hpp>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "placement.hpp"
@@ -21,6 +23,7 @@ struct CollisionShape {
 struct HandLink {
   std::string name;
   int joint = -1;             // the joint that moves it; -1: the base
+  int finger = -1;            // the fingertip at the end of its chain; -1: palm, or of several
   double mass = 0;            // kg
   Eigen::Vector3d com_L;      // centre of mass
   Eigen::Matrix3d inertia_L;  // kg m², about the centre of mass, along the axes of L
@@ -28,25 +31,38 @@ struct HandLink {
   std::string material;  // of the friction table
 };
 
-/// A revolute joint; its frame is that of the child link at q = 0. q = multiplier * dof + offset.
+enum class JointKind { revolute, prismatic };
+
+/// A joint with one axis; its frame is that of the child link at q = 0. q = multiplier * dof +
+/// offset. Values are rad and N m of a revolute joint, m and N of a prismatic one.
 struct HandJoint {
   std::string name;
+  JointKind kind = JointKind::revolute;
   int parent = 0;  // index of the parent link
   int child = 0;
   Pose X_PJ;                    // joint in the parent link's frame at q = 0
-  Eigen::Vector3d axis_J;       // unit
-  double lower = 0, upper = 0;  // rad
+  Eigen::Vector3d axis_J;       // unit; what it turns about or slides along
+  double lower = 0, upper = 0;  // rad or m
   int dof = 0;
   double multiplier = 1, offset = 0;
-  double max_torque = 1;  // N m
+  double max_torque = 1;  // N m or N
+  /// The clutch of a joint that leads a DoF (Barrett's TorqueSwitch), N m or N: blocked with this
+  /// much or more, the motor lets go of the joint, which stays where it is, and drives on the
+  /// joints that are coupled to it. The motor takes the joint again when it is driven back.
+  std::optional<double> breakaway;
 };
 
+/// Values are those of the joint that leads it: rad and rad/s, or m and m/s.
 struct HandDof {
   std::string name;
-  double lower = 0, upper = 0;  // rad
-  double max_velocity = 1;      // rad/s
+  JointKind kind = JointKind::revolute;
+  int joint = 0;  // that leads it: multiplier 1, offset 0
+  double lower = 0, upper = 0;
+  double max_velocity = 1;
   /// Which way closes the hand: +1, -1, or 0 (spread, abduction).
   int closing = 0;
+  /// How far past the contact a command must be to ask for the full effort, rad or m.
+  double squeeze = 0.15;
 };
 
 struct HandFingertip {
@@ -61,13 +77,15 @@ class HandModel {
  public:
   /// Loads models/hands/<name>/{hand.urdf,hand.toml}. Errors name the file and the element.
   static Expected<HandModel> load(const std::filesystem::path& directory);
+  /// The same from the text of the two files.
+  static Expected<HandModel> parse(std::string_view urdf, std::string_view toml);
 
   const std::string& name() const { return name_; }
   const std::vector<HandDof>& dofs() const { return dofs_; }
   const std::vector<HandJoint>& joints() const { return joints_; }  // parents before children
   const std::vector<HandLink>& links() const { return links_; }     // [0] is the base
   const std::vector<HandFingertip>& fingertips() const { return fingertips_; }
-  /// Named postures, dof values in rad; always has "open".
+  /// Named postures, dof values; always has "open".
   const std::map<std::string, Eigen::VectorXd>& postures() const { return postures_; }
   const Pose& X_BG() const { return X_BG_; }  // grasp frame, see placement.hpp
   const Reach& reach() const { return reach_; }

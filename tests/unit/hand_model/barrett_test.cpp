@@ -10,7 +10,6 @@
 #include <numbers>
 #include <prehend/base/random.hpp>
 #include <prehend/model/hand_model.hpp>
-#include <sstream>
 
 namespace {
 
@@ -145,48 +144,6 @@ TEST(Barrett, CouplesOuterJointsAndClampsDofs) {
   }
   EXPECT_EQ(hand.clamp(VectorXd::Constant(4, -1)), VectorXd::Zero(4));
   EXPECT_NEAR(hand.clamp(VectorXd::Constant(4, 9))[1], 144 * degree, 1e-12);
-}
-
-/// Loads the hand with one text of its URDF or hand.toml replaced.
-Expected<model::HandModel> altered(const std::string& file, const std::string& from,
-                                   const std::string& to) {
-  const auto folder = std::filesystem::path(testing::TempDir()) / "altered_hand";
-  std::filesystem::remove_all(folder);
-  std::filesystem::copy(models() / "hands/barrett", folder);
-  std::ifstream in(folder / file);
-  std::ostringstream text;
-  text << in.rdbuf();
-  std::string content = text.str();
-  const std::size_t at = content.find(from);
-  if (at == std::string::npos) throw std::runtime_error("the hand has no " + from);
-  std::ofstream(folder / file) << content.replace(at, from.size(), to);
-  return model::HandModel::load(folder);
-}
-
-TEST(HandModel, RefusesWhatIsNoHand) {
-  EXPECT_FALSE(model::HandModel::load("/nowhere"));
-  for (const auto& [file, from, to] :
-       std::initializer_list<std::tuple<const char*, const char*, const char*>>{
-           {"hand.urdf", "<box size=\"0.088 0.106 0.064\"/>", "<box size=\"nan 0.1 0.1\"/>"},
-           {"hand.urdf", "<box size=\"0.088 0.106 0.064\"/>",
-            "<capsule radius=\"1\" length=\"1\"/>"},
-           {"hand.urdf", "<box size=\"0.088 0.106 0.064\"/>", "<box size=\"0 0.1 0.1\"/>"},
-           {"hand.urdf", "<mass value=\"1.0\"/>", "<mass value=\"0\"/>"},
-           {"hand.urdf", "mimic joint=\"f1_spread\"", "mimic joint=\"nobody\""},
-           {"hand.urdf", "mimic joint=\"f1_inner\"", "mimic joint=\"f1_outer\""},
-           {"hand.urdf", "type=\"revolute\"", "type=\"prismatic\""},
-           {"hand.urdf", "<robot", "<rabbit"},
-           {"hand.toml", "name = \"barrett\"", "name = "},
-           {"hand.toml", "joint = \"f3_inner\"", "joint = \"f3_outer\""},
-           {"hand.toml", "open = [0.0, 0.0, 0.0, 0.0]", "open = [0.0]"},
-           {"hand.toml", "orientation = [1.0, 0.0", "orientation = [0.0, 0.0"},
-           {"hand.toml", "default = 0.5", "default = -0.5"}}) {
-    const auto hand = altered(file, from, to);
-    EXPECT_FALSE(hand) << from << " -> " << to;
-    if (!hand) {
-      EXPECT_NE(hand.error().message().find("altered_hand"), std::string::npos);
-    }
-  }
 }
 
 }  // namespace

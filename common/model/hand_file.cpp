@@ -1,0 +1,414 @@
+// Reads hand.toml and joins it with what hand.urdf said to a HandModel.
+#include <toml++/toml.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <initializer_list>
+#include <sstream>
+
+#include "hand_model.hpp"
+#include "hand_urdf.hpp"
+
+namespace prehend::model {
+namespace {
+
+using Eigen::Vector3d;
+using Eigen::VectorXd;
+
+constexpr std::size_t most_entries = 32;
+constexpr double prismatic_squeeze =
+    0.005;                          // m, for the full effort unless hand.toml says otherwise
+constexpr double tolerance = 1e-3;  // rad or m, of limits and postures written by hand
+
+Expected<std::string> read_text(const std::filesystem::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  std::ostringstream text;
+  if (!stream || !(text << stream.rdbuf()))
+    return fail("cannot be read", file.string(), "a hand is hand.urdf and hand.toml");
+  return text.str();
+}
+
+Error located(Error error, const std::string& file) {
+  error.where = file + (error.where.empty() ? "" : ": " + error.where);
+  return error;
+}
+
+/// A misspelt key must not pass as an absent one.
+Expected<void> only_keys(const toml::table& table, std::initializer_list<std::string_view> allowed,
+                         const std::string& where) {
+  for (const auto& [key, node] : table)
+    if (std::find(allowed.begin(), allowed.end(), key.str()) == allowed.end())
+      return fail("unknown key \"" + std::string(key.str()) + "\"", where,
+                  "see models/hands/README.md");
+  return {};
+}
+
+Expected<double> number(const toml::node& node, const std::string& where) {
+  const auto value = node.is_number() ? node.value<double>() : std::nullopt;
+  if (!value || !std::isfinite(*value)) return fail("needs a finite number", where);
+  return *value;
+}
+
+/// The number of a key, or `otherwise` where the key is absent.
+Expected<double> number_or(const toml::table& table, std::string_view key, double otherwise,
+                           const std::string& where) {
+  const toml::node* node = table.get(key);
+  return node ? number(*node, where + "." + std::string(key)) : otherwise;
+}
+
+Expected<std::string> text_of(const toml::table& table, std::string_view key,
+                              const std::string& where) {
+  const auto value = table[key].value<std::string>();
+  if (!value || value->empty()) return fail("needs a text \"" + std::string(key) + "\"", where);
+  return *value;
+}
+
+/// Numbers of a TOML array, exactly `count` of them and finite.
+Expected<VectorXd> numbers(const toml::node* node, std::size_t count, const std::string& where) {
+  const toml::array* array = node ? node->as_array() : nullptr;
+  if (!array || array->size() != count)
+    return fail("needs " + std::to_string(count) + " numbers", where);
+  VectorXd values(static_cast<Eigen::Index>(count));
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto value = number(*array->get(i), where);
+    if (!value) return tl::unexpected(value.error());
+    values[static_cast<Eigen::Index>(i)] = *value;
+  }
+  return values;
+}
+
+/// The entries of [[key]], 1 to 32 tables.
+Expected<std::vector<const toml::table*>> entries(const toml::table& root, const std::string& key) {
+  const toml::array* array = root[key].as_array();
+  if (!array || array->empty() || array->size() > most_entries ||
+      !array->is_homogeneous(toml::node_type::table))
+    return fail("needs 1 to 32 [[" + key + "]] entries");
+  std::vector<const toml::table*> tables;
+  for (const toml::node& node : *array) tables.push_back(node.as_table());
+  return tables;
+}
+
+/// The table of a key, empty where the key is absent.
+Expected<toml::table> table_of(const toml::table& root, const std::string& key) {
+  const toml::node* node = root.get(key);
+  if (!node) return toml::table();
+  if (!node->is_table()) return fail("must be a table [" + key + "]", key);
+  return *node->as_table();
+}
+
+template <class Items>
+int find_named(const Items& items, std::string_view name) {
+  const auto found =
+      std::find_if(items.begin(), items.end(), [&](const auto& item) { return item.name == name; });
+  return found == items.end() ? -1 : static_cast<int>(found - items.begin());
+}
+
+}  // namespace
+
+/// Fills a HandModel; the only one who changes it.
+class HandLoader {
+ public:
+  explicit HandLoader(HandTree tree)
+      : mimics_(std::move(tree.mimics)), velocities_(std::move(tree.velocities)) {
+    hand.links_ = std::move(tree.links);
+    hand.joints_ = std::move(tree.joints);
+  }
+
+  Expected<void> load(const toml::table& root) {
+    if (auto known = only_keys(root,
+                               {"name", "grasp_frame", "reach", "dof", "fingertip", "torque",
+                                "breakaway", "materials", "postures"},
+                               {});
+        !known)
+      return known;
+    const auto name = text_of(root, "name", {});
+    if (!name) return tl::unexpected(name.error());
+    hand.name_ = *name;
+    for (const auto& step :
+         {&HandLoader::read_dofs, &HandLoader::couple, &HandLoader::read_torques,
+          &HandLoader::read_breakaways, &HandLoader::read_materials, &HandLoader::read_fingertips,
+          &HandLoader::read_grasp_frame, &HandLoader::read_reach, &HandLoader::read_postures})
+      if (auto done = (this->*step)(root); !done) return done;
+    return {};
+  }
+
+  HandModel hand;
+
+ private:
+  Expected<void> read_dofs(const toml::table& root) {
+    const auto tables = entries(root, "dof");
+    if (!tables) return tl::unexpected(tables.error());
+    for (const toml::table* table : *tables) {
+      auto dof = read_dof(*table);
+      if (!dof) return tl::unexpected(dof.error());
+      hand.dofs_.push_back(std::move(*dof));
+    }
+    return {};
+  }
+
+  Expected<HandDof> read_dof(const toml::table& table) {
+    HandDof dof;
+    const auto name = text_of(table, "name", "[[dof]]");
+    if (!name) return tl::unexpected(name.error());
+    dof.name = *name;
+    const std::string where = "[[dof]] " + dof.name;
+    if (find_named(hand.dofs_, dof.name) >= 0) return fail("there are two of this name", where);
+    if (auto known = only_keys(
+            table, {"name", "joint", "lower", "upper", "max_velocity", "closing", "squeeze"},
+            where);
+        !known)
+      return tl::unexpected(known.error());
+
+    const auto leader = text_of(table, "joint", where);
+    if (!leader) return tl::unexpected(leader.error());
+    dof.joint = find_named(hand.joints_, *leader);
+    if (dof.joint < 0) return fail("joint " + *leader + " is not in the URDF", where);
+    const auto index = static_cast<std::size_t>(dof.joint);
+    if (mimics_[index]) return fail("a joint that mimics cannot lead a DoF", where, *leader);
+    if (leads(dof.joint) >= 0) return fail("joint " + *leader + " already leads a DoF", where);
+
+    const HandJoint& joint = hand.joints_[index];
+    dof.kind = joint.kind;
+    const bool slides = joint.kind == JointKind::prismatic;
+    double closing = 0;
+    for (const auto& [key, value, otherwise] :
+         std::initializer_list<std::tuple<const char*, double*, double>>{
+             {"lower", &dof.lower, joint.lower},
+             {"upper", &dof.upper, joint.upper},
+             {"max_velocity", &dof.max_velocity, velocities_[index]},
+             {"closing", &closing, 0.0},
+             {"squeeze", &dof.squeeze, slides ? prismatic_squeeze : dof.squeeze}}) {
+      const auto read = number_or(table, key, otherwise, where);
+      if (!read) return tl::unexpected(read.error());
+      *value = *read;
+    }
+    if (!(dof.lower < dof.upper) || dof.lower < joint.lower - tolerance ||
+        dof.upper > joint.upper + tolerance)
+      return fail("needs lower < upper, within the limits of joint " + joint.name, where);
+    if (!(dof.max_velocity > 0) || !std::isfinite(dof.max_velocity))
+      return fail("max_velocity must be positive", where, "here or in the URDF's <limit>");
+    if (closing != -1 && closing != 0 && closing != 1)
+      return fail("closing must be -1, 0 or 1", where);
+    if (!(dof.squeeze > 0)) return fail("squeeze must be positive", where);
+    dof.closing = static_cast<int>(closing);
+    return dof;
+  }
+
+  /// The DoF that a joint leads, or -1.
+  int leads(int joint) const {
+    const auto found = std::find_if(hand.dofs_.begin(), hand.dofs_.end(),
+                                    [&](const HandDof& dof) { return dof.joint == joint; });
+    return found == hand.dofs_.end() ? -1 : static_cast<int>(found - hand.dofs_.begin());
+  }
+
+  /// Follows <mimic> from joint to joint until one that leads a DoF.
+  Expected<void> couple(const toml::table&) {
+    for (std::size_t i = 0; i < hand.joints_.size(); ++i) {
+      HandJoint& joint = hand.joints_[i];
+      int at = static_cast<int>(i);
+      joint.multiplier = 1;
+      joint.offset = 0;
+      for (std::size_t steps = 0; (joint.dof = leads(at)) < 0; ++steps) {
+        const auto& mimic = mimics_[static_cast<std::size_t>(at)];
+        if (!mimic)
+          return fail("joint belongs to no DoF", joint.name, "give it a [[dof]] or <mimic>");
+        if (steps > hand.joints_.size())
+          return fail("joints mimic each other in a loop", joint.name);
+        joint.offset += joint.multiplier * mimic->offset;
+        joint.multiplier *= mimic->multiplier;
+        at = find_named(hand.joints_, mimic->joint);
+        if (at < 0)
+          return fail("mimics " + mimic->joint + ", which moves nothing in the URDF", joint.name);
+      }
+      if (!std::isfinite(joint.multiplier) || !std::isfinite(joint.offset) || joint.multiplier == 0)
+        return fail("coupling must be finite and not zero", joint.name);
+    }
+    return {};
+  }
+
+  Expected<void> read_torques(const toml::table& root) {
+    const auto table = table_of(root, "torque");
+    if (!table) return tl::unexpected(table.error());
+    for (const auto& [key, node] : *table)
+      if (key.str() != "default" && find_named(hand.joints_, key.str()) < 0)
+        return fail("names no joint of the URDF", "torque." + std::string(key.str()));
+    for (HandJoint& joint : hand.joints_) {
+      const auto common = number_or(*table, "default", joint.max_torque, "torque");
+      if (!common) return tl::unexpected(common.error());
+      const auto torque = number_or(*table, joint.name, *common, "torque");
+      if (!torque) return tl::unexpected(torque.error());
+      if (!(*torque > 0)) return fail("torque limit must be positive", joint.name);
+      joint.max_torque = *torque;
+    }
+    return {};
+  }
+
+  Expected<void> read_breakaways(const toml::table& root) {
+    const auto table = table_of(root, "breakaway");
+    if (!table) return tl::unexpected(table.error());
+    for (const auto& [key, node] : *table) {
+      const std::string where = "breakaway." + std::string(key.str());
+      const int index = find_named(hand.joints_, key.str());
+      if (index < 0) return fail("names no joint of the URDF", where);
+      HandJoint& joint = hand.joints_[static_cast<std::size_t>(index)];
+      const auto torque = number(node, where);
+      if (!torque) return tl::unexpected(torque.error());
+      if (!(*torque > 0 && *torque <= joint.max_torque))
+        return fail("must be positive and at most the joint's torque limit", where);
+      const bool coupled =
+          std::count_if(hand.joints_.begin(), hand.joints_.end(),
+                        [&](const HandJoint& other) { return other.dof == joint.dof; }) > 1;
+      if (leads(index) < 0 || !coupled)
+        return fail("a clutch is on a joint that leads a DoF and has joints coupled to it", where);
+      joint.breakaway = *torque;
+    }
+    return {};
+  }
+
+  Expected<void> read_materials(const toml::table& root) {
+    const auto table = table_of(root, "materials");
+    if (!table) return tl::unexpected(table.error());
+    for (const auto& [key, node] : *table)
+      if (key.str() != "default" && find_named(hand.links_, key.str()) < 0)
+        return fail("names no link of the URDF", "materials." + std::string(key.str()));
+    for (HandLink& link : hand.links_) {
+      const auto material =
+          text_of(*table, table->contains(link.name) ? std::string_view(link.name) : "default",
+                  "materials");
+      if (!material) return tl::unexpected(material.error());
+      link.material = *material;
+    }
+    return {};
+  }
+
+  Expected<void> read_fingertips(const toml::table& root) {
+    const auto tables = entries(root, "fingertip");
+    if (!tables) return tl::unexpected(tables.error());
+    for (const toml::table* table : *tables) {
+      HandFingertip tip;
+      const auto name = text_of(*table, "name", "[[fingertip]]");
+      if (!name) return tl::unexpected(name.error());
+      tip.name = *name;
+      const std::string where = "[[fingertip]] " + tip.name;
+      if (find_named(hand.fingertips_, tip.name) >= 0)
+        return fail("there are two of this name", where);
+      if (auto known = only_keys(*table, {"name", "link", "position"}, where); !known) return known;
+      const auto link = text_of(*table, "link", where);
+      if (!link) return tl::unexpected(link.error());
+      tip.link = find_named(hand.links_, *link);
+      if (tip.link < 0) return fail("link " + *link + " is not in the URDF", where);
+      const auto position = numbers(table->get("position"), 3, where + ".position");
+      if (!position) return tl::unexpected(position.error());
+      tip.p_LT = *position;
+      hand.fingertips_.push_back(std::move(tip));
+    }
+    assign_fingers();
+    return {};
+  }
+
+  /// Links between the palm and one fingertip, and what hangs on them, are that finger's.
+  void assign_fingers() {
+    const auto parent = [&](const HandLink& link) {
+      return hand.joints_[static_cast<std::size_t>(link.joint)].parent;
+    };
+    std::vector<int> tips(hand.links_.size(), 0);  // whose chain leads through the link
+    for (std::size_t finger = 0; finger < hand.fingertips_.size(); ++finger)
+      for (int at = hand.fingertips_[finger].link; at > 0;
+           at = parent(hand.links_[static_cast<std::size_t>(at)])) {
+        const auto link = static_cast<std::size_t>(at);
+        hand.links_[link].finger = ++tips[link] == 1 ? static_cast<int>(finger) : -1;
+      }
+    for (std::size_t i = 1; i < hand.links_.size(); ++i)  // parents come first
+      if (tips[i] == 0)
+        hand.links_[i].finger =
+            hand.links_[static_cast<std::size_t>(parent(hand.links_[i]))].finger;
+  }
+
+  Expected<void> read_grasp_frame(const toml::table& root) {
+    const auto table = table_of(root, "grasp_frame");
+    if (!table) return tl::unexpected(table.error());
+    if (auto known = only_keys(*table, {"position", "orientation"}, "grasp_frame"); !known)
+      return known;
+    const auto p = numbers(table->get("position"), 3, "grasp_frame.position");
+    if (!p) return tl::unexpected(p.error());
+    const auto q = numbers(table->get("orientation"), 4, "grasp_frame.orientation");
+    if (!q) return tl::unexpected(q.error());
+    const auto X_BG =
+        checked_pose(Vector3d(*p), Eigen::Quaterniond((*q)[0], (*q)[1], (*q)[2], (*q)[3]));
+    if (!X_BG) return tl::unexpected(located(X_BG.error(), "grasp_frame"));
+    hand.X_BG_ = *X_BG;
+    return {};
+  }
+
+  Expected<void> read_reach(const toml::table& root) {
+    const auto table = table_of(root, "reach");
+    if (!table) return tl::unexpected(table.error());
+    if (auto known = only_keys(*table, {"opening", "engage", "clearance", "half_width"}, "reach");
+        !known)
+      return known;
+    Reach& reach = hand.reach_;
+    for (const auto& [key, length] : std::initializer_list<std::pair<const char*, double*>>{
+             {"opening", &reach.opening},
+             {"engage", &reach.engage},
+             {"clearance", &reach.clearance},
+             {"half_width", &reach.half_width}}) {
+      const auto read = number_or(*table, key, *length, "reach");
+      if (!read) return tl::unexpected(read.error());
+      if (!(*read > 0)) return fail("must be positive", std::string("reach.") + key);
+      *length = *read;
+    }
+    return {};
+  }
+
+  Expected<void> read_postures(const toml::table& root) {
+    const auto table = table_of(root, "postures");
+    if (!table) return tl::unexpected(table.error());
+    for (const auto& [key, node] : *table) {
+      const std::string where = "postures." + std::string(key.str());
+      const auto dof = numbers(&node, hand.dofs_.size(), where);
+      if (!dof) return tl::unexpected(dof.error());
+      const VectorXd clamped = hand.clamp(*dof);
+      Eigen::Index worst = 0;
+      if ((*dof - clamped).cwiseAbs().maxCoeff(&worst) > tolerance)
+        return fail(
+            "is outside the limits of DoF " + hand.dofs_[static_cast<std::size_t>(worst)].name,
+            where);
+      hand.postures_[std::string(key.str())] = clamped;
+    }
+    if (!hand.postures_.contains("open")) return fail("needs the posture \"open\"", "postures");
+    return {};
+  }
+
+  std::vector<std::optional<HandTree::Mimic>> mimics_;  // of each joint
+  std::vector<double> velocities_;
+};
+
+Expected<HandModel> HandModel::parse(std::string_view urdf, std::string_view toml) {
+  auto tree = read_hand_urdf(std::string(urdf));
+  if (!tree) return tl::unexpected(located(tree.error(), "hand.urdf"));
+  toml::table root;
+  try {
+    root = toml::parse(toml);
+  } catch (const toml::parse_error& error) {
+    return fail(std::string(error.description()),
+                "hand.toml: line " + std::to_string(error.source().begin.line),
+                "hand.toml is TOML");
+  }
+  HandLoader loader(std::move(*tree));
+  if (auto done = loader.load(root); !done)
+    return tl::unexpected(located(done.error(), "hand.toml"));
+  return std::move(loader.hand);
+}
+
+Expected<HandModel> HandModel::load(const std::filesystem::path& directory) {
+  const auto urdf = read_text(directory / "hand.urdf");
+  if (!urdf) return tl::unexpected(urdf.error());
+  const auto toml = read_text(directory / "hand.toml");
+  if (!toml) return tl::unexpected(toml.error());
+  auto hand = parse(*urdf, *toml);
+  if (!hand) hand.error().where = (directory / hand.error().where).string();
+  return hand;
+}
+
+}  // namespace prehend::model
