@@ -11,6 +11,8 @@
 #include <string>
 #include <vector>
 
+#include "arm.hpp"
+
 namespace prehend::grasping {
 
 /// A rigid body besides the hand.
@@ -29,12 +31,8 @@ struct WorldOptions {
   Eigen::Vector3d gravity_W = {0, 0, -9.81};  // m/s², of the objects; the hand is compensated
   /// 1/s: damps free objects; for closing without gravity.
   double object_damping = 0;
-  /// Limits of the arm that carries the hand's base.
-  double base_speed = 1.0;               // m/s
-  double base_turn_speed = 3.0;          // rad/s
-  double base_acceleration = 10.0;       // m/s²
-  double base_turn_acceleration = 50.0;  // rad/s²
-  double full_squeeze = 0.15;            // rad of DoF from joint to command for the full torque
+  ArmLimits arm;
+  double full_squeeze = 0.15;  // rad of DoF from joint to command for the full torque
 };
 
 struct HandMotion {

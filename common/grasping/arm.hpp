@@ -1,0 +1,31 @@
+#pragma once
+
+#include <prehend/base/pose.hpp>
+
+namespace prehend::grasping {
+
+/// What carries the hand: limits of its base.
+struct ArmLimits {
+  double speed = 1.0;               // m/s
+  double turn_speed = 3.0;          // rad/s
+  double acceleration = 10.0;       // m/s²
+  double turn_acceleration = 50.0;  // rad/s²
+};
+
+/// The base's velocity on its way to where it was told to be: fast, within the limits, without
+/// overshoot. A value: two with the same history move alike.
+class Arm {
+ public:
+  /// The velocities of the next step of `dt` s, from X_WC (now) towards X_WC_goal.
+  void step(const Pose& X_WC, const Pose& X_WC_goal, const ArmLimits& limits, double dt);
+  void stop() { *this = {}; }
+
+  const Eigen::Vector3d& velocity() const { return velocity_; }  // m/s, in W
+  const Eigen::Vector3d& turning() const { return turning_; }    // rad/s, in W
+
+ private:
+  Eigen::Vector3d velocity_ = Eigen::Vector3d::Zero();
+  Eigen::Vector3d turning_ = Eigen::Vector3d::Zero();
+};
+
+}  // namespace prehend::grasping

@@ -1,0 +1,80 @@
+#pragma once
+
+#include <BulletCollision/BroadphaseCollision/btOverlappingPairCache.h>
+#include <BulletDynamics/Featherstone/btMultiBody.h>
+#include <BulletDynamics/Featherstone/btMultiBodyJointLimitConstraint.h>
+#include <BulletDynamics/Featherstone/btMultiBodyJointMotor.h>
+#include <BulletDynamics/Featherstone/btMultiBodyLinkCollider.h>
+
+#include <deque>
+#include <memory>
+#include <prehend/base/pose.hpp>
+#include <prehend/model/hand_model.hpp>
+#include <utility>
+#include <vector>
+
+#include "surface.hpp"
+
+class btMultiBodyDynamicsWorld;
+
+namespace prehend::grasping {
+
+/// Pairs of links that overlap when the hand rests, as neighbours do, never collide.
+struct LinkPairFilter : btOverlapFilterCallback {
+  std::vector<std::pair<int, int>> ignored;  // the smaller number first
+
+  bool needBroadphaseCollision(btBroadphaseProxy* a, btBroadphaseProxy* b) const override;
+};
+
+/// The hand in a Bullet world: a Featherstone multibody with a collider on each link, a drive and
+/// limits on each joint. Each drive is a spring that reaches its joint's torque limit when the
+/// command is `full_squeeze` ahead, no faster than the DoF's velocity limit. The base moves as it
+/// is told, whatever the hand touches. Link and joint numbers are those of the model.
+class HandBody {
+ public:
+  /// materials: of each link. The world must outlive the hand and gets its pair filter.
+  HandBody(const model::HandModel& hand, const std::vector<analysis::Material>& materials,
+           btMultiBodyDynamicsWorld& world, double time_step, double full_squeeze);
+  ~HandBody();
+  HandBody(const HandBody&) = delete;
+  HandBody& operator=(const HandBody&) = delete;
+
+  /// Puts the hand there with its colliders, the base at rest. rad and rad/s, of the joints.
+  void place(const Pose& X_WB, const Eigen::VectorXd& joint, const Eigen::VectorXd& velocity);
+  /// Sets the drives for the next step. rad, of the DoFs.
+  void drive(const Eigen::VectorXd& dof);
+  /// The base's velocities for the next step, of its centre of mass. m/s, rad/s, in W.
+  void move_base(const Eigen::Vector3d& velocity, const Eigen::Vector3d& turning);
+
+  Pose X_WB() const;
+  /// C: at the base's centre of mass, along the axes of B.
+  Pose X_WC() const;
+  Pose X_WC_of(const Pose& X_WB) const;
+  double joint(int i) const { return multibody_->getJointPos(i); }
+  double velocity(int i) const { return multibody_->getJointVel(i); }
+  double torque(int i) const;  // that the drive applied in the last step
+  int leader(int dof) const { return leaders_[static_cast<std::size_t>(dof)]; }
+  const std::vector<std::unique_ptr<btMultiBodyLinkCollider>>& colliders() const {
+    return colliders_;
+  }
+
+ private:
+  void build_links();
+  void build_colliders(const std::vector<analysis::Material>& materials);
+  void ignore_overlaps();
+  void build_drives();
+
+  const model::HandModel& hand_;
+  btMultiBodyDynamicsWorld& world_;
+  double time_step_, full_squeeze_;
+  LinkPairFilter filter_;
+  std::deque<Surface> surfaces_;  // stable addresses
+  std::vector<std::unique_ptr<btCollisionShape>> shapes_;
+  std::unique_ptr<btMultiBody> multibody_;
+  std::vector<std::unique_ptr<btMultiBodyLinkCollider>> colliders_;
+  std::vector<std::unique_ptr<btMultiBodyJointMotor>> motors_;
+  std::vector<std::unique_ptr<btMultiBodyJointLimitConstraint>> limits_;
+  std::vector<int> leaders_;  // joint of each DoF
+};
+
+}  // namespace prehend::grasping
