@@ -12,12 +12,14 @@ struct ArmLimits {
   double turn_acceleration = 50.0;  // rad/s²
 };
 
-/// The base's velocity on its way to where it was told to be: fast, within the limits, without
-/// overshoot. A value: two with the same history move alike.
+/// The base's velocity on its way to where it was told to be: fast, within the limits, hardly any
+/// overshoot (1 mm at 500 Hz). A value: two with the same history move alike.
 class Arm {
  public:
-  /// The velocities of the next step of `dt` s, from X_WC (now) towards X_WC_goal.
-  void step(const Pose& X_WC, const Pose& X_WC_goal, const ArmLimits& limits, double dt);
+  /// The velocities of the next step of `dt` s, from X_WC (now) towards X_WC_goal, which itself
+  /// moves at goal_velocity (m/s, in W).
+  void step(const Pose& X_WC, const Pose& X_WC_goal, const Eigen::Vector3d& goal_velocity,
+            const ArmLimits& limits, double dt);
   void stop() { *this = {}; }
 
   const Eigen::Vector3d& velocity() const { return velocity_; }  // m/s, in W

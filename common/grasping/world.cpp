@@ -44,6 +44,7 @@ struct World::State {
   std::vector<Placed> bodies;
 
   Pose X_WB_command;
+  Vector3d velocity_command = Vector3d::Zero();
   VectorXd dof_command;
   Arm arm;
 
@@ -81,11 +82,12 @@ struct World::State {
                    VectorXd::Zero(static_cast<Eigen::Index>(hand.joints().size())));
     arm.stop();
     X_WB_command = X_WB;
+    velocity_command.setZero();
     dof_command = hand.clamp(dof);
   }
 
   void drive() {
-    arm.step(fingers->X_WC(), fingers->X_WC_of(X_WB_command), options.arm, dt());
+    arm.step(fingers->X_WC(), fingers->X_WC_of(X_WB_command), velocity_command, options.arm, dt());
     fingers->move_base(arm.velocity(), arm.turning());
     fingers->drive(dof_command);
   }
@@ -140,7 +142,7 @@ std::unique_ptr<World> World::clone() const {
       std::move(*create(state_->hand, motion.X_WB, motion.dof, state_->options));
   copy->state_->fingers->place(motion.X_WB, motion.joint, motion.velocity);
   copy->state_->arm = state_->arm;
-  copy->command(state_->X_WB_command, state_->dof_command);
+  copy->command(state_->X_WB_command, state_->dof_command, state_->velocity_command);
   for (int i = 0; i < body_count(); ++i) {
     const BodyMotion moving = body_motion(i);
     copy->add_body(body(i), moving.X_WO);
@@ -207,14 +209,16 @@ void World::place_hand(const Pose& X_WB, const Eigen::VectorXd& dof) {
   state_->place(X_WB, dof);
 }
 
-void World::command(const Pose& X_WB, const Eigen::VectorXd& dof) {
+void World::command(const Pose& X_WB, const Eigen::VectorXd& dof, const Vector3d& velocity) {
   state_->X_WB_command = X_WB;
+  state_->velocity_command = velocity;
   state_->dof_command = state_->hand.clamp(dof);
 }
 
 void World::hold_still() {
   const HandMotion motion = hand_motion();
   state_->X_WB_command = motion.X_WB;
+  state_->velocity_command.setZero();
   for (Eigen::Index i = 0; i < motion.dof.size(); ++i) {
     const bool moves =
         std::abs(motion.velocity[state_->fingers->leader(static_cast<int>(i))]) > 0.05;
@@ -256,6 +260,9 @@ const Pose& World::commanded_base() const {
 }
 const Eigen::VectorXd& World::commanded_dof() const {
   return state_->dof_command;
+}
+bool World::has_table() const {
+  return state_->options.table;
 }
 int World::body_count() const {
   return static_cast<int>(state_->bodies.size());

@@ -77,8 +77,10 @@ class World {
 
   /// Puts the hand there, at rest, without passing through what lies between.
   void place_hand(const Pose& X_WB, const Eigen::VectorXd& dof);
-  /// Where base and DoFs shall go from now on. Values outside the limits are clamped.
-  void command(const Pose& X_WB, const Eigen::VectorXd& dof);
+  /// Where base and DoFs shall go from now on. Values outside the limits are clamped. velocity:
+  /// m/s, in W, of a base that is to be at X_WB in passing; the next command replaces it.
+  void command(const Pose& X_WB, const Eigen::VectorXd& dof,
+               const Eigen::Vector3d& velocity = Eigen::Vector3d::Zero());
   void hold_still();  // commands base and fingers to stay where they are; a grip keeps its squeeze
 
   void step();
@@ -88,6 +90,7 @@ class World {
   HandMotion hand_motion() const;
   const Pose& commanded_base() const;
   const Eigen::VectorXd& commanded_dof() const;
+  bool has_table() const;
   int body_count() const;
   const Body& body(int index) const;
   BodyMotion body_motion(int index) const;
