@@ -1,0 +1,136 @@
+#include "compression.hpp"
+
+#include <lz4frame.h>
+#include <zstd.h>
+
+#include <algorithm>
+#include <memory>
+#include <string>
+
+namespace prehend::mcap {
+namespace {
+
+// No chunk of a sane file is larger; a claim beyond it is damage.
+constexpr std::uint64_t largest_chunk = std::uint64_t{1} << 31;
+constexpr int zstd_level = 1;
+
+/// Room for the next piece of output, between what is there and the claimed size.
+std::size_t grow(Bytes& out, std::size_t filled, std::uint64_t size) {
+  if (filled == out.size())
+    out.resize(std::min<std::uint64_t>(size, std::max<std::uint64_t>(2 * filled, 64 * 1024)));
+  return out.size() - filled;
+}
+
+tl::unexpected<Error> damaged(const std::string& why) {
+  return fail("a chunk does not decompress: " + why);
+}
+
+Expected<Bytes> decompress_zstd(View bytes, std::uint64_t size) {
+  const std::unique_ptr<ZSTD_DCtx, decltype(&ZSTD_freeDCtx)> context(ZSTD_createDCtx(),
+                                                                     &ZSTD_freeDCtx);
+  Bytes out;
+  std::size_t filled = 0;
+  ZSTD_inBuffer input{bytes.data(), bytes.size(), 0};
+  std::size_t left = 1;  // 0: the frame is complete
+  while (left != 0) {
+    const std::size_t room = grow(out, filled, size);
+    std::uint8_t none = 0;
+    ZSTD_outBuffer output{room == 0 ? &none : out.data() + filled, room, 0};
+    const std::size_t before = input.pos;
+    left = ZSTD_decompressStream(context.get(), &output, &input);
+    if (ZSTD_isError(left)) return damaged(ZSTD_getErrorName(left));
+    filled += output.pos;
+    if (left != 0 && output.pos == 0 && input.pos == before)
+      return damaged(room == 0 ? "it is larger than it says" : "it is cut short");
+  }
+  if (filled != size) return damaged("it is smaller than it says");
+  out.resize(filled);
+  return out;
+}
+
+Expected<Bytes> decompress_lz4(View bytes, std::uint64_t size) {
+  LZ4F_dctx* raw = nullptr;
+  if (LZ4F_isError(LZ4F_createDecompressionContext(&raw, LZ4F_VERSION)))
+    return damaged("no memory");
+  const std::unique_ptr<LZ4F_dctx, decltype(&LZ4F_freeDecompressionContext)> context(
+      raw, &LZ4F_freeDecompressionContext);
+  Bytes out;
+  std::size_t filled = 0, left = 1;
+  while (left != 0) {
+    const std::size_t room = grow(out, filled, size);
+    std::uint8_t none = 0;
+    std::size_t written = room, read = bytes.size();
+    left = LZ4F_decompress(context.get(), room == 0 ? &none : out.data() + filled, &written,
+                           bytes.data(), &read, nullptr);
+    if (LZ4F_isError(left)) return damaged(LZ4F_getErrorName(left));
+    filled += written;
+    bytes = bytes.subspan(read);
+    if (left != 0 && written == 0 && read == 0)
+      return damaged(room == 0 ? "it is larger than it says" : "it is cut short");
+  }
+  if (filled != size) return damaged("it is smaller than it says");
+  out.resize(filled);
+  return out;
+}
+
+}  // namespace
+
+std::string_view name(Compression compression) {
+  switch (compression) {
+    case Compression::lz4:
+      return "lz4";
+    case Compression::zstd:
+      return "zstd";
+    case Compression::none:
+      break;
+  }
+  return "";
+}
+
+Expected<Compression> compression_named(std::string_view wanted) {
+  for (const Compression each : {Compression::none, Compression::lz4, Compression::zstd})
+    if (name(each) == wanted) return each;
+  return fail("compression «" + std::string(wanted) + "» is not known", {}, "none, lz4 or zstd");
+}
+
+Expected<void> compress(Compression compression, View bytes, Bytes& out) {
+  const std::size_t at = out.size();
+  switch (compression) {
+    case Compression::none:
+      append(out, bytes);
+      return {};
+    case Compression::zstd: {
+      out.resize(at + ZSTD_compressBound(bytes.size()));
+      const std::size_t size =
+          ZSTD_compress(out.data() + at, out.size() - at, bytes.data(), bytes.size(), zstd_level);
+      if (ZSTD_isError(size)) return fail(std::string("zstd: ") + ZSTD_getErrorName(size));
+      out.resize(at + size);
+      return {};
+    }
+    case Compression::lz4: {
+      out.resize(at + LZ4F_compressFrameBound(bytes.size(), nullptr));
+      const std::size_t size =
+          LZ4F_compressFrame(out.data() + at, out.size() - at, bytes.data(), bytes.size(), nullptr);
+      if (LZ4F_isError(size)) return fail(std::string("lz4: ") + LZ4F_getErrorName(size));
+      out.resize(at + size);
+      return {};
+    }
+  }
+  return fail("compression of no known kind");
+}
+
+Expected<Bytes> decompress(Compression compression, View bytes, std::uint64_t size) {
+  if (size > largest_chunk) return damaged("it says that it is larger than 2 GiB");
+  switch (compression) {
+    case Compression::zstd:
+      return decompress_zstd(bytes, size);
+    case Compression::lz4:
+      return decompress_lz4(bytes, size);
+    case Compression::none:
+      break;
+  }
+  if (bytes.size() != size) return damaged("its size is not what it says");
+  return Bytes(bytes.begin(), bytes.end());
+}
+
+}  // namespace prehend::mcap

@@ -1,0 +1,314 @@
+#include "survey.hpp"
+
+#include <algorithm>
+
+#include "record_stream.hpp"
+
+namespace prehend::mcap {
+namespace {
+
+// Loose messages are read in pieces of about this size.
+constexpr std::uint64_t most_stretch = 1024 * 1024;
+
+/// The ends of the data section, and what the footer says.
+struct Frame {
+  std::uint64_t data_begin = 0;
+  std::uint64_t data_end = 0;
+  std::optional<Footer> footer;
+  std::uint64_t footer_offset = 0;
+};
+
+bool is_magic(View bytes) {
+  return std::ranges::equal(bytes, magic);
+}
+
+Expected<Header> read_header(const File& file, Frame& frame) {
+  const auto start = file.read(0, magic.size());
+  if (!start) return fail("too short to be an MCAP file", file.name());
+  if (!is_magic(*start)) {
+    const bool other_version = std::equal(magic.begin(), magic.begin() + 5, start->begin());
+    return fail(other_version ? "an MCAP file of another major version" : "not an MCAP file",
+                file.name(), other_version ? "a newer prehend may read it" : "");
+  }
+  RecordStream records(file, magic.size(), file.size());
+  const auto first = records.next();
+  if (!first) return tl::unexpected(first.error());
+  if (!*first) return fail("nothing behind its first bytes", file.name());
+  auto header = parse_as<Header>((*first)->opcode, (*first)->content);
+  if (!header) return at(file, magic.size(), header.error());
+  frame.data_begin = records.position();
+  return header;
+}
+
+void find_footer(const File& file, Frame& frame) {
+  frame.data_end = file.size();
+  constexpr std::uint64_t tail = record_head + footer_content + magic.size();
+  if (file.size() < frame.data_begin + tail) return;
+  frame.footer_offset = file.size() - tail;
+  const auto end = file.read(frame.footer_offset, tail);
+  if (!end || !is_magic(View(*end).last(magic.size()))) return;
+  Cursor cursor(*end);
+  const auto opcode = cursor.number<std::uint8_t>();
+  if (cursor.number<std::uint64_t>() != footer_content) return;
+  const auto footer = parse_as<Footer>(opcode, cursor.take(footer_content));
+  if (!footer) return;
+  frame.footer = *footer;
+  frame.data_end = frame.footer_offset;
+  for (const std::uint64_t start : {footer->summary_offset_start, footer->summary_start})
+    if (start >= frame.data_begin && start < frame.data_end) frame.data_end = start;
+}
+
+class Survey {
+ public:
+  Survey(const File& file, const Frame& frame, Contents& contents)
+      : file_(file), frame_(frame), contents_(contents) {}
+
+  /// Takes the summary over, or says why not.
+  Expected<void> take_summary();
+  /// Walks through what the indexes do not cover.
+  void walk_gaps();
+
+ private:
+  struct Region {
+    std::uint64_t begin, end;
+  };
+  Expected<void> check_regions();
+  void walk(std::uint64_t begin, std::uint64_t end);
+  void note(const RawRecord& record);
+  Expected<void> take(const RawRecord& record);
+  Expected<void> take_chunk(const RawRecord& record);
+  void take_message(const RawRecord& record, const Message& message);
+
+  const File& file_;
+  const Frame& frame_;
+  Contents& contents_;
+  std::vector<Region> regions_;  // that the indexes cover, in order
+  Statistics counted_;           // of what was walked through
+  bool after_chunk_ = false;     // message indexes that come now belong to the last chunk
+  bool in_stretch_ = false;
+};
+
+Expected<void> Survey::take_summary() {
+  const Footer& footer = *frame_.footer;
+  if (footer.summary_start == 0) return {};
+  if (footer.summary_start < frame_.data_begin || footer.summary_start > frame_.footer_offset)
+    return fail("the footer points outside the file", file_.at(frame_.footer_offset));
+  const std::uint64_t covered = frame_.footer_offset + record_head + 16;  // by the CRC
+  const auto bytes = file_.read(footer.summary_start, covered - footer.summary_start);
+  if (!bytes) return tl::unexpected(bytes.error());
+  if (footer.summary_crc != 0 && crc32(*bytes) != footer.summary_crc)
+    return fail("the summary's CRC is wrong", file_.at(footer.summary_start));
+  ChunkRecords records(View(*bytes).first(frame_.footer_offset - footer.summary_start));
+  while (true) {
+    const auto raw = records.next();
+    if (!raw) return at(file_, footer.summary_start, raw.error());
+    if (!*raw) break;
+    const auto record = parse((*raw)->opcode, (*raw)->content);
+    if (!record) return at(file_, footer.summary_start + (*raw)->offset, record.error());
+    if (const auto* schema = std::get_if<Schema>(&*record))
+      contents_.schemas.emplace(schema->id, *schema);
+    else if (const auto* channel = std::get_if<Channel>(&*record))
+      contents_.channels.emplace(channel->id, *channel);
+    else if (const auto* chunk = std::get_if<ChunkIndex>(&*record))
+      contents_.chunks.push_back(*chunk);
+    else if (const auto* attachment = std::get_if<AttachmentIndex>(&*record))
+      contents_.attachments.push_back(*attachment);
+    else if (const auto* metadata = std::get_if<MetadataIndex>(&*record))
+      contents_.metadata.push_back(*metadata);
+    else if (const auto* statistics = std::get_if<Statistics>(&*record))
+      contents_.statistics = *statistics;
+  }
+  // Without channels in the summary the messages of its chunks have no names: they are walked.
+  if (contents_.channels.empty()) contents_.chunks.clear();
+  if (contents_.statistics && contents_.statistics->message_count > 0 &&
+      contents_.statistics->channel_message_counts.empty())
+    contents_.statistics.reset();
+  std::ranges::sort(contents_.chunks, {}, &ChunkIndex::chunk_start_offset);
+  return check_regions();
+}
+
+Expected<void> Survey::check_regions() {
+  const auto cover = [&](std::uint64_t begin, std::uint64_t length) {
+    regions_.push_back({begin, begin + length});
+    return begin >= frame_.data_begin && length >= record_head && begin + length >= begin &&
+           begin + length <= frame_.data_end;
+  };
+  bool sound = true;
+  for (const ChunkIndex& chunk : contents_.chunks) {
+    sound = sound && chunk.chunk_length <= file_.size() &&
+            chunk.message_index_length <= file_.size() &&
+            cover(chunk.chunk_start_offset, chunk.chunk_length + chunk.message_index_length);
+  }
+  for (const AttachmentIndex& each : contents_.attachments)
+    sound = sound && cover(each.offset, each.length);
+  for (const MetadataIndex& each : contents_.metadata)
+    sound = sound && cover(each.offset, each.length);
+  std::ranges::sort(regions_, {}, &Region::begin);
+  for (std::size_t i = 1; sound && i < regions_.size(); ++i)
+    sound = regions_[i - 1].end <= regions_[i].begin;
+  if (!sound)
+    return fail("the summary's indexes point to impossible places",
+                file_.at(frame_.footer->summary_start));
+  return {};
+}
+
+void Survey::walk_gaps() {
+  std::uint64_t position = frame_.data_begin;
+  for (const Region& region : regions_) {
+    walk(position, region.begin);
+    position = region.end;
+  }
+  walk(position, frame_.data_end);
+  std::ranges::sort(contents_.chunks, {}, &ChunkIndex::chunk_start_offset);
+  // All of it was walked through: then it is counted too.
+  if (regions_.empty() && !contents_.statistics) {
+    counted_.schema_count = static_cast<std::uint16_t>(contents_.schemas.size());
+    counted_.channel_count = static_cast<std::uint32_t>(contents_.channels.size());
+    counted_.attachment_count = static_cast<std::uint32_t>(contents_.attachments.size());
+    counted_.metadata_count = static_cast<std::uint32_t>(contents_.metadata.size());
+    counted_.chunk_count = static_cast<std::uint32_t>(contents_.chunks.size());
+    contents_.statistics = counted_;
+  }
+}
+
+void Survey::walk(std::uint64_t begin, std::uint64_t end) {
+  RecordStream records(file_, begin, end);
+  in_stretch_ = after_chunk_ = false;
+  while (true) {
+    const auto record = records.next();
+    if (!record) {
+      contents_.damage.push_back(record.error());
+      return;
+    }
+    if (!*record || (*record)->opcode == DataEnd::opcode) return;
+    if (auto taken = take(**record); !taken)
+      contents_.damage.push_back(at(file_, (*record)->offset, taken.error()).value());
+  }
+}
+
+Expected<void> Survey::take(const RawRecord& raw) {
+  if (raw.opcode == Chunk::opcode) return take_chunk(raw);
+  const auto record = parse(raw.opcode, raw.content);
+  if (!record) return tl::unexpected(record.error());
+  const std::uint64_t length = raw.end() - raw.offset;
+  if (const auto* message = std::get_if<Message>(&*record)) {
+    take_message(raw, *message);
+    return {};
+  }
+  if (const auto* index = std::get_if<MessageIndex>(&*record)) {
+    if (!after_chunk_) return {};
+    ChunkIndex& chunk = contents_.chunks.back();
+    chunk.message_index_offsets.emplace_back(index->channel_id, raw.offset);
+    chunk.message_index_length += length;
+    return {};
+  }
+  if (const auto* schema = std::get_if<Schema>(&*record)) {
+    if (schema->id != 0) contents_.schemas.emplace(schema->id, *schema);
+    return {};
+  }
+  if (const auto* channel = std::get_if<Channel>(&*record)) {
+    contents_.channels.emplace(channel->id, *channel);
+    return {};
+  }
+  in_stretch_ = after_chunk_ = false;
+  if (const auto* attachment = std::get_if<Attachment>(&*record))
+    contents_.attachments.push_back({raw.offset, length, attachment->log_time,
+                                     attachment->create_time, attachment->data.size(),
+                                     attachment->name, attachment->media_type});
+  else if (const auto* metadata = std::get_if<Metadata>(&*record))
+    contents_.metadata.push_back({raw.offset, length, metadata->name});
+  return {};
+}
+
+Expected<void> Survey::take_chunk(const RawRecord& raw) {
+  in_stretch_ = after_chunk_ = false;
+  const auto chunk = parse_as<Chunk>(raw.opcode, raw.content);
+  if (!chunk) return tl::unexpected(chunk.error());
+  const auto expanded = expand(*chunk);
+  if (!expanded) return tl::unexpected(expanded.error());
+  ChunkRecords inside(*expanded);
+  while (true) {
+    const auto each = inside.next();
+    if (!each) return tl::unexpected(each.error());
+    if (!*each) break;
+    const auto record = parse((*each)->opcode, (*each)->content);
+    if (!record) return tl::unexpected(record.error());
+    if (const auto* schema = std::get_if<Schema>(&*record))
+      contents_.schemas.emplace(schema->id, *schema);
+    else if (const auto* channel = std::get_if<Channel>(&*record))
+      contents_.channels.emplace(channel->id, *channel);
+    else if (const auto* message = std::get_if<Message>(&*record))
+      counted_.count(message->channel_id, message->log_time);
+  }
+  contents_.chunks.push_back({.message_start_time = chunk->message_start_time,
+                              .message_end_time = chunk->message_end_time,
+                              .chunk_start_offset = raw.offset,
+                              .chunk_length = raw.end() - raw.offset,
+                              .compression = chunk->compression,
+                              .compressed_size = chunk->records.size(),
+                              .uncompressed_size = chunk->uncompressed_size});
+  after_chunk_ = true;
+  return {};
+}
+
+void Survey::take_message(const RawRecord& raw, const Message& message) {
+  after_chunk_ = false;
+  counted_.count(message.channel_id, message.log_time);
+  if (!in_stretch_ || raw.offset - contents_.stretches.back().begin >= most_stretch)
+    contents_.stretches.push_back({raw.offset, raw.end(), message.log_time, message.log_time});
+  in_stretch_ = true;
+  Stretch& stretch = contents_.stretches.back();
+  stretch.end = raw.end();
+  stretch.message_start_time = std::min(stretch.message_start_time, message.log_time);
+  stretch.message_end_time = std::max(stretch.message_end_time, message.log_time);
+}
+
+}  // namespace
+
+Expected<Contents> survey(const File& file) {
+  Frame frame;
+  const auto header = read_header(file, frame);
+  if (!header) return tl::unexpected(header.error());
+  find_footer(file, frame);
+
+  Contents contents{.header = *header};
+  if (frame.footer) {
+    Survey by_summary(file, frame, contents);
+    if (auto taken = by_summary.take_summary(); taken) {
+      contents.closed = true;
+      by_summary.walk_gaps();
+      return contents;
+    } else {
+      contents = Contents{.header = *header};
+      contents.damage.push_back(taken.error());
+    }
+  } else {
+    contents.damage.push_back(Error{"the file has no end: its writer did not close it", file.name(),
+                                    "prehend recording recover makes it whole"});
+  }
+  contents.closed = frame.footer.has_value();
+  Survey(file, frame, contents).walk_gaps();
+  return contents;
+}
+
+Expected<Bytes> read_chunk(const File& file, const ChunkIndex& index) {
+  const auto bytes = file.read(index.chunk_start_offset, index.chunk_length);
+  if (!bytes) return tl::unexpected(bytes.error());
+  ChunkRecords one(*bytes);
+  const auto raw = one.next();
+  if (!raw || !*raw)
+    return fail("a chunk does not fill the place that the index gives it",
+                file.at(index.chunk_start_offset));
+  const auto chunk = parse_as<Chunk>((*raw)->opcode, (*raw)->content);
+  if (!chunk) return at(file, index.chunk_start_offset, chunk.error());
+  auto records = expand(*chunk);
+  if (!records) return at(file, index.chunk_start_offset, records.error());
+  return records;
+}
+
+tl::unexpected<Error> at(const File& file, std::uint64_t offset, Error error) {
+  error.where = file.at(offset) + (error.where.empty() ? "" : ", " + error.where);
+  return tl::unexpected(std::move(error));
+}
+
+}  // namespace prehend::mcap

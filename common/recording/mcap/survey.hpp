@@ -1,0 +1,19 @@
+#pragma once
+
+#include <prehend/base/error.hpp>
+
+#include "reader.hpp"
+
+namespace prehend::mcap {
+
+/// Finds out what is in a file: from its summary as far as that is sound, else by walking through
+/// the records. Fails only when the file is not an MCAP file of this version.
+Expected<Contents> survey(const File& file);
+
+/// A chunk of the file as it was indexed, decompressed and checked.
+Expected<Bytes> read_chunk(const File& file, const ChunkIndex& index);
+
+/// The same failure, said to be at this place of the file.
+tl::unexpected<Error> at(const File& file, std::uint64_t offset, Error error);
+
+}  // namespace prehend::mcap

@@ -1,0 +1,108 @@
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <prehend/base/error.hpp>
+#include <prehend/base/time.hpp>
+#include <vector>
+
+#include "compression.hpp"
+#include "file.hpp"
+#include "record.hpp"
+
+namespace prehend::mcap {
+
+/// What of the specification's optional parts a file gets. The defaults are what readers like best.
+struct WriterOptions {
+  std::string profile;
+  std::string library = "prehend";
+  Compression compression = Compression::zstd;
+  bool chunks = true;
+  /// A chunk is closed by the message with which it reaches this size, ...
+  std::uint64_t chunk_bytes = 1024 * 1024;
+  /// ... or spans this much log time. What is in an open chunk is lost when the process is killed.
+  Duration chunk_duration = std::chrono::milliseconds(500);
+  bool message_index = true;
+  bool chunk_index = true;
+  bool statistics = true;
+  bool repeated_schemas = true;
+  bool repeated_channels = true;
+  bool attachment_index = true;
+  bool metadata_index = true;
+  bool summary_offsets = true;
+  bool crcs = true;
+  /// Bytes behind the fields of every record that may have such outside chunks. Readers pass them
+  /// by; the specification's conformance tests want them.
+  Bytes padding;
+};
+
+/// Writes an MCAP file from front to back. Whatever was flushed is readable after a crash. Not
+/// thread safe. After a failure to write (a full disk) the file stays whole up to the last flush
+/// and every further call fails with the same error.
+class Writer {
+ public:
+  static Expected<Writer> create(const std::filesystem::path& path, WriterOptions options = {});
+  Writer(Writer&&) noexcept = default;
+  Writer& operator=(Writer&&) = delete;
+  /// Closes; call close() to learn whether that worked.
+  ~Writer();
+
+  /// With an id of its own (the same content gets a new id each time).
+  Expected<std::uint16_t> add_schema(std::string name, std::string encoding, std::string data);
+  Expected<std::uint16_t> add_channel(std::uint16_t schema_id, std::string topic,
+                                      std::string message_encoding, StringMap metadata = {});
+  /// With the id given; fails when that id is taken by something else.
+  Expected<void> write(const Schema& schema);
+  Expected<void> write(const Channel& channel);
+
+  /// Fails on a channel that was not added.
+  Expected<void> write(const Message& message);
+  /// Written at once, after the chunk that is open.
+  Expected<void> write(const Attachment& attachment);
+  Expected<void> write(const Metadata& metadata);
+
+  /// Hands everything so far to the operating system: it survives the end of this process. A
+  /// recorder calls it at least once a second.
+  Expected<void> flush();
+  /// The same, and waits until it is on the disk: it survives a power cut.
+  Expected<void> sync();
+  /// Writes the summary. The second call does nothing.
+  Expected<void> close();
+
+  /// Bytes in the file and in the chunk that is open.
+  std::uint64_t size() const { return file_.size() + pending_.size() + chunk_.size(); }
+  const Statistics& statistics() const { return statistics_; }
+
+ private:
+  Writer(File file, WriterOptions options);
+
+  /// To the open chunk, or straight to the file.
+  template <class Type>
+  void append_data(const Type& record);
+  Expected<void> close_chunk();
+  /// Writes `pending_`.
+  Expected<void> put();
+  Expected<void> write_summary();
+  /// Where the next byte behind `pending_` will lie.
+  std::uint64_t position() const { return file_.size() + pending_.size(); }
+
+  File file_;
+  WriterOptions options_;
+  Bytes pending_;  // whole records, not yet written
+  Bytes chunk_;    // records of the open chunk
+  Bytes compressed_;
+  std::optional<std::pair<std::uint64_t, std::uint64_t>> chunk_times_;
+  std::vector<MessageIndex> chunk_indexes_;  // of the open chunk, in order of first message
+  std::uint32_t data_crc_ = 0;
+  Statistics statistics_;
+  std::vector<Schema> schemas_;
+  std::vector<Channel> channels_;
+  std::map<std::uint16_t, std::size_t> schema_places_, channel_places_;
+  // The summary's index records, as bytes: they are many in a long file.
+  Bytes chunk_index_records_, attachment_index_records_, metadata_index_records_;
+  std::optional<Error> broken_;
+  bool closed_ = false;
+};
+
+}  // namespace prehend::mcap
