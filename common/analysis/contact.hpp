@@ -7,6 +7,9 @@
 namespace prehend::analysis {
 
 /// A touch between hand and object. O: the object's frame, whose origin is its centre of mass.
+/// Its forces fill the friction cone: |tangential| <= friction * normal; without friction, a ray.
+/// A soft finger (torsion > 0) also bears a moment about the normal, in the ellipsoid
+/// |tangential|² / friction² + moment² / torsion² <= normal².
 struct Contact {
   std::string link;          // of the hand
   Eigen::Vector3d p_OC;      // m
@@ -14,6 +17,9 @@ struct Contact {
   double friction = 0;       // coefficient of the two materials
   double force = 0;          // N, along the normal
   double depth = 0;          // m, penetration, 0 or more
+  double torsion = 0;        // m, greatest moment about the normal per unit of normal force
+  Eigen::Vector3d tangent_O =
+      Eigen::Vector3d::Zero();  // towards the first friction edge; zero: any
 };
 
 /// At most `most` of the contacts, spread as widely over the object as possible (farthest points

@@ -1,10 +1,8 @@
 #include "wrench_space.hpp"
 
-#include <Eigen/Geometry>
 #include <Eigen/SVD>
 #include <cmath>
 #include <limits>
-#include <numbers>
 
 extern "C" {
 #include <libqhull_r/qhull_ra.h>
@@ -14,19 +12,9 @@ namespace prehend::analysis {
 namespace {
 
 using Eigen::MatrixXd;
-using Eigen::Vector3d;
 using Eigen::VectorXd;
 
-// Below this distance a hull that touches the origin and one that contains it look the same: Qhull
-// moves points by about 1e-11 to resolve coplanar ones.
-constexpr double least_epsilon = 1e-9;
 constexpr std::size_t most_contacts = 10;
-
-Vector3d any_perpendicular(const Vector3d& n) {
-  Eigen::Index smallest = 0;
-  n.cwiseAbs().minCoeff(&smallest);
-  return n.cross(Vector3d::Unit(smallest)).normalized();
-}
 
 /// Frees what Qhull has allocated, whatever happened.
 struct Hull {
@@ -50,33 +38,11 @@ bool spans_all_dimensions(const MatrixXd& points) {
 
 }  // namespace
 
-MatrixXd contact_wrenches(const std::vector<Contact>& contacts, double torque_scale, int edges,
-                          const std::vector<Vector3d>& tangents) {
-  MatrixXd wrenches(6, static_cast<Eigen::Index>(contacts.size()) * edges);
-  Eigen::Index column = 0;
-  for (std::size_t i = 0; i < contacts.size(); ++i) {
-    const Vector3d n = contacts[i].normal_O.normalized();
-    Vector3d t1 = any_perpendicular(n);
-    if (i < tangents.size()) {
-      const Vector3d given = tangents[i] - tangents[i].dot(n) * n;
-      if (given.norm() > 1e-9) t1 = given.normalized();
-    }
-    const Vector3d t2 = n.cross(t1);
-    for (int k = 0; k < edges; ++k) {
-      const double angle = 2 * std::numbers::pi * k / edges;
-      const Vector3d f = n + contacts[i].friction * (std::cos(angle) * t1 + std::sin(angle) * t2);
-      wrenches.col(column++) << f, contacts[i].p_OC.cross(f) / torque_scale;
-    }
-  }
-  return wrenches;
-}
-
 Expected<Quality> wrench_quality(const MatrixXd& wrenches) {
   if (!wrenches.allFinite()) return fail("wrenches must be finite");
   const Eigen::Index dimension = wrenches.rows();
   if (dimension < 2) return fail("wrenches need at least two dimensions");
-  Quality quality;
-  quality.weakest_direction = VectorXd::Zero(dimension);
+  Quality quality{resistance_at(0, VectorXd::Zero(dimension)), 0};
   if (wrenches.cols() <= dimension || !spans_all_dimensions(wrenches)) return quality;
 
   // QJ joggles coplanar points, which grasps of symmetric objects always have; Qt and Qx fail
@@ -97,11 +63,9 @@ Expected<Quality> wrench_quality(const MatrixXd& wrenches) {
       nearest = -facet->offset;
       weakest = facet;
     }
-  if (!weakest || nearest < least_epsilon) return quality;
-  quality.epsilon = nearest;
-  quality.force_closure = true;
-  // The grasp can push least along the facet's outward normal, so a load the other way is hardest.
-  quality.weakest_direction = -Eigen::Map<const VectorXd>(weakest->normal, dimension);
+  if (weakest)
+    static_cast<Resistance&>(quality) =
+        resistance_at(nearest, Eigen::Map<const VectorXd>(weakest->normal, dimension));
   return quality;
 }
 

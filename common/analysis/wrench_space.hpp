@@ -6,26 +6,21 @@
 #include <vector>
 
 #include "contact.hpp"
+#include "contact_wrenches.hpp"
+#include "resistance.hpp"
 
 namespace prehend::analysis {
 
-/// How well a grasp resists disturbances: measures of the convex hull of its wrenches.
-struct Quality {
-  double epsilon = -1;  // distance from the origin to the hull's surface; -1: no force closure
-  double volume = 0;    // of the hull; 0 when it is flat
-  bool force_closure = false;
-  Eigen::VectorXd weakest_direction;  // unit wrench hardest to resist; zero without force closure
+/// How well a grasp resists disturbances, with the volume of the convex hull of its wrenches, which
+/// only the whole hull tells.
+struct Quality : Resistance {
+  double volume = 0;  // 0 when the hull is flat
 };
 
-/// Wrenches as columns (f, τ/ρ) of all friction edges of all contacts, about the centre of mass:
-/// edge k is n + μ (cos θ t₁ + sin θ t₂), θ = 2πk/edges, t₂ = n × t₁, not normalised, and τ = r ×
-/// f. tangents: t₁ of each contact, or empty to have them chosen; they are made perpendicular to n.
-Eigen::MatrixXd contact_wrenches(const std::vector<Contact>& contacts, double torque_scale,
-                                 int edges = 8, const std::vector<Eigen::Vector3d>& tangents = {});
-
-/// Ferrari & Canny's ε and volume in the L1 sense: hull of all columns (any dimension of at least
-/// 2), the origin not added. Fails on values that are not finite; too few or flat points are no
-/// failure but have no force closure.
+/// Ferrari & Canny's ε and the volume in the L1 sense by Qhull: hull of all columns (any dimension
+/// of at least 2), the origin not added. Where the volume is not wanted, l1_resistance() gives the
+/// same ε in a small part of the time. Fails on values that are not finite; too few or flat points
+/// are no failure but have no force closure.
 Expected<Quality> wrench_quality(const Eigen::MatrixXd& wrenches);
 
 /// ρ: the largest distance of a point of the shape from its centre, m.

@@ -53,7 +53,6 @@ Expected<Eigen::MatrixXd> from_contacts(const Json& root) {
   if (!edges.is_number_integer() || edges.get<std::int64_t>() < 3 || edges.get<std::int64_t>() > 64)
     return fail("\"edges\" must be 3 to 64");
   std::vector<analysis::Contact> contacts;
-  std::vector<Vector3d> tangents;
   for (const Json& entry : list) {
     const std::string where = "contact " + std::to_string(contacts.size());
     if (!entry.is_object()) return fail("is no object", where);
@@ -69,13 +68,11 @@ Expected<Eigen::MatrixXd> from_contacts(const Json& root) {
         !std::isfinite(friction.get<double>()))
       return fail("\"friction\" must be 0 or more", where);
     contact.friction = friction.get<double>();
-    Vector3d tangent = Vector3d::Zero();  // zero: one is chosen
-    if (entry.contains("tangent") && !read_numbers(entry["tangent"], tangent.data(), 3))
+    if (entry.contains("tangent") && !read_numbers(entry["tangent"], contact.tangent_O.data(), 3))
       return fail("\"tangent\" is not three finite numbers", where);
     contacts.push_back(std::move(contact));
-    tangents.push_back(tangent);
   }
-  return analysis::contact_wrenches(contacts, scale.get<double>(), edges.get<int>(), tangents);
+  return analysis::contact_wrenches(contacts, scale.get<double>(), edges.get<int>());
 }
 
 }  // namespace

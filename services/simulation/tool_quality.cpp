@@ -20,10 +20,6 @@ struct QualityArguments {
 };
 
 int quality(const QualityArguments& arguments) {
-  if (arguments.method == "fast") {
-    log::error("--method fast is not built yet (use --method full)");
-    return 2;
-  }
   const auto wrenches = read_wrenches(arguments.file);
   if (!wrenches) {
     log::error("{}", wrenches.error().message());
