@@ -54,7 +54,7 @@ HoldResult squeeze_and_hold(World& world, const VectorXd& contact, const Closing
   for (double t = 0; t < 0.5; t += dt) world.step();
   world.set_object_damping(0);
   world.set_gravity(9.81 * options.down_B.normalized());
-  return hold_test(world, 0);
+  return hold_test(world, 0, *options.hold_test);
 }
 
 }  // namespace

@@ -88,7 +88,7 @@ Expected<RobotGrasp> robot_grasp(const model::HandModel& hand, const Scheme& sch
     return a.grasp.quality.epsilon > b.grasp.quality.epsilon;
   });
   // The lift costs most of the time: only until one holds, best first.
-  options.hold_test = true;
+  options.hold_test = grasping::HoldOptions{};
   const Closed* best = nullptr;
   bool held = false;
   for (const Closed& candidate : closed) {

@@ -45,7 +45,7 @@ TEST_P(Closing, GivesAGraspThatHolds) {
   const double half = model::half_extents(body.shape).z();
   const Pose X_BO = in_base(from_above, from_above ? half - std::min(0.04, 2 * half - 0.04) : 0);
   ClosingOptions options;
-  options.hold_test = true;
+  options.hold_test = HoldOptions{};
   options.down_B = -X_BO.linear().col(2);
   const auto grasp = close_hand(barrett(), body, X_BO, VectorXd::Zero(4), options);
   ASSERT_TRUE(grasp) << grasp.error().message();
