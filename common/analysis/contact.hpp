@@ -22,6 +22,9 @@ struct Contact {
       Eigen::Vector3d::Zero();  // towards the first friction edge; zero: any
 };
 
+/// So many contacts of a grasp count, as in GraspIt!.
+inline constexpr std::size_t most_contacts = 10;
+
 /// At most `most` of the contacts, spread as widely over the object as possible (farthest points
 /// first, beginning with the strongest contact). Keeps the cost of a wrench space bounded.
 std::vector<Contact> spread_contacts(const std::vector<Contact>& contacts, std::size_t most);

@@ -14,7 +14,6 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr std::size_t most_contacts = 10;
 
 /// Frees what Qhull has allocated, whatever happened.
 struct Hull {
