@@ -44,6 +44,15 @@ bool close_until_still(World& world, const ClosingOptions& options) {
   return false;
 }
 
+Expected<analysis::Quality> judge(const std::vector<analysis::Contact>& contacts,
+                                  const model::Shape& shape, bool volume) {
+  if (volume) return analysis::grasp_quality(contacts, shape);
+  auto resistance = analysis::l1_resistance(analysis::contact_wrenches(
+      analysis::spread_contacts(contacts, analysis::most_contacts), analysis::torque_scale(shape)));
+  if (!resistance) return tl::unexpected(resistance.error());
+  return analysis::Quality{std::move(*resistance)};
+}
+
 HoldResult squeeze_and_hold(World& world, const VectorXd& contact, const ClosingOptions& options) {
   const model::HandModel& hand = world.hand();
   VectorXd squeezed = contact;
@@ -89,9 +98,9 @@ Expected<ClosedGrasp> close_hand(const model::HandModel& hand, const Body& objec
   grasp.contacts = world->contacts(0);
   if (grasp.contacts.size() < 2)
     return fail("fewer than two contacts", object.name, "the object is out of the fingers' reach");
-  auto quality = analysis::grasp_quality(grasp.contacts, object.shape);
+  auto quality = judge(grasp.contacts, object.shape, options.volume);
   if (!quality) return tl::unexpected(quality.error());
-  grasp.quality = *quality;
+  grasp.quality = std::move(*quality);
   if (options.hold_test) {
     if (options.fixed_object || !(object.mass > 0)) {
       // The fixed object served to find the posture; a free one in its place is lifted.

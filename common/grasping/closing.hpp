@@ -21,6 +21,7 @@ struct ClosingOptions {
   double squeeze = 0.15;  // rad, commanded past contact
   double speed = 1.0;     // rad/s, of the closing command
   double longest = 5.0;   // s, until the fingers must have stopped
+  bool volume = true;     // of the wrench space too, which is dear
   /// Afterwards: gravity on, commanded `squeeze` past contact, and this test. None: no test.
   std::optional<HoldOptions> hold_test;
   /// Which way gravity pulls in the hold test, in B; the lift goes the other way. Unit.
