@@ -1,4 +1,5 @@
 #include <prehend/base/log.hpp>
+#include <prehend/planning/planning_tool.hpp>
 
 #include "tool.hpp"
 
@@ -8,6 +9,8 @@ int main(int argc, char** argv) {
   prehend::log::set_name("grasp");
   int exit_code = 0;
   prehend::simulation::add_quality(app, exit_code);
+  prehend::simulation::add_plan(app, exit_code);
+  prehend::simulation::add_export(app, exit_code);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

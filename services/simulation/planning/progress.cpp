@@ -1,0 +1,34 @@
+#include "progress.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <prehend/base/log.hpp>
+#include <utility>
+
+namespace prehend::simulation {
+namespace {
+
+constexpr std::size_t width = 30;  // characters of the bar
+
+}  // namespace
+
+Progress::Progress(std::string what)
+    : what_(std::move(what)), terminal_(isatty(STDERR_FILENO) != 0) {}
+
+void Progress::show(std::size_t done, std::size_t all) {
+  if (all == 0) return;
+  if (terminal_) {
+    if (done + 1 == shown_) return;
+    shown_ = done + 1;
+    fmt::print(stderr, "\r{:<32} [{:<{}}] {:>4} of {}{}", what_,
+               std::string(width * done / all, '#'), width, done, all, done >= all ? "\n" : "");
+    return;
+  }
+  const std::size_t quarter = 4 * done / all;
+  if (quarter == shown_) return;
+  shown_ = quarter;
+  log::info("{}: {} of {}", what_, done, all);
+}
+
+}  // namespace prehend::simulation
