@@ -18,8 +18,9 @@ using Eigen::VectorXd;
 
 constexpr std::size_t most_entries = 32;
 constexpr double prismatic_squeeze =
-    0.005;                          // m, for the full effort unless hand.toml says otherwise
-constexpr double tolerance = 1e-3;  // rad or m, of limits and postures written by hand
+    0.005;                             // m, for the full effort unless hand.toml says otherwise
+constexpr double most_coupling = 1e4;  // rad/m of a gear rack of 0.1 mm
+constexpr double tolerance = 1e-3;     // rad or m, of limits and postures written by hand
 
 Expected<std::string> read_text(const std::filesystem::path& file) {
   std::ifstream stream(file, std::ios::binary);
@@ -221,8 +222,10 @@ class HandLoader {
         if (at < 0)
           return fail("mimics " + mimic->joint + ", which moves nothing in the URDF", joint.name);
       }
-      if (!std::isfinite(joint.multiplier) || !std::isfinite(joint.offset) || joint.multiplier == 0)
-        return fail("coupling must be finite and not zero", joint.name);
+      if (!(std::abs(joint.multiplier) < most_coupling) ||
+          !(std::abs(joint.offset) < most_coupling))
+        return fail("coupling must be finite and of a size that a hand can have", joint.name);
+      if (joint.multiplier == 0) return fail("coupling must not be zero", joint.name);
     }
     return {};
   }

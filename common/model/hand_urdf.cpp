@@ -3,9 +3,10 @@
 #include <urdf_model/model.h>
 #include <urdf_parser/urdf_parser.h>
 
-#include <cctype>
 #include <cmath>
 #include <exception>
+
+#include "xml.hpp"
 
 namespace prehend::model {
 namespace {
@@ -14,6 +15,10 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
 constexpr std::size_t most_links = 256;
+// Beyond these, sums and squares may overflow.
+constexpr double most_metres = 100;
+constexpr double most_kilograms = 1000;
+constexpr double most_travel = 1000;  // rad or m
 
 Vector3d vector_of(const urdf::Vector3& v) {
   return {v.x, v.y, v.z};
@@ -23,22 +28,6 @@ Pose pose_of(const urdf::Pose& pose) {
   double x = 0, y = 0, z = 0, w = 1;
   pose.rotation.getQuaternion(x, y, z, w);
   return make_pose(vector_of(pose.position), Eigen::Quaterniond(w, x, y, z).normalized());
-}
-
-/// Occurrences of <element in XML text, outside comments.
-std::size_t count_elements(const std::string& text, const std::string& element) {
-  std::size_t count = 0;
-  for (std::size_t at = 0; (at = text.find('<', at)) != std::string::npos; ++at) {
-    if (text.compare(at, 4, "<!--") == 0) {
-      at = text.find("-->", at);
-      if (at == std::string::npos) break;
-    } else if (text.compare(at + 1, element.size(), element) == 0) {
-      const std::size_t end = at + 1 + element.size();
-      const char next = end < text.size() ? text[end] : '>';
-      if (std::isspace(static_cast<unsigned char>(next)) || next == '>' || next == '/') ++count;
-    }
-  }
-  return count;
 }
 
 Expected<Shape> shape_of(const urdf::Geometry& geometry) {
@@ -71,6 +60,11 @@ void add_mass(HandLink& link, double mass, const Vector3d& com, const Matrix3d& 
   link.mass = total;
 }
 
+/// Finite, and of a size that a hand can have.
+bool is_sane(const Pose& X) {
+  return is_finite(X) && X.translation().norm() < most_metres;
+}
+
 Expected<HandJoint> read_joint(const urdf::Joint& source) {
   HandJoint joint;
   joint.name = source.name;
@@ -87,9 +81,12 @@ Expected<HandJoint> read_joint(const urdf::Joint& source) {
   joint.lower = source.limits->lower;
   joint.upper = source.limits->upper;
   joint.max_torque = source.limits->effort;
-  if (!(joint.lower < joint.upper) || !std::isfinite(joint.lower) || !std::isfinite(joint.upper) ||
-      !(joint.max_torque > 0) || !std::isfinite(joint.max_torque))
-    return fail("limits need lower < upper and a positive effort", source.name);
+  if (!(joint.lower < joint.upper) || !(std::abs(joint.lower) < most_travel) ||
+      !(std::abs(joint.upper) < most_travel) || !(joint.max_torque > 0) ||
+      !std::isfinite(joint.max_torque))
+    return fail(
+        "limits need lower < upper, both of a size that a hand can have, and a positive effort",
+        source.name);
   return joint;
 }
 
@@ -107,7 +104,7 @@ class TreeReader {
     for (const auto& child : source.child_links) {
       const urdf::Joint& joint = *child->parent_joint;
       const Pose X_LJ = X_LF * pose_of(joint.parent_to_joint_origin_transform);
-      if (!is_finite(X_LJ)) return fail("origin is not finite", joint.name);
+      if (!is_sane(X_LJ)) return fail("origin is not finite or far away", joint.name);
       if (joint.type == urdf::Joint::FIXED) {
         if (auto added = add(*child, index, X_LJ); !added) return added;
         continue;
@@ -150,9 +147,11 @@ class TreeReader {
       const Pose X_LI = X_LF * pose_of(in.origin);
       Matrix3d inertia;
       inertia << in.ixx, in.ixy, in.ixz, in.ixy, in.iyy, in.iyz, in.ixz, in.iyz, in.izz;
-      if (!(in.mass > 0) || !std::isfinite(in.mass) || !is_finite(X_LI) || !inertia.allFinite() ||
+      if (!(in.mass > 0) || !(in.mass < most_kilograms) || !is_sane(X_LI) ||
+          !(inertia.norm() < most_kilograms * most_metres * most_metres) ||
           inertia.llt().info() != Eigen::Success)
-        return fail("mass and inertia must be finite and positive", source.name);
+        return fail("mass and inertia must be positive and of a size that a hand can have",
+                    source.name);
       add_mass(link, in.mass, X_LI.translation(),
                X_LI.linear() * inertia * X_LI.linear().transpose());
     }
@@ -162,7 +161,8 @@ class TreeReader {
       auto shape = shape_of(*collision->geometry);
       if (!shape) return fail(shape.error().what, source.name, shape.error().mend);
       link.collision.push_back({*shape, X_LF * pose_of(collision->origin)});
-      if (!is_finite(link.collision.back().X_LS)) return fail("origin is not finite", source.name);
+      if (!is_sane(link.collision.back().X_LS))
+        return fail("origin is not finite or far away", source.name);
     }
     return {};
   }
@@ -173,6 +173,8 @@ class TreeReader {
 }  // namespace
 
 Expected<HandTree> read_hand_urdf(const std::string& text) {
+  auto elements = count_xml_elements(text);  // first: the parser would overflow the stack
+  if (!elements) return tl::unexpected(elements.error());
   urdf::ModelInterfaceSharedPtr source;
   try {
     source = urdf::parseURDF(text);
@@ -180,7 +182,7 @@ Expected<HandTree> read_hand_urdf(const std::string& text) {
     return fail(std::string("is not understood: ") + error.what());
   }
   if (!source || !source->getRoot())
-    return fail("is no robot description", {}, "URDF with one link that has no parent");
+    return fail("is no robot description", {}, "`prehend hand check` says what is wrong with it");
   if (source->links_.size() > most_links)
     return fail("has more than " + std::to_string(most_links) + " links");
 
@@ -198,7 +200,7 @@ Expected<HandTree> read_hand_urdf(const std::string& text) {
     shapes += link.collision.size();
   }
   // The parser drops elements that it does not understand; a hand must not lose any.
-  if (shapes != count_elements(text, "collision"))
+  if (shapes != static_cast<std::size_t>((*elements)["collision"]))
     return fail("a collision element was not understood", {},
                 "only boxes, cylinders and spheres of positive size");
   return std::move(reader.tree);

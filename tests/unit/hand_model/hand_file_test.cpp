@@ -147,7 +147,7 @@ struct Wrong {
 
 TEST(HandFile, RefusesWhatIsNoHandAndSaysWhere) {
   for (const Wrong& wrong : std::initializer_list<Wrong>{
-           {true, "<robot", "<rabbit", "robot description"},
+           {true, "<robot", "<rabbit", "is not XML"},
            {true, "<robot name='small'>", "", "robot description"},
            {true, "radius='0.01'", "radius='nan'", "collision"},
            {true, "radius='0.01'", "radius='-1'", "collision"},

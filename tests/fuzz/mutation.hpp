@@ -1,0 +1,21 @@
+#pragma once
+
+#include <prehend/base/random.hpp>
+#include <string>
+
+namespace prehend::fuzz {
+
+/// Bits flipped, pieces cut out, doubled, moved or overwritten: for any format.
+std::string mutate_bytes(Random& random, std::string bytes);
+
+/// One number of a text becomes another, or nan, inf, something huge, tiny, negative, or nothing.
+std::string mutate_number(Random& random, std::string text);
+
+/// An element of XML is deleted, doubled, moved or renamed, or an attribute taken away or given the
+/// value of another.
+std::string mutate_xml(Random& random, std::string text);
+
+/// A line is deleted, doubled, moved, or loses what stands behind its equals sign.
+std::string mutate_lines(Random& random, std::string text);
+
+}  // namespace prehend::fuzz
