@@ -33,11 +33,13 @@ class Conductor {
   Expected<void> step(Time now, std::chrono::milliseconds patience);
   /// Cycles at `now` until one brings nothing new.
   Expected<void> settle(Time now, std::chrono::milliseconds patience);
+  /// Samples published so far on each topic, by the caller and by the services, ends of instances
+  /// among them.
+  std::map<std::string, std::uint64_t> totals() const;
 
  private:
   Conductor(dds::Writer<v1::LabClock> clock, dds::Reader<v1::LabProgress> progress,
             const std::vector<std::string>& services);
-  std::map<std::string, std::uint64_t> totals() const;
 
   dds::Writer<v1::LabClock> clock_;
   dds::Reader<v1::LabProgress> progress_;

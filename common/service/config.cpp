@@ -175,4 +175,19 @@ std::filesystem::path Config::path(std::string_view key) const {
   return path.is_absolute() ? path : directory_ / path;
 }
 
+std::map<std::string, std::string> Config::texts() const {
+  struct ToText {
+    std::string operator()(bool value) const { return value ? "true" : "false"; }
+    std::string operator()(std::int64_t value) const { return std::to_string(value); }
+    std::string operator()(double value) const { return fmt::format("{}", value); }
+    std::string operator()(const std::string& value) const { return value; }
+    std::string operator()(const std::vector<double>& value) const {
+      return fmt::format("[{}]", fmt::join(value, ", "));
+    }
+  };
+  std::map<std::string, std::string> texts;
+  for (const auto& [key, value] : values_) texts.emplace(key, std::visit(ToText{}, value));
+  return texts;
+}
+
 }  // namespace prehend::service

@@ -38,6 +38,9 @@ class Config {
   /// A path; a relative one is meant from the folder of the file, "share:x" from share_directory().
   /// Empty stays empty.
   std::filesystem::path path(std::string_view key) const;
+  /// Every key with its value as the text of an override, so that another process, perhaps another
+  /// day, can be given the same configuration.
+  std::map<std::string, std::string> texts() const;
 
  private:
   std::map<std::string, Setting, std::less<>> values_;

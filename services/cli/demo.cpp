@@ -10,9 +10,9 @@
 #include <iostream>
 #include <prehend/base/log.hpp>
 #include <prehend/base/paths.hpp>
+#include <prehend/service/lab.hpp>
 #include <thread>
 
-#include "lab.hpp"
 #include "listener.hpp"
 #include "observer.hpp"
 #include "series.hpp"
@@ -123,7 +123,7 @@ class Demonstration {
     if (!config) return wrong(config.error());
     hand_ = config->text("simulation.hand");
 
-    auto folder = TemporaryFolder::create(options_.keep);
+    auto folder = service::TemporaryFolder::create(options_.keep);
     if (!folder) return broken(folder.error());
     folder_.emplace(std::move(*folder));
     if (options_.keep) log::info("scene and logs are in {}", folder_->path().string());
@@ -243,9 +243,9 @@ class Demonstration {
   std::string hand_;
   Clock::time_point end_;
   Observer observer_;
-  std::optional<TemporaryFolder> folder_;
+  std::optional<service::TemporaryFolder> folder_;
   std::optional<Listener> listener_;
-  std::optional<Lab> lab_;  // after the folder: stopped before it is removed
+  std::optional<service::Lab> lab_;  // after the folder: stopped before it is removed
   std::vector<std::string> awaited_;
   Trouble failure_;
 };

@@ -206,6 +206,9 @@ Expected<Command> Mapping::on_posture(const Posture& posture, Time now) {
 
 std::optional<Command> Mapping::tick(Time now) {
   if (!last_answer_ || now - *last_answer_ < options_.silence) return std::nullopt;
+  // In lockstep several ticks may come at one time.
+  if (last_hold_ && now - *last_hold_ < options_.hold_period) return std::nullopt;
+  last_hold_ = now;
   time_ = std::max(time_, now);
   command_.stamp = now;
   command_.origin.reset();

@@ -56,14 +56,15 @@ struct MappingOptions {
   double enter_angle = 0.8, leave_angle = 1.1;  // rad, the same
   double prefer = 0.03;  // m, by which another object must be nearer to take over
   double least_probability = 0.6;
-  Duration fresh = std::chrono::milliseconds(500);   // age at which a detection counts as gone
-  Duration ramp = std::chrono::milliseconds(300);    // weight from 0 to 1
-  Duration silence = std::chrono::milliseconds(60);  // without postures, until it holds
-  Duration state_wait = std::chrono::seconds(1);     // for robot/state, before starting without
-  double correct_distance = 0.03;                    // m, most that the placement is corrected
-  double correct_angle = 0.349066;                   // rad (20°)
-  double correct_speed = 0.15;                       // m/s, at which the correction may change
-  double correct_turn_speed = 1.5;                   // rad/s
+  Duration fresh = std::chrono::milliseconds(500);       // age at which a detection counts as gone
+  Duration ramp = std::chrono::milliseconds(300);        // weight from 0 to 1
+  Duration silence = std::chrono::milliseconds(60);      // without postures, until it holds
+  Duration hold_period = std::chrono::milliseconds(10);  // between commands to hold, at least
+  Duration state_wait = std::chrono::seconds(1);         // for robot/state, before starting without
+  double correct_distance = 0.03;                        // m, most that the placement is corrected
+  double correct_angle = 0.349066;                       // rad (20°)
+  double correct_speed = 0.15;                           // m/s, at which the correction may change
+  double correct_turn_speed = 1.5;                       // rad/s
   double closing_speed = 1.0;    // rad/s, of fingers that close on a known object
   double base_speed = 1.0;       // m/s, of the hand's base
   double base_turn_speed = 3.0;  // rad/s
@@ -115,7 +116,7 @@ class Mapping {
   Pose full_correction_ = Pose::Identity();  // X_GG', for weight 1, as last seen
   Pose correction_ = Pose::Identity();       // X_GG' in force
   std::optional<RobotState> state_;
-  std::optional<Time> first_posture_, last_answer_;
+  std::optional<Time> first_posture_, last_answer_, last_hold_;
   Time time_{};      // that the last command is for
   Command command_;  // the last one; dof empty before the first
 };

@@ -45,6 +45,21 @@ TEST(Config, PathsAreMeantFromTheFile) {
   EXPECT_EQ(Config::load(file, {"glove.file=/a/b"})->path("glove.file"), "/a/b");
 }
 
+TEST(Config, ItsTextsMakeItAgain) {
+  const auto file =
+      write("[glove]\nrate = 33.3\nuser = \"ann b\"\n[camera]\nfocal = [500, 510.5]\n");
+  const auto config = Config::load(file);
+  ASSERT_TRUE(config);
+  std::vector<std::string> overrides;
+  for (const auto& [key, value] : config->texts()) overrides.push_back(key + "=" + value);
+  const auto again = Config::load(write(""), overrides);
+  ASSERT_TRUE(again) << again.error().message();
+  EXPECT_EQ(again->texts(), config->texts());
+  EXPECT_EQ(again->number("glove.rate"), 33.3);
+  EXPECT_EQ(again->text("glove.user"), "ann b");
+  EXPECT_EQ(again->numbers("camera.focal"), (std::vector<double>{500, 510.5}));
+}
+
 TEST(Config, MistakesAreNamed) {
   const std::pair<const char*, const char*> files[] = {
       {"[glove]\nrat = 40\n", "glove.rat"},

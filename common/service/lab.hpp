@@ -3,11 +3,12 @@
 #include <filesystem>
 #include <optional>
 #include <prehend/base/error.hpp>
-#include <prehend/service/process.hpp>
 #include <string>
 #include <vector>
 
-namespace prehend::cli {
+#include "process.hpp"
+
+namespace prehend::service {
 
 /// A folder under the system's temporary one, removed at the end unless it shall be kept.
 class TemporaryFolder {
@@ -38,7 +39,7 @@ class Lab {
   Expected<void> start(const std::string& name, const std::string& program,
                        const std::vector<std::string>& arguments);
   /// How a process ended, if it did.
-  std::optional<service::Process::Exit> ended(std::string_view name);
+  std::optional<Process::Exit> ended(std::string_view name);
   /// The first process found dead, with the last lines it said. `may_end` may end with success.
   std::optional<Error> casualty(std::string_view may_end = {});
   /// Asks all to stop and kills those that do not within three seconds.
@@ -47,7 +48,7 @@ class Lab {
  private:
   struct Member {
     std::string name;
-    service::Process process;
+    Process process;
   };
   std::string config_;
   std::vector<std::string> sets_;
@@ -55,4 +56,4 @@ class Lab {
   std::vector<Member> members_;
 };
 
-}  // namespace prehend::cli
+}  // namespace prehend::service

@@ -6,7 +6,7 @@
 #include <cstdlib>
 #include <prehend/base/paths.hpp>
 
-namespace prehend::cli {
+namespace prehend::service {
 
 Expected<TemporaryFolder> TemporaryFolder::create(bool keep) {
   std::error_code code;
@@ -42,17 +42,17 @@ Expected<void> Lab::start_service(const std::string& name, const std::vector<std
 
 Expected<void> Lab::start(const std::string& name, const std::string& program,
                           const std::vector<std::string>& arguments) {
-  service::Process::Options options;
+  Process::Options options;
   options.command = {(program_directory() / program).string()};
   options.command.insert(options.command.end(), arguments.begin(), arguments.end());
   options.log = logs_ / (name + ".log");
-  auto process = service::Process::start(options);
+  auto process = Process::start(options);
   if (!process) return tl::unexpected(process.error());
   members_.push_back({name, std::move(*process)});
   return {};
 }
 
-std::optional<service::Process::Exit> Lab::ended(std::string_view name) {
+std::optional<Process::Exit> Lab::ended(std::string_view name) {
   for (Member& member : members_)
     if (member.name == name) return member.process.exit();
   return std::nullopt;
@@ -64,7 +64,7 @@ std::optional<Error> Lab::casualty(std::string_view may_end) {
     if (!exit || (member.name == may_end && exit->code == 0)) continue;
     std::string how = exit->signal ? fmt::format("was killed by signal {}", exit->signal)
                                    : fmt::format("ended with exit code {}", exit->code);
-    const std::string said = service::last_lines(member.process.log(), 5);
+    const std::string said = last_lines(member.process.log(), 5);
     if (!said.empty()) how += "; it said:\n" + said;
     return Error{how, member.name, ""};
   }
@@ -77,4 +77,4 @@ void Lab::stop() {
   members_.clear();
 }
 
-}  // namespace prehend::cli
+}  // namespace prehend::service
