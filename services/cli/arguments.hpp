@@ -1,37 +1,16 @@
 #pragma once
 
-#include <optional>
-#include <prehend/base/error.hpp>
-#include <prehend/service/config.hpp>
-#include <string>
-#include <vector>
+#include <prehend/service/arguments.hpp>
 
-namespace CLI {
-class App;
-}
-
+/// The subcommands of `prehend` take their arguments as all programs do.
 namespace prehend::cli {
 
-/// Exit codes of every subcommand.
-enum ExitCode { exit_done = 0, exit_no = 1, exit_wrong_use = 2, exit_broken = 3 };
-
-/// Which lab is meant: options that several subcommands share.
-struct LabArguments {
-  std::string config;             // lab.toml; empty: the one that came with the programs
-  std::vector<std::string> sets;  // table.key=value
-  std::optional<int> domain;      // instead of lab.domain
-
-  void add_to(CLI::App& app);
-  std::string file() const;
-  /// The overrides with the domain among them.
-  std::vector<std::string> overrides() const;
-  Expected<service::Config> load() const;
-};
-
-/// Parses; on --help or wrong use it says what there is to say and returns the exit code.
-std::optional<int> parse(CLI::App& app, const std::vector<std::string>& arguments);
-
-/// Says what is wrong, on one line, and returns the exit code.
-int complain(const Error& error, int exit_code);
+using service::complain;
+using service::exit_broken;
+using service::exit_done;
+using service::exit_no;
+using service::exit_wrong_use;
+using service::LabArguments;
+using service::parse;
 
 }  // namespace prehend::cli

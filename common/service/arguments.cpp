@@ -5,7 +5,7 @@
 #include <prehend/base/log.hpp>
 #include <prehend/base/paths.hpp>
 
-namespace prehend::cli {
+namespace prehend::service {
 
 void LabArguments::add_to(CLI::App& app) {
   app.add_option("--config", config, "the lab's configuration file");
@@ -26,8 +26,14 @@ std::vector<std::string> LabArguments::overrides() const {
   return result;
 }
 
-Expected<service::Config> LabArguments::load() const {
-  return service::Config::load(file(), overrides());
+Expected<Config> LabArguments::load() const {
+  return Config::load(file(), overrides());
+}
+
+std::vector<std::string> LabArguments::for_service() const {
+  std::vector<std::string> arguments{"--config", file()};
+  for (const std::string& set : overrides()) arguments.insert(arguments.end(), {"--set", set});
+  return arguments;
 }
 
 std::optional<int> parse(CLI::App& app, const std::vector<std::string>& arguments) {
@@ -49,4 +55,4 @@ int complain(const Error& error, int exit_code) {
   return exit_code;
 }
 
-}  // namespace prehend::cli
+}  // namespace prehend::service

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <termios.h>
+
+#include <optional>
+
+namespace prehend::recorder {
+
+/// Keys as they are pressed, without waiting for Enter. The terminal is as before at the end.
+class Keyboard {
+ public:
+  enum Key : int { up = 1000, down, right, left };
+
+  /// Takes part only where standard input is a terminal.
+  Keyboard();
+  ~Keyboard();
+  Keyboard(const Keyboard&) = delete;
+  Keyboard& operator=(const Keyboard&) = delete;
+
+  /// The next key that was pressed: a character or a Key.
+  std::optional<int> key();
+
+ private:
+  std::optional<termios> before_;
+};
+
+}  // namespace prehend::recorder
