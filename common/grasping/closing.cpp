@@ -8,16 +8,21 @@ namespace {
 
 using Eigen::VectorXd;
 
-constexpr double lead = 0.05;        // rad that the command stays ahead: a third of the full torque
+constexpr double lead = 1.0 / 3;     // share of the squeeze, and so of the torque, while closing
 constexpr double still = 0.02;       // rad/s: slower joints stand still
 constexpr double stands_for = 0.15;  // s
 constexpr double overlap = 0.001;    // m, that a preshape may already press into the object
 constexpr double damping = 20;       // 1/s, of an object that floats while it is grasped
 
 bool stands_still(const World& world) {
+  const VectorXd velocity = world.hand_motion().velocity;
+  for (Eigen::Index i = 0; i < velocity.size(); ++i) {
+    const auto& joint = world.hand().joints()[static_cast<std::size_t>(i)];
+    const auto& dof = world.hand().dofs()[static_cast<std::size_t>(joint.dof)];
+    if (!(std::abs(velocity[i]) < still * radian_of(dof))) return false;
+  }
   const BodyMotion object = world.body_motion(0);
-  return world.hand_motion().velocity.cwiseAbs().maxCoeff() < still &&
-         object.velocity.norm() < 0.002 && object.angular_velocity.norm() < 0.05;
+  return object.velocity.norm() < 0.002 && object.angular_velocity.norm() < 0.05;
 }
 
 /// Commands every closing DoF ahead of its joint until all have stopped. False if they never do.
@@ -30,12 +35,13 @@ bool close_until_still(World& world, const ClosingOptions& options) {
   for (double t = 0; t < options.longest; t += dt) {
     const VectorXd now = world.hand_motion().dof;
     for (Eigen::Index i = 0; i < command.size(); ++i) {
-      const int closing = hand.dofs()[static_cast<std::size_t>(i)].closing;
-      if (closing == 0) continue;
-      const double next = command[i] + closing * options.speed * dt;
-      command[i] = closing > 0 ? std::min(next, now[i] + lead) : std::max(next, now[i] - lead);
+      const model::HandDof& dof = hand.dofs()[static_cast<std::size_t>(i)];
+      if (dof.closing == 0) continue;
+      const double next = command[i] + dof.closing * options.speed * radian_of(dof) * dt;
+      const double most = now[i] + dof.closing * lead * dof.squeeze;
+      command[i] = dof.closing > 0 ? std::min(next, most) : std::max(next, most);
     }
-    world.command(X_WB, command);
+    world.command(X_WB, hand.clamp(command));
     world.step();
     // The drives need a moment before they move at all.
     standing = t > 0.1 && stands_still(world) ? standing + dt : 0;
@@ -56,9 +62,11 @@ Expected<analysis::Quality> judge(const std::vector<analysis::Contact>& contacts
 HoldResult squeeze_and_hold(World& world, const VectorXd& contact, const ClosingOptions& options) {
   const model::HandModel& hand = world.hand();
   VectorXd squeezed = contact;
-  for (Eigen::Index i = 0; i < squeezed.size(); ++i)
-    squeezed[i] += options.squeeze * hand.dofs()[static_cast<std::size_t>(i)].closing;
-  world.command(world.commanded_base(), squeezed);
+  for (Eigen::Index i = 0; i < squeezed.size(); ++i) {
+    const model::HandDof& dof = hand.dofs()[static_cast<std::size_t>(i)];
+    squeezed[i] += options.squeeze * dof.squeeze * dof.closing;
+  }
+  world.command(world.commanded_base(), hand.clamp(squeezed));
   const double dt = world.time_step();
   for (double t = 0; t < 0.5; t += dt) world.step();
   world.set_object_damping(0);

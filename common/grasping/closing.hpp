@@ -18,10 +18,10 @@ struct ClosingOptions {
   /// The object cannot move while the hand closes. Otherwise it floats without gravity, damped, so
   /// that the fingers may push it to where they all touch.
   bool fixed_object = false;
-  double squeeze = 0.15;  // rad, commanded past contact
-  double speed = 1.0;     // rad/s, of the closing command
-  double longest = 5.0;   // s, until the fingers must have stopped
-  bool volume = true;     // of the wrench space too, which is dear
+  double squeeze = 1.0;  // share of each DoF's squeeze that is commanded past contact
+  double speed = 1.0;    // rad/s, of the closing command (see radian_of for what slides)
+  double longest = 5.0;  // s, until the fingers must have stopped
+  bool volume = true;    // of the wrench space too, which is dear
   /// Afterwards: gravity on, commanded `squeeze` past contact, and this test. None: no test.
   std::optional<HoldOptions> hold_test;
   /// Which way gravity pulls in the hold test, in B; the lift goes the other way. Unit.
@@ -30,9 +30,9 @@ struct ClosingOptions {
 
 /// Where the fingers stopped.
 struct ClosedGrasp {
-  Eigen::VectorXd dof;     // rad: the contact posture; command dof + squeeze * closing to grip
-  Eigen::VectorXd joints;  // rad
-  Pose X_BO;               // where the object ended up
+  Eigen::VectorXd dof;  // the contact posture; command dof + squeeze * closing to grip
+  Eigen::VectorXd joints;
+  Pose X_BO;  // where the object ended up
   std::vector<analysis::Contact> contacts;
   analysis::Quality quality;
   std::optional<HoldResult> hold;

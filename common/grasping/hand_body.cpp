@@ -17,10 +17,14 @@ using Eigen::VectorXd;
 
 // The base follows its command and is not moved by what the hand touches: it weighs so much that
 // the reaction of fingers and objects is lost in its inertia.
-constexpr double base_mass = 1000;     // kg
-constexpr double base_inertia = 100;   // kg m²
-constexpr double drive_gain = 0.1;     // share of a joint's error that the drive removes each step
-constexpr double least_drive = 0.1;    // share of its torque that a drive may always use
+constexpr double base_mass = 1000;    // kg
+constexpr double base_inertia = 100;  // kg m²
+constexpr double drive_gain = 0.1;    // share of a joint's error that the drive removes each step
+constexpr double least_drive = 0.1;   // share of its torque that a drive may always use
+constexpr double slips_after = 0.02;  // s, that a joint must be blocked before its clutch lets go
+// Shares of a DoF's squeeze: how far a finger that its clutch presses may still follow, how far it
+// must be opened until the whole torque holds it, and the speed (per s) below which it is blocked.
+constexpr double give = 0.13, yield = 0.07, blocked_speed = 0.33;
 constexpr double resting_gap = 0.002;  // m: links that are closer at rest never collide
 
 }  // namespace
@@ -36,8 +40,8 @@ bool LinkPairFilter::needBroadphaseCollision(btBroadphaseProxy* a, btBroadphaseP
 }
 
 HandBody::HandBody(const model::HandModel& hand, const std::vector<analysis::Material>& materials,
-                   btMultiBodyDynamicsWorld& world, double time_step, double full_squeeze)
-    : hand_(hand), world_(world), time_step_(time_step), full_squeeze_(full_squeeze) {
+                   btMultiBodyDynamicsWorld& world, double time_step)
+    : hand_(hand), world_(world), time_step_(time_step) {
   world_.getPairCache()->setOverlapFilterCallback(&filter_);
   build_links();
   world_.addMultiBody(multibody_.get());
@@ -119,12 +123,13 @@ void HandBody::ignore_overlaps() {
 }
 
 void HandBody::build_drives() {
-  leaders_.assign(hand_.dofs().size(), -1);
+  clutches_.resize(hand_.dofs().size());
   for (int i = 0; i < static_cast<int>(hand_.joints().size()); ++i) {
     const model::HandJoint& joint = hand_.joints()[static_cast<std::size_t>(i)];
     const model::HandDof& dof = hand_.dofs()[static_cast<std::size_t>(joint.dof)];
-    auto& leader = leaders_[static_cast<std::size_t>(joint.dof)];
-    if (leader < 0 && joint.multiplier == 1 && joint.offset == 0) leader = i;
+    const model::HandJoint& leader = hand_.joints()[static_cast<std::size_t>(dof.joint)];
+    auto& follower = clutches_[static_cast<std::size_t>(joint.dof)].follower;
+    if (leader.breakaway && dof.closing != 0 && follower < 0 && i != dof.joint) follower = i;
     auto motor = std::make_unique<btMultiBodyJointMotor>(multibody_.get(), i, 0,
                                                          joint.max_torque * time_step_);
     motor->setVelocityTarget(0, 1);
@@ -147,6 +152,29 @@ void HandBody::place(const Pose& X_WB, const VectorXd& joint, const VectorXd& ve
     multibody_->setJointPos(i, joint[i]);
     multibody_->setJointVel(i, velocity[i]);
   }
+  for (Clutch& clutch : clutches_) {
+    clutch.released.reset();
+    clutch.blocked = 0;
+  }
+  move_colliders();
+}
+
+void HandBody::copy_state(const HandBody& other) {
+  multibody_->setBasePos(other.multibody_->getBasePos());
+  multibody_->setWorldToBaseRot(other.multibody_->getWorldToBaseRot());
+  multibody_->setBaseVel(other.multibody_->getBaseVel());
+  multibody_->setBaseOmega(other.multibody_->getBaseOmega());
+  for (int i = 0; i < multibody_->getNumLinks(); ++i) {
+    multibody_->setJointPos(i, other.joint(i));
+    multibody_->setJointVel(i, other.velocity(i));
+    motors_[static_cast<std::size_t>(i)]->internalSetAppliedImpulse(
+        0, other.motors_[static_cast<std::size_t>(i)]->getAppliedImpulse(0));
+  }
+  clutches_ = other.clutches_;
+  move_colliders();
+}
+
+void HandBody::move_colliders() {
   btAlignedObjectArray<btQuaternion> rotations;
   btAlignedObjectArray<btVector3> origins;
   multibody_->forwardKinematics(rotations, origins);
@@ -154,18 +182,62 @@ void HandBody::place(const Pose& X_WB, const VectorXd& joint, const VectorXd& ve
 }
 
 void HandBody::drive(const VectorXd& dof) {
+  for (int i = 0; i < dof.size(); ++i) update_clutch(i, dof[i]);
   const VectorXd target = hand_.joint_angles(dof);
   for (int i = 0; i < target.size(); ++i) {
     const model::HandJoint& joint = hand_.joints()[static_cast<std::size_t>(i)];
-    const double wanted = std::clamp(target[i], joint.lower, joint.upper);
+    const model::HandDof& led = hand_.dofs()[static_cast<std::size_t>(joint.dof)];
+    double wanted = std::clamp(target[i], joint.lower, joint.upper);
     const double ahead = std::abs(wanted - multibody_->getJointPos(i));
     // Only what closes is to be soft; a spread that gives way lets the object turn.
-    const bool closes = hand_.dofs()[static_cast<std::size_t>(joint.dof)].closing != 0;
-    const double share = closes ? ahead / (std::abs(joint.multiplier) * full_squeeze_) : 1.0;
+    double share = led.closing != 0 ? ahead / (std::abs(joint.multiplier) * led.squeeze) : 1.0;
+    const auto& released = clutches_[static_cast<std::size_t>(joint.dof)].released;
+    if (released && i == led.joint) {
+      wanted = std::clamp(*released + led.closing * give * led.squeeze, joint.lower, joint.upper);
+      const double opened = led.closing * (*released - multibody_->getJointPos(i));
+      const double pressed = *joint.breakaway / joint.max_torque;
+      share = pressed + (1 - pressed) * std::clamp(opened / (yield * led.squeeze), 0.0, 1.0);
+    }
     auto& motor = *motors_[static_cast<std::size_t>(i)];
     motor.setMaxAppliedImpulse(joint.max_torque * std::clamp(share, least_drive, 1.0) * time_step_);
     motor.setPositionTarget(wanted, drive_gain);
   }
+}
+
+void HandBody::update_clutch(int dof, double command) {
+  Clutch& clutch = clutches_[static_cast<std::size_t>(dof)];
+  if (clutch.follower < 0) return;
+  const model::HandDof& led = hand_.dofs()[static_cast<std::size_t>(dof)];
+  if (clutch.released) {
+    const bool driven_back = led.closing * (command - *clutch.released) < 0 &&
+                             led.closing * (motor(dof) - *clutch.released) <= 0;
+    if (driven_back) clutch = {clutch.follower, 0, std::nullopt};
+    return;
+  }
+  const double breakaway = *hand_.joints()[static_cast<std::size_t>(led.joint)].breakaway;
+  const bool blocked = led.closing * torque(led.joint) >= 0.999 * breakaway &&
+                       std::abs(velocity(led.joint)) < blocked_speed * led.squeeze;
+  clutch.blocked = blocked ? clutch.blocked + time_step_ : 0;
+  if (clutch.blocked > slips_after) clutch.released = joint(led.joint);
+}
+
+double HandBody::motor(int dof) const {
+  const model::HandDof& led = hand_.dofs()[static_cast<std::size_t>(dof)];
+  const Clutch& clutch = clutches_[static_cast<std::size_t>(dof)];
+  if (!clutch.released) return joint(led.joint);
+  // The coupled joint may lag; the motor has come at least as far as where the clutch let go.
+  const model::HandJoint& coupled = hand_.joints()[static_cast<std::size_t>(clutch.follower)];
+  const double follows = (joint(clutch.follower) - coupled.offset) / coupled.multiplier;
+  return led.closing > 0 ? std::max(*clutch.released, follows)
+                         : std::min(*clutch.released, follows);
+}
+
+double HandBody::motor_velocity(int dof) const {
+  const model::HandDof& led = hand_.dofs()[static_cast<std::size_t>(dof)];
+  const Clutch& clutch = clutches_[static_cast<std::size_t>(dof)];
+  if (!clutch.released) return velocity(led.joint);
+  return velocity(clutch.follower) /
+         hand_.joints()[static_cast<std::size_t>(clutch.follower)].multiplier;
 }
 
 void HandBody::move_base(const Vector3d& velocity, const Vector3d& turning) {

@@ -8,6 +8,7 @@
 
 #include <deque>
 #include <memory>
+#include <optional>
 #include <prehend/base/pose.hpp>
 #include <prehend/model/hand_model.hpp>
 #include <utility>
@@ -28,20 +29,28 @@ struct LinkPairFilter : btOverlapFilterCallback {
 
 /// The hand in a Bullet world: a Featherstone multibody with a collider on each link, a drive and
 /// limits on each joint. Each drive is a spring that reaches its joint's torque limit when the
-/// command is `full_squeeze` ahead, no faster than the DoF's velocity limit. The base moves as it
-/// is told, whatever the hand touches. Link and joint numbers are those of the model.
+/// command is the DoF's squeeze ahead, no faster than the DoF's velocity limit. The base moves as
+/// it is told, whatever the hand touches. Link and joint numbers are those of the model; values are
+/// rad and N m, or m and N of a joint that slides.
+///
+/// A joint with a clutch that is blocked with the breakaway torque is let go: it stays where it is,
+/// still pressed with that torque and held against opening with its whole torque, as by a worm
+/// gear, while the motor goes on with the joints coupled to it. Driven back to where it let go, the
+/// motor takes the joint again.
 class HandBody {
  public:
   /// materials: of each link. The world must outlive the hand and gets its pair filter.
   HandBody(const model::HandModel& hand, const std::vector<analysis::Material>& materials,
-           btMultiBodyDynamicsWorld& world, double time_step, double full_squeeze);
+           btMultiBodyDynamicsWorld& world, double time_step);
   ~HandBody();
   HandBody(const HandBody&) = delete;
   HandBody& operator=(const HandBody&) = delete;
 
-  /// Puts the hand there with its colliders, the base at rest. rad and rad/s, of the joints.
+  /// Puts the hand there with its colliders, the base at rest and every clutch engaged.
   void place(const Pose& X_WB, const Eigen::VectorXd& joint, const Eigen::VectorXd& velocity);
-  /// Sets the drives for the next step. rad, of the DoFs.
+  /// The same as `other`, to the bit; of the same hand.
+  void copy_state(const HandBody& other);
+  /// Sets the drives for the next step towards these values of the DoFs.
   void drive(const Eigen::VectorXd& dof);
   /// The base's velocities for the next step, of its centre of mass. m/s, rad/s, in W.
   void move_base(const Eigen::Vector3d& velocity, const Eigen::Vector3d& turning);
@@ -53,20 +62,32 @@ class HandBody {
   double joint(int i) const { return multibody_->getJointPos(i); }
   double velocity(int i) const { return multibody_->getJointVel(i); }
   double torque(int i) const;  // that the drive applied in the last step
-  int leader(int dof) const { return leaders_[static_cast<std::size_t>(dof)]; }
+  /// Where the motor of a DoF is: with the joint that it leads, or, while its clutch has let that
+  /// go, with the joint coupled to it.
+  double motor(int dof) const;
+  double motor_velocity(int dof) const;
   const std::vector<std::unique_ptr<btMultiBodyLinkCollider>>& colliders() const {
     return colliders_;
   }
 
  private:
+  /// Between a DoF's motor and the joint that it leads.
+  struct Clutch {
+    int follower = -1;               // a joint coupled to the leading one; -1: no clutch
+    double blocked = 0;              // s, for which the joint has been blocked
+    std::optional<double> released;  // where it was let go
+  };
+
   void build_links();
   void build_colliders(const std::vector<analysis::Material>& materials);
   void ignore_overlaps();
   void build_drives();
+  void update_clutch(int dof, double command);
+  void move_colliders();
 
   const model::HandModel& hand_;
   btMultiBodyDynamicsWorld& world_;
-  double time_step_, full_squeeze_;
+  double time_step_;
   LinkPairFilter filter_;
   std::deque<Surface> surfaces_;  // stable addresses
   std::vector<std::unique_ptr<btCollisionShape>> shapes_;
@@ -74,7 +95,7 @@ class HandBody {
   std::vector<std::unique_ptr<btMultiBodyLinkCollider>> colliders_;
   std::vector<std::unique_ptr<btMultiBodyJointMotor>> motors_;
   std::vector<std::unique_ptr<btMultiBodyJointLimitConstraint>> limits_;
-  std::vector<int> leaders_;  // joint of each DoF
+  std::vector<Clutch> clutches_;  // of each DoF
 };
 
 }  // namespace prehend::grasping

@@ -17,9 +17,33 @@
 #include "surface.hpp"
 
 namespace prehend::grasping {
+namespace {
+
+constexpr double beyond = 0.01;  // share of a DoF's range that rounding may leave its limits
+
+Expected<void> check(const model::HandModel& hand, const Pose& X_WB, const Eigen::VectorXd& dof) {
+  if (!is_finite(X_WB)) return fail("the hand's pose must be finite", "world");
+  if (dof.size() != static_cast<Eigen::Index>(hand.dofs().size()) || !dof.allFinite())
+    return fail("the hand needs " + std::to_string(hand.dofs().size()) + " finite DoF values",
+                "world");
+  for (Eigen::Index i = 0; i < dof.size(); ++i) {
+    const model::HandDof& limits = hand.dofs()[static_cast<std::size_t>(i)];
+    const double slack = beyond * (limits.upper - limits.lower);
+    if (dof[i] < limits.lower - slack || dof[i] > limits.upper + slack)
+      return fail("is outside its limits", limits.name,
+                  std::to_string(limits.lower) + " to " + std::to_string(limits.upper));
+  }
+  return {};
+}
+
+}  // namespace
 
 using Eigen::Vector3d;
 using Eigen::VectorXd;
+
+double radian_of(const model::HandDof& dof) {
+  return dof.kind == model::JointKind::prismatic ? dof.squeeze / 0.15 : 1.0;
+}
 
 struct World::State {
   struct Placed {
@@ -58,7 +82,7 @@ struct World::State {
     info.m_erp2 = 0.2;
     info.m_globalCfm = 0;
     if (options.table) add_table();
-    fingers = std::make_unique<HandBody>(hand, materials, bullet, dt(), options.full_squeeze);
+    fingers = std::make_unique<HandBody>(hand, materials, bullet, dt());
   }
 
   ~State() {
@@ -116,10 +140,7 @@ Expected<std::unique_ptr<World>> World::create(const model::HandModel& hand, con
   if (!(options.rate >= 50 && options.rate <= 10000) || options.iterations < 1)
     return fail("steps must be 50 to 10000 Hz, iterations at least 1", "world");
   if (!options.gravity_W.allFinite()) return fail("gravity must be finite", "world");
-  if (!is_finite(X_WB)) return fail("the hand's pose must be finite", "world");
-  if (dof.size() != static_cast<Eigen::Index>(hand.dofs().size()) || !dof.allFinite())
-    return fail("the hand needs " + std::to_string(hand.dofs().size()) + " finite DoF values",
-                "world");
+  if (auto valid = check(hand, X_WB, dof); !valid) return tl::unexpected(valid.error());
   std::vector<analysis::Material> materials;
   for (const model::HandLink& link : hand.links()) {
     const auto material = analysis::material_from_string(link.material);
@@ -129,26 +150,28 @@ Expected<std::unique_ptr<World>> World::create(const model::HandModel& hand, con
     materials.push_back(*material);
   }
   auto state = std::make_unique<State>(hand, materials, options);
-  for (int i = 0; i < dof.size(); ++i)
-    if (state->fingers->leader(i) < 0) return fail("a DoF is led by no joint", hand.name());
   state->place(X_WB, dof);
   return std::unique_ptr<World>(new World(std::move(state)));
 }
 
 std::unique_ptr<World> World::clone() const {
-  const HandMotion motion = hand_motion();
   // What was valid once is valid again.
-  std::unique_ptr<World> copy =
-      std::move(*create(state_->hand, motion.X_WB, motion.dof, state_->options));
-  copy->state_->fingers->place(motion.X_WB, motion.joint, motion.velocity);
-  copy->state_->arm = state_->arm;
-  copy->command(state_->X_WB_command, state_->dof_command, state_->velocity_command);
+  std::unique_ptr<World> copy = std::move(
+      *create(state_->hand, state_->fingers->X_WB(), state_->dof_command, state_->options));
+  State& to = *copy->state_;
+  to.fingers->copy_state(*state_->fingers);
+  to.arm = state_->arm;
+  to.X_WB_command = state_->X_WB_command;
+  to.velocity_command = state_->velocity_command;
   for (int i = 0; i < body_count(); ++i) {
-    const BodyMotion moving = body_motion(i);
-    copy->add_body(body(i), moving.X_WO);
-    btRigidBody& rigid = *copy->state_->bodies.back().rigid;
-    rigid.setLinearVelocity(to_bullet(moving.velocity));
-    rigid.setAngularVelocity(to_bullet(moving.angular_velocity));
+    copy->add_body(body(i), body_motion(i).X_WO);
+    const btRigidBody& original = *state_->bodies[static_cast<std::size_t>(i)].rigid;
+    btRigidBody& rigid = *to.bodies.back().rigid;
+    rigid.setWorldTransform(original.getWorldTransform());  // the pose above has been rounded
+    rigid.setInterpolationWorldTransform(original.getWorldTransform());
+    rigid.updateInertiaTensor();
+    rigid.setLinearVelocity(original.getLinearVelocity());
+    rigid.setAngularVelocity(original.getAngularVelocity());
   }
   return copy;
 }
@@ -205,26 +228,32 @@ void World::set_object_damping(double per_second) {
   for (State::Placed& placed : state_->bodies) placed.rigid->setDamping(share, share);
 }
 
-void World::place_hand(const Pose& X_WB, const Eigen::VectorXd& dof) {
+Expected<void> World::place_hand(const Pose& X_WB, const Eigen::VectorXd& dof) {
+  if (auto valid = check(state_->hand, X_WB, dof); !valid) return valid;
   state_->place(X_WB, dof);
+  return {};
 }
 
-void World::command(const Pose& X_WB, const Eigen::VectorXd& dof, const Vector3d& velocity) {
+Expected<void> World::command(const Pose& X_WB, const Eigen::VectorXd& dof,
+                              const Vector3d& velocity) {
+  if (auto valid = check(state_->hand, X_WB, dof); !valid) return valid;
+  if (!velocity.allFinite()) return fail("the hand's velocity must be finite", "world");
   state_->X_WB_command = X_WB;
   state_->velocity_command = velocity;
   state_->dof_command = state_->hand.clamp(dof);
+  return {};
 }
 
 void World::hold_still() {
-  const HandMotion motion = hand_motion();
-  state_->X_WB_command = motion.X_WB;
+  state_->X_WB_command = state_->fingers->X_WB();
   state_->velocity_command.setZero();
-  for (Eigen::Index i = 0; i < motion.dof.size(); ++i) {
-    const bool moves =
-        std::abs(motion.velocity[state_->fingers->leader(static_cast<int>(i))]) > 0.05;
-    const double keep = moves ? 0 : state_->options.full_squeeze;
-    state_->dof_command[i] =
-        std::clamp(state_->dof_command[i], motion.dof[i] - keep, motion.dof[i] + keep);
+  for (Eigen::Index i = 0; i < state_->dof_command.size(); ++i) {
+    const model::HandDof& dof = state_->hand.dofs()[static_cast<std::size_t>(i)];
+    const double motor = state_->fingers->motor(static_cast<int>(i));
+    const double speed = std::abs(state_->fingers->motor_velocity(static_cast<int>(i)));
+    const double keep = speed > 0.05 * radian_of(dof) ? 0 : dof.squeeze;
+    double& commanded = state_->dof_command[i];
+    commanded = std::clamp(commanded, motor - keep, motor + keep);
   }
   state_->dof_command = state_->hand.clamp(state_->dof_command);
 }
@@ -243,15 +272,18 @@ const model::HandModel& World::hand() const {
 
 HandMotion World::hand_motion() const {
   const auto count = static_cast<Eigen::Index>(state_->hand.joints().size());
-  HandMotion motion{state_->fingers->X_WB(), VectorXd(state_->dof_command.size()), VectorXd(count),
-                    VectorXd(count), VectorXd(count)};
+  const Eigen::Index dofs = state_->dof_command.size();
+  HandMotion motion{state_->fingers->X_WB(), VectorXd(dofs),  VectorXd(dofs),
+                    VectorXd(count),         VectorXd(count), VectorXd(count)};
   for (int i = 0; i < count; ++i) {
     motion.joint[i] = state_->fingers->joint(i);
     motion.velocity[i] = state_->fingers->velocity(i);
     motion.torque[i] = state_->fingers->torque(i);
   }
-  for (Eigen::Index i = 0; i < motion.dof.size(); ++i)
-    motion.dof[i] = motion.joint[state_->fingers->leader(static_cast<int>(i))];
+  for (Eigen::Index i = 0; i < dofs; ++i) {
+    motion.dof[i] = motion.joint[state_->hand.dofs()[static_cast<std::size_t>(i)].joint];
+    motion.motor[i] = state_->fingers->motor(static_cast<int>(i));
+  }
   return motion;
 }
 

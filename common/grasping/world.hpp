@@ -32,15 +32,18 @@ struct WorldOptions {
   /// 1/s: damps free objects; for closing without gravity.
   double object_damping = 0;
   ArmLimits arm;
-  double full_squeeze = 0.15;  // rad of DoF from joint to command for the full torque
 };
 
+/// rad and N m; m and N of what slides.
 struct HandMotion {
   Pose X_WB;
-  Eigen::VectorXd dof;       // rad, of the joint that leads each DoF
-  Eigen::VectorXd joint;     // rad
-  Eigen::VectorXd velocity;  // rad/s, of the joints
-  Eigen::VectorXd torque;    // N m, that the drives applied in the last step
+  Eigen::VectorXd dof;  // of the joint that leads each DoF
+  /// What drives each DoF: the same as dof, except while a clutch has let go of the leading joint
+  /// and the motor is further on with the joints coupled to it.
+  Eigen::VectorXd motor;
+  Eigen::VectorXd joint;
+  Eigen::VectorXd velocity;  // of the joints, per s
+  Eigen::VectorXd torque;    // that the drives applied in the last step
 };
 
 struct BodyMotion {
@@ -49,11 +52,15 @@ struct BodyMotion {
   Eigen::Vector3d angular_velocity = Eigen::Vector3d::Zero();  // rad/s, in W
 };
 
+/// What 1 rad of a finger is for this DoF where stillness or pressing is meant: 1, or the length
+/// that a jaw's slide makes of it.
+double radian_of(const model::HandDof& dof);
+
 /// A physical world with one hand, a table and objects, stepped by Bullet (double). The base of the
 /// hand follows its command within the arm's limits. Each joint is driven by a spring that reaches
-/// its torque limit when the command is `full_squeeze` ahead, no faster than its velocity limit.
-/// Deterministic: same calls, same bits. Not thread-safe; worlds
-/// are independent of each other. Keeps a reference to the hand.
+/// its torque limit when the command is its DoF's squeeze ahead, no faster than its velocity limit.
+/// A clutch lets go of a joint that is blocked (see hand_body.hpp). Deterministic: same calls, same
+/// bits. Not thread-safe; worlds are independent of each other. Keeps a reference to the hand.
 class World {
  public:
   /// Fails on what cannot be simulated: invalid shapes, negative masses, unknown materials.
@@ -64,8 +71,9 @@ class World {
   World(const World&) = delete;
   World& operator=(const World&) = delete;
 
-  /// A new world in the same state and with the same commands. (Not with the solver's memory of the
-  /// last contact impulses; those settle within a few steps.)
+  /// A new world in the same state, to the bit, and with the same commands. What Bullet remembers
+  /// of the last step's contacts does not go with it, so that the two move apart, by micrometres
+  /// where things rest; two clones of the same world stay the same.
   std::unique_ptr<World> clone() const;
 
   /// Adds a body and returns its number, 0, 1, ...
@@ -75,12 +83,14 @@ class World {
   const Eigen::Vector3d& gravity() const;
   void set_object_damping(double per_second);
 
-  /// Puts the hand there, at rest, without passing through what lies between.
-  void place_hand(const Pose& X_WB, const Eigen::VectorXd& dof);
-  /// Where base and DoFs shall go from now on. Values outside the limits are clamped. velocity:
-  /// m/s, in W, of a base that is to be at X_WB in passing; the next command replaces it.
-  void command(const Pose& X_WB, const Eigen::VectorXd& dof,
-               const Eigen::Vector3d& velocity = Eigen::Vector3d::Zero());
+  /// Puts the hand there, at rest, without passing through what lies between. Fails as command().
+  Expected<void> place_hand(const Pose& X_WB, const Eigen::VectorXd& dof);
+  /// Where base and DoFs shall go from now on. velocity: m/s, in W, of a base that is to be at X_WB
+  /// in passing; the next command replaces it. Fails, and leaves the last command in force, on
+  /// values that are not finite, of the wrong number, or outside the DoFs' limits by more than
+  /// rounding (1 % of the range).
+  Expected<void> command(const Pose& X_WB, const Eigen::VectorXd& dof,
+                         const Eigen::Vector3d& velocity = Eigen::Vector3d::Zero());
   void hold_still();  // commands base and fingers to stay where they are; a grip keeps its squeeze
 
   void step();

@@ -15,13 +15,27 @@ constexpr double still_closing = 0.1;  // rad, that the command may still close 
 constexpr double pressing = 0.03;      // rad, that the command is ahead of a joint that presses
 constexpr double anew = 0.1;           // rad, of movement that makes a new closure
 
-/// DoFs whose command is ahead in the closing direction by more than `margin`.
-int count_ahead(const model::HandModel& hand, const VectorXd& command, const VectorXd& dof,
+/// DoFs whose command is ahead in the closing direction by more than `margin` rad.
+int count_ahead(const model::HandModel& hand, const VectorXd& command, const VectorXd& value,
                 double margin) {
   int count = 0;
-  for (Index i = 0; i < dof.size(); ++i)
-    count += hand.dofs()[static_cast<std::size_t>(i)].closing * (command[i] - dof[i]) > margin;
+  for (Index i = 0; i < value.size(); ++i) {
+    const model::HandDof& dof = hand.dofs()[static_cast<std::size_t>(i)];
+    count += dof.closing * (command[i] - value[i]) > margin * grasping::radian_of(dof);
+  }
   return count;
+}
+
+/// A joint has moved by more than `margin` rad.
+bool has_moved(const model::HandModel& hand, const VectorXd& joint, const VectorXd& before,
+               double margin) {
+  if (before.size() != joint.size()) return true;
+  for (Index i = 0; i < joint.size(); ++i) {
+    const int dof = hand.joints()[static_cast<std::size_t>(i)].dof;
+    const double unit = grasping::radian_of(hand.dofs()[static_cast<std::size_t>(dof)]);
+    if (std::abs(joint[i] - before[i]) > margin * unit) return true;
+  }
+  return false;
 }
 
 bool is_gripped(const std::vector<analysis::Contact>& contacts) {
@@ -53,15 +67,16 @@ std::optional<int> ClosureDetector::update(const grasping::World& world) {
   const grasping::HandMotion motion = world.hand_motion();
   const VectorXd& command = world.commanded_dof();
   if (judged_) {
-    for (Index i = 0; i < motion.dof.size(); ++i)
-      if (world.hand().dofs()[static_cast<std::size_t>(i)].closing != 0 &&
-          std::abs(motion.dof[i] - (*judged_)[i]) > anew) {
+    for (Index i = 0; i < motion.dof.size(); ++i) {
+      const model::HandDof& dof = world.hand().dofs()[static_cast<std::size_t>(i)];
+      if (dof.closing != 0 &&
+          std::abs(motion.dof[i] - (*judged_)[i]) > anew * grasping::radian_of(dof)) {
         judged_.reset();
         break;
       }
+    }
   }
-  const bool moved = joint_.size() != motion.joint.size() ||
-                     (motion.joint - joint_).cwiseAbs().maxCoeff() > still_speed * window ||
+  const bool moved = has_moved(world.hand(), motion.joint, joint_, still_speed * window) ||
                      count_ahead(world.hand(), command, command_, still_closing) > 0;
   if (moved || judged_ || count_ahead(world.hand(), command, motion.dof, pressing) < 2) {
     restart(motion.joint, command);

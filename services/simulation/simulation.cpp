@@ -85,10 +85,11 @@ Expected<void> Simulation::accept(const Command& command, Time now) {
   if (!command.dof.allFinite() || !is_finite(command.X_WB)) return fail("command not finite");
   if (command.X_WB.translation().norm() > far_off) return fail("command far away");
   if (!command_) approach(command);
+  if (auto taken = world_->command(command.X_WB, command.dof); !taken)
+    return fail("command outside limits", taken.error().where, taken.error().mend);
   command_ = command;
   accepted_ = now;
   holding_ = false;
-  world_->command(command.X_WB, command.dof);
   return {};
 }
 

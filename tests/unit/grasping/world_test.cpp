@@ -159,10 +159,18 @@ TEST(World, ACloneLeavesTheOriginalAlone) {
   const auto world = gripped(talc);
   const auto untouched = gripped(talc);
   const auto copy = world->clone();
-  // Quaternions and matrices round when they are turned into each other.
-  EXPECT_LT((copy->hand_motion().joint - world->hand_motion().joint).norm(), 1e-15);
-  EXPECT_LT((copy->body_motion(0).X_WO.matrix() - world->body_motion(0).X_WO.matrix()).norm(),
-            1e-12);
+  EXPECT_EQ(copy->hand_motion().joint, world->hand_motion().joint);
+  EXPECT_EQ(copy->body_motion(0).X_WO.matrix(), world->body_motion(0).X_WO.matrix());
+  // Bullet's contact memory is not copied: it is filled anew, a point a step, and the grip settles
+  // once more, here by 0.6 mm.
+  const auto beside = world->clone();
+  const auto original = gripped(talc);
+  run(*beside, 0.5);
+  run(*original, 0.5);
+  EXPECT_LT(
+      (beside->body_motion(0).X_WO.translation() - original->body_motion(0).X_WO.translation())
+          .norm(),
+      1e-3);
   hold_test(*copy, 0);
   run(*world, 0.1);
   run(*untouched, 0.1);
