@@ -3,9 +3,8 @@
 #include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
-#include <prehend/analysis/wrench_space.hpp>
+#include <prehend/analysis/contact_wrenches.hpp>
 #include <string>
-#include <vector>
 
 namespace prehend::simulation {
 namespace {
@@ -13,23 +12,41 @@ namespace {
 using Json = nlohmann::json;
 using Eigen::Vector3d;
 
-constexpr std::size_t most_wrenches = 20000;
-constexpr std::size_t most_contacts = 1000;
+constexpr std::size_t most_wrenches = 100000;
+constexpr std::size_t most_contacts = 10000;
 
-/// `count` finite numbers, or nothing.
+/// A finite number, or nothing.
+std::optional<double> read_number(const Json& json) {
+  if (!json.is_number()) return std::nullopt;
+  const double value = json.get<double>();
+  return std::isfinite(value) ? std::optional(value) : std::nullopt;
+}
+
+/// `count` finite numbers into values; false when they are not.
 bool read_numbers(const Json& json, double* values, std::size_t count) {
   if (!json.is_array() || json.size() != count) return false;
   for (std::size_t i = 0; i < count; ++i) {
-    if (!json[i].is_number()) return false;
-    values[i] = json[i].get<double>();
-    if (!std::isfinite(values[i])) return false;
+    const auto value = read_number(json[i]);
+    if (!value) return false;
+    values[i] = *value;
   }
   return true;
 }
 
-Expected<Eigen::MatrixXd> from_wrenches(const Json& list) {
+/// The same for a key that may be missing.
+template <int N>
+Expected<std::optional<Eigen::Matrix<double, N, 1>>> read_optional(const Json& root,
+                                                                   const std::string& key) {
+  if (!root.contains(key)) return std::nullopt;
+  Eigen::Matrix<double, N, 1> values;
+  if (!read_numbers(root[key], values.data(), N))
+    return fail("\"" + key + "\" is not " + std::to_string(N) + " finite numbers");
+  return values;
+}
+
+Expected<Eigen::MatrixXd> read_wrenches(const Json& list) {
   if (!list.is_array() || list.size() > most_wrenches)
-    return fail("\"wrenches\" must be a list of at most 20000");
+    return fail("\"wrenches\" must be a list of at most " + std::to_string(most_wrenches));
   Eigen::MatrixXd wrenches(6, static_cast<Eigen::Index>(list.size()));
   for (std::size_t i = 0; i < list.size(); ++i)
     if (!read_numbers(list[i], wrenches.col(static_cast<Eigen::Index>(i)).data(), 6))
@@ -37,61 +54,102 @@ Expected<Eigen::MatrixXd> from_wrenches(const Json& list) {
   return wrenches;
 }
 
-Expected<Eigen::MatrixXd> from_contacts(const Json& root) {
+Expected<analysis::Contact> read_contact(const Json& entry, const std::string& where) {
+  if (!entry.is_object()) return fail("is no object", where);
+  analysis::Contact contact;
+  if (!read_numbers(entry.value("position_m", Json()), contact.p_OC.data(), 3))
+    return fail("\"position_m\" is not three finite numbers", where);
+  if (!read_numbers(entry.value("normal", Json()), contact.normal_O.data(), 3) ||
+      !(contact.normal_O.norm() > 1e-9) || !std::isfinite(contact.normal_O.norm()))
+    return fail("\"normal\" is not three finite numbers of some length", where);
+  contact.normal_O.normalize();
+  const auto friction = read_number(entry.value("friction", Json()));
+  if (!friction || *friction < 0) return fail("\"friction\" must be 0 or more", where);
+  contact.friction = *friction;
+  const auto torsion = read_number(entry.value("torsion_m", Json(0)));
+  if (!torsion || *torsion < 0) return fail("\"torsion_m\" must be 0 or more", where);
+  contact.torsion = *torsion;
+  if (entry.contains("tangent") && !read_numbers(entry["tangent"], contact.tangent_O.data(), 3))
+    return fail("\"tangent\" is not three finite numbers", where);
+  return contact;
+}
+
+Expected<model::Shape> read_shape(const Json& json) {
+  model::Shape shape;
+  if (json.is_object() && json.value("kind", Json()).is_string())
+    shape.kind = model::shape_from_string(json["kind"].get<std::string>())
+                     .value_or(model::ShapeKind::unknown);
+  if (!json.is_object() || !read_numbers(json.value("size_m", Json()), shape.size.data(), 3) ||
+      !model::is_valid(shape))
+    return fail("\"shape\" needs a kind (cylinder, box, sphere) and a positive size_m", {},
+                "cylinder: radius, radius, height; sphere: the radius three times");
+  return shape;
+}
+
+Expected<GraspFile> from_contacts(const Json& root) {
   const Json& list = root["contacts"];
   if (!list.is_array() || list.size() > most_contacts)
-    return fail("\"contacts\" must be a list of at most 1000");
-  Vector3d center = Vector3d::Zero();
-  if (root.contains("center_of_mass_m") &&
-      !read_numbers(root["center_of_mass_m"], center.data(), 3))
-    return fail("\"center_of_mass_m\" is not three finite numbers");
-  const Json scale = root.value("torque_scale_m", Json());
-  if (!scale.is_number() || !(scale.get<double>() > 0) || !std::isfinite(scale.get<double>()))
+    return fail("\"contacts\" must be a list of at most " + std::to_string(most_contacts));
+  GraspFile grasp;
+  const auto center = read_optional<3>(root, "center_of_mass_m");
+  if (!center) return tl::unexpected(center.error());
+  const auto scale = read_number(root.value("torque_scale_m", Json()));
+  if (!scale || !(*scale > 0))
     return fail("\"torque_scale_m\" must be a positive number", {},
                 "the largest distance of the object's surface from its centre of mass");
+  grasp.torque_scale = *scale;
   const Json edges = root.value("edges", Json(8));
   if (!edges.is_number_integer() || edges.get<std::int64_t>() < 3 || edges.get<std::int64_t>() > 64)
     return fail("\"edges\" must be 3 to 64");
-  std::vector<analysis::Contact> contacts;
+  grasp.edges = edges.get<int>();
   for (const Json& entry : list) {
-    const std::string where = "contact " + std::to_string(contacts.size());
-    if (!entry.is_object()) return fail("is no object", where);
-    analysis::Contact contact;
-    if (!read_numbers(entry.value("position_m", Json()), contact.p_OC.data(), 3))
-      return fail("\"position_m\" is not three finite numbers", where);
-    contact.p_OC -= center;
-    if (!read_numbers(entry.value("normal", Json()), contact.normal_O.data(), 3) ||
-        contact.normal_O.norm() < 1e-9)
-      return fail("\"normal\" is not three finite numbers of some length", where);
-    const Json friction = entry.value("friction", Json());
-    if (!friction.is_number() || !(friction.get<double>() >= 0) ||
-        !std::isfinite(friction.get<double>()))
-      return fail("\"friction\" must be 0 or more", where);
-    contact.friction = friction.get<double>();
-    if (entry.contains("tangent") && !read_numbers(entry["tangent"], contact.tangent_O.data(), 3))
-      return fail("\"tangent\" is not three finite numbers", where);
-    contacts.push_back(std::move(contact));
+    auto contact = read_contact(entry, "contact " + std::to_string(grasp.contacts.size()));
+    if (!contact) return tl::unexpected(contact.error());
+    if (*center) contact->p_OC -= **center;
+    grasp.contacts.push_back(std::move(*contact));
   }
-  return analysis::contact_wrenches(contacts, scale.get<double>(), edges.get<int>());
+  const auto load = read_optional<6>(root, "load");
+  if (!load) return tl::unexpected(load.error());
+  grasp.load_O = *load;
+  const auto approach = read_optional<3>(root, "approach");
+  if (!approach) return tl::unexpected(approach.error());
+  if (*approach && !((*approach)->norm() > 1e-9)) return fail("\"approach\" needs a length");
+  grasp.approach_O = *approach;
+  if (root.contains("shape")) {
+    const auto shape = read_shape(root["shape"]);
+    if (!shape) return tl::unexpected(shape.error());
+    grasp.shape = *shape;
+  }
+  grasp.wrenches = analysis::contact_wrenches(grasp.contacts, grasp.torque_scale, grasp.edges);
+  if (!grasp.wrenches.allFinite()) return fail("the numbers are too large");
+  return grasp;
+}
+
+Expected<GraspFile> from_wrenches(const Json& root) {
+  auto wrenches = read_wrenches(root["wrenches"]);
+  if (!wrenches) return tl::unexpected(wrenches.error());
+  GraspFile grasp;
+  grasp.wrenches = std::move(*wrenches);
+  return grasp;
 }
 
 }  // namespace
 
-Expected<Eigen::MatrixXd> read_wrenches(const std::filesystem::path& file) {
+Expected<GraspFile> read_grasp(const std::filesystem::path& file) {
   std::ifstream stream(file);
   if (!stream) return fail("cannot be read", file.string());
   const Json root = Json::parse(stream, nullptr, false);
   if (root.is_discarded() || !root.is_object())
     return fail("is no JSON object", file.string(), "see prehend grasp quality --help");
-  auto wrenches = root.contains("wrenches")   ? from_wrenches(root["wrenches"])
-                  : root.contains("contacts") ? from_contacts(root)
-                                              : fail("has neither contacts nor wrenches");
-  if (!wrenches) {
-    Error error = wrenches.error();
+  auto grasp = root.contains("wrenches")   ? from_wrenches(root)
+               : root.contains("contacts") ? from_contacts(root)
+                                           : fail("has neither contacts nor wrenches");
+  if (!grasp) {
+    Error error = grasp.error();
     error.where = file.string() + (error.where.empty() ? "" : ": " + error.where);
     return tl::unexpected(std::move(error));
   }
-  return wrenches;
+  return grasp;
 }
 
 }  // namespace prehend::simulation
