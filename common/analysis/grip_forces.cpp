@@ -62,6 +62,9 @@ Expected<std::optional<GripForces>> least_torques(const std::vector<Contact>& co
   program.rows.topLeftCorner(6, n) = grip.wrenches;
   Wrench balance = -load_O;
   balance.tail<3>() /= grip.scale;
+  // All is in proportion to the load, so the program is that of a load of one.
+  const double size = balance.norm() > 0 ? balance.norm() : 1;
+  balance /= size;
   program.row_lower.head(6) = program.row_upper.head(6) = balance;
   const MatrixXd efforts =
       limits.cwiseInverse().asDiagonal() * jacobian.transpose() * grip.forces;  // per edge
@@ -80,7 +83,7 @@ Expected<std::optional<GripForces>> least_torques(const std::vector<Contact>& co
   if (const auto gentle = minimise(program); gentle && *gentle) best = gentle;
 
   GripForces result;
-  result.forces = grip.contact_forces(**best);
+  result.forces = size * grip.contact_forces(**best);
   result.torques =
       jacobian.transpose() * Eigen::Map<const VectorXd>(result.forces.data(), jacobian.rows());
   result.effort = joints == 0 ? 0 : result.torques.cwiseQuotient(limits).cwiseAbs().maxCoeff();

@@ -39,6 +39,7 @@ Expected<std::optional<VectorXd>> minimise(const LinearProgram& program) {
     indices[i] = static_cast<int>(i % static_cast<std::size_t>(rows));
   ClpSimplex solver;
   solver.setLogLevel(0);
+  solver.scaling(0);  // would blow up a row that holds nothing but rounding, and find no solution
   solver.setPrimalTolerance(tolerance);
   solver.setDualTolerance(tolerance);
   solver.loadProblem(columns, rows, starts.data(), indices.data(), program.rows.data(),

@@ -7,7 +7,7 @@
 namespace prehend::analysis {
 
 /// Minimise cost · x subject to row_lower <= rows x <= row_upper and lower <= x <= upper, where
-/// infinite bounds are no bounds.
+/// infinite bounds are no bounds. Constraints hold to 1e-9, absolutely: numbers should be near one.
 struct LinearProgram {
   Eigen::VectorXd cost;
   Eigen::MatrixXd rows;

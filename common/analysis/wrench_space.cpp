@@ -11,7 +11,6 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-
 }  // namespace
 
 Expected<Quality> wrench_quality(const MatrixXd& wrenches) {

@@ -14,6 +14,7 @@ using Eigen::Vector3d;
 
 constexpr std::size_t most_wrenches = 100000;
 constexpr std::size_t most_contacts = 10000;
+constexpr std::size_t most_joints = 100;
 
 /// A finite number, or nothing.
 std::optional<double> read_number(const Json& json) {
@@ -71,6 +72,7 @@ Expected<analysis::Contact> read_contact(const Json& entry, const std::string& w
   contact.torsion = *torsion;
   if (entry.contains("tangent") && !read_numbers(entry["tangent"], contact.tangent_O.data(), 3))
     return fail("\"tangent\" is not three finite numbers", where);
+  if (entry.value("link", Json()).is_string()) contact.link = entry["link"].get<std::string>();
   return contact;
 }
 
@@ -84,6 +86,30 @@ Expected<model::Shape> read_shape(const Json& json) {
     return fail("\"shape\" needs a kind (cylinder, box, sphere) and a positive size_m", {},
                 "cylinder: radius, radius, height; sphere: the radius three times");
   return shape;
+}
+
+/// Where the hand is, when the file says so; center: of mass, in the file's frame.
+Expected<std::optional<HandPlace>> read_hand(const Json& root, const Vector3d& center) {
+  if (!root.contains("hand") || !root.contains("joints") || !root.contains("X_OB"))
+    return std::nullopt;
+  const Json& joints = root["joints"];
+  const Json& pose = root["X_OB"];
+  HandPlace place;
+  Vector3d p;
+  Eigen::Vector4d q;
+  if (!root["hand"].is_string() || !joints.is_array() || joints.size() > most_joints ||
+      !pose.is_object() || !read_numbers(pose.value("position_m", Json()), p.data(), 3) ||
+      !read_numbers(pose.value("orientation_wxyz", Json()), q.data(), 4))
+    return fail("\"hand\" needs a name, \"joints\" and \"X_OB\"", {},
+                "as prehend grasp export --index writes them");
+  place.name = root["hand"].get<std::string>();
+  place.joints.resize(static_cast<Eigen::Index>(joints.size()));
+  if (!read_numbers(joints, place.joints.data(), joints.size()))
+    return fail("\"joints\" are not finite numbers");
+  const auto X_OB = checked_pose(p - center, Eigen::Quaterniond(q[0], q[1], q[2], q[3]));
+  if (!X_OB) return tl::unexpected(X_OB.error());
+  place.X_OB = *X_OB;
+  return place;
 }
 
 Expected<GraspFile> from_contacts(const Json& root) {
@@ -120,6 +146,15 @@ Expected<GraspFile> from_contacts(const Json& root) {
     if (!shape) return tl::unexpected(shape.error());
     grasp.shape = *shape;
   }
+  auto hand = read_hand(root, center->value_or(Vector3d::Zero()));
+  if (!hand) return tl::unexpected(hand.error());
+  grasp.hand = std::move(*hand);
+  if (root.contains("wrenches")) {
+    auto wrenches = read_wrenches(root["wrenches"]);
+    if (!wrenches) return tl::unexpected(wrenches.error());
+    grasp.wrenches = std::move(*wrenches);
+    return grasp;
+  }
   grasp.wrenches = analysis::contact_wrenches(grasp.contacts, grasp.torque_scale, grasp.edges);
   if (!grasp.wrenches.allFinite()) return fail("the numbers are too large");
   return grasp;
@@ -141,8 +176,8 @@ Expected<GraspFile> read_grasp(const std::filesystem::path& file) {
   const Json root = Json::parse(stream, nullptr, false);
   if (root.is_discarded() || !root.is_object())
     return fail("is no JSON object", file.string(), "see prehend grasp quality --help");
-  auto grasp = root.contains("wrenches")   ? from_wrenches(root)
-               : root.contains("contacts") ? from_contacts(root)
+  auto grasp = root.contains("contacts")   ? from_contacts(root)
+               : root.contains("wrenches") ? from_wrenches(root)
                                            : fail("has neither contacts nor wrenches");
   if (!grasp) {
     Error error = grasp.error();

@@ -1,20 +1,16 @@
 // `prehend grasp quality`: epsilon, volume and the rest of given contacts.
 #include <fmt/format.h>
 
-#include <Eigen/Geometry>
 #include <chrono>
-#include <cmath>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
-#include <prehend/analysis/approach.hpp>
-#include <prehend/analysis/grasp_map.hpp>
-#include <prehend/analysis/grip_forces.hpp>
 #include <prehend/analysis/wrench_space.hpp>
 #include <prehend/base/log.hpp>
 #include <string>
 #include <vector>
 
+#include "contact_measures.hpp"
 #include "quality_file.hpp"
 #include "tool.hpp"
 #include "wrench_picture.hpp"
@@ -26,11 +22,9 @@ using Json = nlohmann::ordered_json;
 
 // The full hull of more wrenches can take minutes; those of a hundred contacts take a few seconds.
 constexpr Eigen::Index most_for_full = 1000;
-// The L∞ space and the programs of the grip grow faster than ε.
-constexpr std::size_t most_for_details = 50;
-
 struct QualityArguments {
   std::string file, method = "full", picture;
+  std::vector<double> load;
   bool json = false;
 };
 
@@ -52,57 +46,6 @@ Expected<Measured> measure(const Eigen::MatrixXd& wrenches, bool fast) {
   return Measured{*quality, quality->volume};
 }
 
-Json columns(const Eigen::Matrix4Xd& forces) {
-  Json list = Json::array();
-  for (const auto& force : forces.colwise())
-    list.push_back(Json{{"force_n", {force[0], force[1], force[2]}}, {"moment_nm", force[3]}});
-  return list;
-}
-
-/// The grip with the smallest largest normal force that bears the load; null when none does.
-Expected<Json> grip_against(const GraspFile& grasp) {
-  // As if each contact were pushed along its normal by a drive of its own.
-  const auto count = static_cast<Eigen::Index>(grasp.contacts.size());
-  Eigen::MatrixXd normals = Eigen::MatrixXd::Zero(4 * count, count);
-  for (Eigen::Index i = 0; i < count; ++i)
-    normals.block<3, 1>(4 * i, i) = grasp.contacts[static_cast<std::size_t>(i)].normal_O;
-  const auto grip = analysis::least_torques(grasp.contacts, *grasp.load_O, normals,
-                                            Eigen::VectorXd::Ones(count), grasp.edges);
-  if (!grip) return tl::unexpected(grip.error());
-  if (!*grip) return Json();
-  return Json{{"largest_normal_force_n", (*grip)->effort}, {"contacts", columns((*grip)->forces)}};
-}
-
-/// What only contacts, not bare wrenches, tell.
-Expected<Json> details(const GraspFile& grasp) {
-  Json made = Json::object();
-  const auto map = analysis::transmission(analysis::grasp_map(grasp.contacts, grasp.torque_scale));
-  made["isotropy"] = map.isotropy;
-  made["smallest_singular_value"] = map.smallest;
-  made["ellipsoid_volume"] = map.volume;
-  made["internal_force_dimension"] =
-      analysis::internal_force_dimension(grasp.contacts, grasp.torque_scale);
-  if (grasp.contacts.size() <= most_for_details) {
-    std::vector<Eigen::MatrixXd> by_contact;
-    for (const analysis::Contact& contact : grasp.contacts)
-      by_contact.push_back(analysis::edge_wrenches(contact, grasp.torque_scale, grasp.edges));
-    const auto linf = analysis::linf_resistance(by_contact);
-    if (!linf) return tl::unexpected(linf.error());
-    made["epsilon_linf"] = linf->epsilon;
-    const auto squeeze = analysis::best_squeeze(grasp.contacts, grasp.edges);
-    if (!squeeze) return tl::unexpected(squeeze.error());
-    made["squeeze_margin"] = *squeeze ? Json((*squeeze)->margin) : Json();
-    if (grasp.load_O) {
-      auto grip = grip_against(grasp);
-      if (!grip) return grip;
-      made["grip"] = std::move(*grip);
-    }
-  }
-  if (grasp.approach_O && grasp.shape)
-    made["skewness_rad"] = analysis::skewness(*grasp.shape, *grasp.approach_O);
-  return made;
-}
-
 void print(const Measured& measured, const Json& more) {
   fmt::print("epsilon        {:.6f}\n", measured.epsilon);
   if (measured.volume) fmt::print("volume         {:.6g}\n", *measured.volume);
@@ -114,11 +57,16 @@ void print(const Measured& measured, const Json& more) {
   }
   for (const auto& [key, value] : more.items())
     if (value.is_number()) fmt::print("{:24} {:.6g}\n", key, value.get<double>());
-  if (more.contains("grip"))
-    fmt::print("{}\n", more["grip"].is_null()
-                           ? "the load         slips, however hard the grip"
-                           : fmt::format("{:24} {:.6g}", "largest_normal_force_n",
-                                         more["grip"]["largest_normal_force_n"].get<double>()));
+  const auto say = [&](const char* key, const char* number) {
+    if (!more.contains(key)) return;
+    if (more[key].is_null()) {
+      fmt::print("the load slips, however hard the grip\n");
+    } else {
+      fmt::print("{:24} {:.6g}\n", number, more[key][number].get<double>());
+    }
+  };
+  say("grip", "largest_normal_force_n");
+  say("least_torques", "effort");
 }
 
 int refused(const Error& error, int exit_code) {
@@ -127,8 +75,10 @@ int refused(const Error& error, int exit_code) {
 }
 
 int quality(const QualityArguments& arguments) {
-  const auto grasp = read_grasp(arguments.file);
+  auto grasp = read_grasp(arguments.file);
   if (!grasp) return refused(grasp.error(), 2);
+  if (!arguments.load.empty())
+    grasp->load_O = Eigen::Map<const Eigen::Matrix<double, 6, 1>>(arguments.load.data());
   const auto before = std::chrono::steady_clock::now();
   const auto measured = measure(grasp->wrenches, arguments.method == "fast");
   const double milliseconds =
@@ -136,7 +86,7 @@ int quality(const QualityArguments& arguments) {
   if (!measured) return refused(measured.error(), 2);
   Json more = Json::object();
   if (!grasp->contacts.empty()) {
-    auto told = details(*grasp);
+    auto told = contact_measures(*grasp);
     if (!told) return refused(told.error(), 2);
     more = std::move(*told);
   }
@@ -167,7 +117,8 @@ void add_quality(CLI::App& app, int& exit_code) {
       "Epsilon, volume and other measures of given contacts or wrenches.\nFILE holds "
       "{\"contacts\":[{\"position_m\",\"normal\",\"friction\",\"torsion_m\"?,\"tangent\"?}],"
       "\"center_of_mass_m\"?,\"torque_scale_m\",\"edges\"?,\"load\"?,\"approach\"?,\"shape\"?} or "
-      "{\"wrenches\":[[6]...]}.\nExit code 0: measured, 2: wrong use or file, 3: no picture.");
+      "{\"wrenches\":[[6]...]}, or is what prehend grasp export --index writes.\nExit code 0: "
+      "measured, 2: wrong use or file, 3: no picture.");
   command->add_option("FILE", arguments->file, "contacts or wrenches as JSON")->required();
   command->add_flag("--json", arguments->json, "one JSON document on standard output");
   command
@@ -177,6 +128,12 @@ void add_quality(CLI::App& app, int& exit_code) {
           "as epsilon needs")
       ->capture_default_str()
       ->check(CLI::IsMember({"full", "fast"}));
+  command
+      ->add_option("--load", arguments->load,
+                   "wrench on the object, N and N m about its centre of mass, to be held with the "
+                   "least forces; and with the least torques, if the file names a hand")
+      ->expected(6)
+      ->check(CLI::Range(-1e9, 1e9));
   command->add_option("--picture", arguments->picture,
                       "draw the force and torque space as PNG (by gnuplot)");
   command->callback([arguments, &exit_code] { exit_code = quality(*arguments); });

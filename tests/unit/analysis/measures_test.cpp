@@ -211,6 +211,29 @@ TEST(GripForces, PinchHoldsAWeightByFriction) {
   }
 }
 
+TEST(GripForces, RoundingIsNoConstraint) {
+  // Rows that should be zero but hold rounding were once scaled up by the solver, and a pinch whose
+  // contacts came from sines and cosines held nothing.
+  for (const double load : {1e-6, 1.0, 1e6}) {
+    for (int turn = 0; turn < 12; ++turn) {
+      auto contacts = pinch(0.5);
+      const Eigen::Matrix3d R =
+          Eigen::AngleAxisd(0.5 * turn, Vector3d(1, 2, 3).normalized()).matrix();
+      for (Contact& contact : contacts) {
+        contact.p_OC = R * contact.p_OC;
+        contact.normal_O = R * contact.normal_O;
+        contact.tangent_O = R * contact.tangent_O;
+      }
+      Wrench weight = Wrench::Zero();
+      weight.head<3>() = -load * R.col(2);
+      const auto grip =
+          least_torques(contacts, weight, normal_drives(contacts), Eigen::Vector2d(1, 1));
+      ASSERT_TRUE(grip && *grip) << load << " " << turn;
+      EXPECT_NEAR((*grip)->effort, load, 1e-6 * load);
+    }
+  }
+}
+
 TEST(GripForces, LeversAndLoadsAlongTheNormal) {
   // Pushed along the line with 3 N against a finger on a lever of 0.1 m: 0.3 N m there, 0 opposite.
   const auto contacts = pinch(0.5);

@@ -57,6 +57,22 @@ TEST(QualityFile, WhatElseMayBeSaid) {
   EXPECT_EQ(grasp->shape->kind, model::ShapeKind::cylinder);
 }
 
+TEST(QualityFile, ReadsWhatExportWrites) {
+  // Wrenches as given, contacts for the rest, and the hand about the centre of mass.
+  const auto grasp = simulation::read_grasp(written(
+      R"({"hand":"barrett","joints":[0,0.5,1],"X_OB":{"position_m":[0.1,0,0.2],
+          "orientation_wxyz":[2,0,0,0]},"center_of_mass_m":[0,0,0.05],"torque_scale_m":0.03,
+          "contacts":[{"link":"tip","position_m":[0,0,0.05],"normal":[1,0,0],"friction":1}],
+          "wrenches":[[1,2,3,4,5,6]]})"));
+  ASSERT_TRUE(grasp) << grasp.error().message();
+  EXPECT_EQ(grasp->wrenches.cols(), 1);
+  EXPECT_EQ(grasp->contacts[0].link, "tip");
+  EXPECT_EQ(grasp->contacts[0].p_OC, Eigen::Vector3d(0, 0, 0));
+  ASSERT_TRUE(grasp->hand);
+  EXPECT_EQ(grasp->hand->joints.size(), 3);
+  EXPECT_LT((grasp->hand->X_OB.translation() - Eigen::Vector3d(0.1, 0, 0.15)).norm(), 1e-12);
+}
+
 TEST(QualityFile, RefusesNonsense) {
   EXPECT_FALSE(simulation::read_grasp("/nowhere/at/all.json"));
   const std::string good = R"({"position_m":[0,0,0],"normal":[1,0,0],"friction":1})";
@@ -86,7 +102,10 @@ TEST(QualityFile, RefusesNonsense) {
           R"({"contacts":[)" + good +
               R"(],"torque_scale_m":1,"shape":{"kind":"cloud","size_m":[1,1,1]}})",
           R"({"contacts":[)" + good +
-              R"(],"torque_scale_m":1,"shape":{"kind":"box","size_m":[1,-1,1]}})"}) {
+              R"(],"torque_scale_m":1,"shape":{"kind":"box","size_m":[1,-1,1]}})",
+          R"({"contacts":[)" + good +
+              R"(],"torque_scale_m":1,"hand":"barrett","joints":["x"],"X_OB":{}})",
+          R"({"contacts":[)" + good + R"(],"torque_scale_m":1,"wrenches":[[1]]})"}) {
     const auto grasp = simulation::read_grasp(written(text));
     EXPECT_FALSE(grasp) << text;
     if (!grasp) {
