@@ -1,0 +1,32 @@
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <prehend/base/error.hpp>
+#include <prehend/mcap/reader.hpp>
+#include <prehend/mcap/writer.hpp>
+#include <vector>
+
+namespace prehend::recorder {
+
+/// What a new recording takes from others.
+struct CopyOptions {
+  mcap::Selection selection;
+  mcap::WriterOptions writer;
+  /// Called now and then with the share that is done, 0 to 1.
+  std::function<void(double)> progress;
+};
+
+struct CopyResult {
+  std::uint64_t messages = 0;
+  std::vector<Error> damage;  // what of the sources could not be read
+};
+
+/// Writes one recording with the messages of several in order of log time, their schemas and
+/// channels (those that are the same once), attachments and metadata; counts of losses are summed.
+/// The file appears under its name when it is whole. Fails when it cannot be written, or would
+/// replace one of the sources.
+Expected<CopyResult> copy(std::vector<mcap::Reader>& sources, const std::filesystem::path& to,
+                          const CopyOptions& options);
+
+}  // namespace prehend::recorder
