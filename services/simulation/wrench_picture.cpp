@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <prehend/analysis/convex_hull.hpp>
 #include <string>
 
@@ -34,11 +35,12 @@ std::string projection(const std::string& name, const Eigen::Matrix3Xd& points,
   }
   if (!solid)
     for (Index i = 0; i < points.cols(); ++i) data += line(points.col(i));
-  const double reach = points.cols() > 0 ? points.cwiseAbs().maxCoeff() : 1;
+  const double reach = std::max(points.cols() > 0 ? points.cwiseAbs().maxCoeff() : 0, 1e-9);
   std::string text = fmt::format(
       "${0} << EOD\n{1}EOD\n${0}_origin << EOD\n0 0 0\nEOD\n"
-      "set title '{2}'\nset xlabel '{3}x'\nset ylabel '{3}y'\nset zlabel '{3}z'\nunset arrow\n",
-      name, data.empty() ? "0 0 0\n" : data, title, axis);
+      "set title '{2}'\nset xlabel '{3}x'\nset ylabel '{3}y'\nset zlabel '{3}z'\nunset arrow\n"
+      "set xrange [-{4}:{4}]\nset yrange [-{4}:{4}]\nset zrange [-{4}:{4}]\n",
+      name, data.empty() ? "0 0 0\n" : data, title, axis, reach);
   if (const double length = hardest.norm(); length > 0) {
     const Vector3d tip = reach * hardest;
     text +=

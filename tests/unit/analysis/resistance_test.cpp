@@ -105,6 +105,34 @@ TEST(Resistance, ScalesWithTheWrenches) {
   }
 }
 
+TEST(Resistance, TurningOrEnlargingTheObjectChangesNothing) {
+  // Turned contacts have turned wrenches: forces and torques by the same rotation, so all lengths
+  // stay. Enlarged ones have the same wrenches, because ρ grows as well. A moved origin, though, is
+  // another object: its torques are about another centre of mass.
+  Random random(29);
+  for (int trial = 0; trial < 20; ++trial) {
+    auto contacts = random_grasp(random, 6);
+    for (Contact& contact : contacts) contact.tangent_O = random.normal3(1);
+    const auto before = l1_resistance(contact_wrenches(contacts, 0.06));
+    const double scale = random.uniform(0.1, 10);
+    const Eigen::Matrix3d R =
+        Eigen::Quaterniond(random.normal(), random.normal(), random.normal(), random.normal())
+            .normalized()
+            .matrix();
+    for (Contact& contact : contacts) {
+      contact.p_OC = scale * (R * contact.p_OC);
+      contact.normal_O = R * contact.normal_O;
+      contact.tangent_O = R * contact.tangent_O;
+    }
+    const auto after = l1_resistance(contact_wrenches(contacts, scale * 0.06));
+    ASSERT_TRUE(before && after);
+    EXPECT_NEAR(after->epsilon, before->epsilon, 1e-9);
+    if (!before->force_closure) continue;
+    const Vector3d turned = R * before->weakest_direction.head<3>();
+    EXPECT_LT((after->weakest_direction.head<3>() - turned).norm(), 1e-6);
+  }
+}
+
 TEST(Resistance, AnotherContactNeverHurts) {
   Random random(25);
   for (int trial = 0; trial < 20; ++trial) {

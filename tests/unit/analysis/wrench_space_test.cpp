@@ -52,6 +52,9 @@ TEST(WrenchSpace, PlanarAntipodalDisk) {
     ASSERT_TRUE(q);
     EXPECT_NEAR(q->epsilon, mu / std::sqrt(mu * mu + 2), 1e-9);
     EXPECT_NEAR(q->volume, 8 * mu * mu / 3, 1e-9);
+    const auto fast = l1_resistance(w);
+    ASSERT_TRUE(fast);
+    EXPECT_NEAR(fast->epsilon, mu / std::sqrt(mu * mu + 2), 1e-9);
   }
 }
 
@@ -177,6 +180,9 @@ TEST(WrenchSpace, AgreesWithGraspIt) {
     ASSERT_TRUE(from_lines);
     EXPECT_NEAR(from_lines->epsilon, epsilon, 1e-6 * std::abs(epsilon) + 1e-8);
     EXPECT_NEAR(from_lines->volume, volume, 5e-4 * volume);
+    const auto fast = l1_resistance(w);
+    ASSERT_TRUE(fast);
+    EXPECT_NEAR(fast->epsilon, epsilon, 1e-6 * std::abs(epsilon) + 1e-8);
     const auto from_contacts = wrench_quality(contact_wrenches(contacts, scale));
     ASSERT_TRUE(from_contacts);
     // Positions and normals have four or five digits.
