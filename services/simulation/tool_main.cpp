@@ -11,6 +11,8 @@ int main(int argc, char** argv) {
   prehend::simulation::add_quality(app, exit_code);
   prehend::simulation::add_plan(app, exit_code);
   prehend::simulation::add_export(app, exit_code);
+  prehend::simulation::add_picture(app, exit_code);
+  prehend::simulation::add_table(app, exit_code);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
