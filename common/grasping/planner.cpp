@@ -82,7 +82,8 @@ class Fitting {
       if (room < exact) return dof;
       VectorXd next = dof;
       for (Eigen::Index i = 0; i < dof.size(); ++i)
-        next[i] += dofs[static_cast<std::size_t>(i)].closing * std::max(room / lever, least_turn);
+        next[i] += dofs[static_cast<std::size_t>(i)].closing * std::max(room / lever, least_turn) *
+                   radian_of(dofs[static_cast<std::size_t>(i)]);
       next = world_->hand().clamp(next);
       if (next == dof) return fail("the fingers close beside the object");
       dof = next;

@@ -24,7 +24,7 @@ struct TableArguments {
   std::string save;
   grasping::PlanOptions options;
   unsigned threads = 0;
-  bool json = false;
+  bool json = false, markdown = false;
 };
 
 struct Row {
@@ -158,7 +158,8 @@ void add_table(CLI::App& app, int& exit_code) {
       ->check(CLI::Range(0, 1024));
   command->add_option("--save", arguments->save, "folder for the grasps, a file a pair");
   auto* json = command->add_flag("--json", arguments->json, "one JSON document");
-  command->add_flag("--markdown", "a table to be read (as without it)")->excludes(json);
+  command->add_flag("--markdown", arguments->markdown, "a table to be read, as without it")
+      ->excludes(json);
   command->callback([arguments, &exit_code] { exit_code = table(*arguments); });
 }
 
