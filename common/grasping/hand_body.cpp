@@ -70,7 +70,9 @@ void HandBody::build_links() {
     const model::HandJoint& joint = joints[static_cast<std::size_t>(i)];
     const model::HandLink& link = hand_.links()[static_cast<std::size_t>(joint.child)];
     const model::HandLink& parent = hand_.links()[static_cast<std::size_t>(joint.parent)];
-    multibody_->setupRevolute(
+    const auto setup = joint.kind == model::JointKind::prismatic ? &btMultiBody::setupPrismatic
+                                                                 : &btMultiBody::setupRevolute;
+    ((*multibody_).*setup)(
         i, link.mass, to_bullet(Vector3d(link.inertia_L.diagonal())), parent.joint,
         to_bullet(Eigen::Matrix3d(joint.X_PJ.linear())).inverse(), to_bullet(joint.axis_J),
         to_bullet(Vector3d(joint.X_PJ.translation() - parent.com_L)), to_bullet(link.com_L), true);

@@ -66,6 +66,27 @@ TEST_P(Hands, SameCallsGiveSameBits) {
   EXPECT_TRUE(state_of(*a).allFinite());
 }
 
+// Guards against sliding fingers that turned: the world had made every joint a revolute one.
+TEST_P(Hands, ShapesAreWhereTheJointsPutThem) {
+  const Body ball{"ball", {model::ShapeKind::sphere, Vector3d::Constant(1e-4)}, 0, "wood", {}};
+  for (const double share : {0.0, 0.3, 1.0}) {
+    VectorXd dof(static_cast<Eigen::Index>(hand.dofs().size()));
+    for (Eigen::Index i = 0; i < dof.size(); ++i) {
+      const model::HandDof& limits = hand.dofs()[static_cast<std::size_t>(i)];
+      dof[i] = limits.lower + share * (limits.upper - limits.lower);
+    }
+    auto world = World::create(hand, make_pose(Vector3d(0, 0, 1)), dof);
+    ASSERT_TRUE(world);
+    ASSERT_TRUE((*world)->add_body(ball, Pose::Identity()));
+    const std::vector<Pose> X_BL = hand.link_poses(hand.joint_angles(dof));
+    for (std::size_t i = 0; i < X_BL.size(); ++i)
+      for (const model::CollisionShape& part : hand.links()[i].collision) {
+        (*world)->move_body(0, make_pose(Vector3d(0, 0, 1)) * X_BL[i] * part.X_LS);
+        EXPECT_LT((*world)->distance_to_hand(0), 0) << hand.links()[i].name;
+      }
+  }
+}
+
 TEST_P(Hands, ACloneStartsFromTheSameBitsAndClonesStayTheSame) {
   const auto world = closing(400);
   const auto a = world->clone(), b = world->clone();
