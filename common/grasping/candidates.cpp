@@ -56,6 +56,28 @@ Matrix3d symmetry(const model::Shape& shape, Random& random) {
   return Eigen::AngleAxisd(angle, axis.stableNormalized()).toRotationMatrix();
 }
 
+/// How much of their way the closing DoFs still have before them, on average.
+double left_to_close(const model::HandModel& hand, const VectorXd& posture) {
+  double left = 0;
+  int count = 0;
+  for (Eigen::Index i = 0; i < posture.size(); ++i) {
+    const model::HandDof& dof = hand.dofs()[static_cast<std::size_t>(i)];
+    if (dof.closing == 0) continue;
+    const double way = dof.closing > 0 ? dof.upper - posture[i] : posture[i] - dof.lower;
+    left += way / (dof.upper - dof.lower);
+    ++count;
+  }
+  return count == 0 ? 0 : left / count;
+}
+
+/// Postures from which the hand can close: all that have half their way before them, and «open».
+std::vector<std::string> opened_postures(const model::HandModel& hand) {
+  std::vector<std::string> names{"open"};
+  for (const auto& [name, dof] : hand.postures())
+    if (name != "open" && left_to_close(hand, dof) >= 0.5) names.push_back(name);
+  return names;
+}
+
 VectorXd sample_preshape(const model::HandModel& hand, const VectorXd& posture, Random& random) {
   VectorXd dof = posture;
   const bool sampled = random.uniform() < off_posture;
@@ -107,11 +129,9 @@ Candidate sample_candidate(const model::HandModel& hand, const model::Shape& sha
   else
     p += stand_off * R.col(2);
   candidate.X_OG = make_pose(turn * p, turn * R);
-  const auto& postures = hand.postures();
-  const auto posture =
-      std::next(postures.begin(), static_cast<std::ptrdiff_t>(random.index(postures.size())));
-  candidate.posture = posture->first;
-  candidate.preshape = sample_preshape(hand, posture->second, random);
+  const std::vector<std::string> postures = opened_postures(hand);
+  candidate.posture = postures[random.index(postures.size())];
+  candidate.preshape = sample_preshape(hand, hand.postures().at(candidate.posture), random);
   return candidate;
 }
 

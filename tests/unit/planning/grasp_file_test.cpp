@@ -102,9 +102,9 @@ TEST(Export, JsonIsWhatQualityReads) {
       nlohmann::ordered_json document = to_json(plan, grasp);
       if (by_contacts) document.erase("wrenches");
       std::ofstream(file) << document;
-      const auto wrenches = read_wrenches(file);
-      ASSERT_TRUE(wrenches) << wrenches.error().message();
-      const auto quality = analysis::wrench_quality(*wrenches);
+      const auto read = read_grasp(file);
+      ASSERT_TRUE(read) << read.error().message();
+      const auto quality = analysis::wrench_quality(read->wrenches);
       ASSERT_TRUE(quality);
       // Normals are made unit once more on the way, which rounds.
       EXPECT_NEAR(quality->epsilon, grasp.quality.epsilon, 1e-9);
