@@ -8,6 +8,7 @@
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <prehend/base/log.hpp>
 
 #include "grasp_file.hpp"
@@ -24,7 +25,7 @@ struct TableArguments {
   std::string save;
   grasping::PlanOptions options;
   unsigned threads = 0;
-  bool json = false, markdown = false;
+  bool json = false, markdown = false, resume = false;
 };
 
 struct Row {
@@ -85,6 +86,15 @@ void print(const std::vector<model::HandModel>& hands, const std::vector<Row>& r
   for (std::size_t i = 0; i < notes.size(); ++i) fmt::print("{}. {}\n", i + 1, notes[i]);
 }
 
+/// The plan that an earlier run has left in the file, if it was made with these options.
+std::optional<grasping::Plan> left_by_earlier_run(const std::filesystem::path& file,
+                                                  const grasping::PlanOptions& options) {
+  auto plan = load_plan(file);
+  if (!plan || plan->options.seed != options.seed || plan->options.candidates != options.candidates)
+    return std::nullopt;
+  return std::move(*plan);
+}
+
 int table(const TableArguments& arguments) {
   std::vector<model::HandModel> hands;
   for (const std::string& name : arguments.hands.empty() ? hand_names() : arguments.hands) {
@@ -108,11 +118,16 @@ int table(const TableArguments& arguments) {
   for (const grasping::Body& object : objects) {
     Row row{object, {}};
     for (const model::HandModel& hand : hands) {
+      const auto file = std::filesystem::path(arguments.save) /
+                        fmt::format("{} {}.grasps", hand.name(), object.name);
+      if (arguments.resume)
+        if (auto earlier = left_by_earlier_run(file, arguments.options)) {
+          row.plans.push_back(std::move(*earlier));
+          continue;
+        }
       auto plan = plan_with_progress(hand, object, arguments.options, arguments.threads);
       if (!plan) return refuse(plan.error());
       if (!arguments.save.empty()) {
-        const auto file = std::filesystem::path(arguments.save) /
-                          fmt::format("{} {}.grasps", hand.name(), object.name);
         if (const auto saved = save(file, *plan); !saved) {
           log::error("{}", saved.error().message());
           return 3;
@@ -156,7 +171,10 @@ void add_table(CLI::App& app, int& exit_code) {
   command->add_option("--threads", arguments->threads, "0: one a core; the answer is the same")
       ->capture_default_str()
       ->check(CLI::Range(0, 1024));
-  command->add_option("--save", arguments->save, "folder for the grasps, a file a pair");
+  auto* save =
+      command->add_option("--save", arguments->save, "folder for the grasps, a file a pair");
+  command->add_flag("--resume", arguments->resume, "take what an earlier run has saved there")
+      ->needs(save);
   auto* json = command->add_flag("--json", arguments->json, "one JSON document");
   command->add_flag("--markdown", arguments->markdown, "a table to be read, as without it")
       ->excludes(json);
