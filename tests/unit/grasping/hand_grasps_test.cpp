@@ -58,7 +58,11 @@ TEST_P(HandGrasps, HoldWhatStandsAtTheGraspFrame) {
 }
 
 INSTANTIATE_TEST_SUITE_P(All, HandGrasps,
-                         testing::Values(Grip{"parallel_jaw", "Talc", "open", true, 0.0},
+                         testing::Values(Grip{"barrett", "Talc", "open", true, 0.0},
+                                         Grip{"dlr", "Talc", "power", true, 0.0},
+                                         Grip{"robonaut", "Talc", "power", true, -0.01},
+                                         Grip{"human", "Talc", "power", true, 0.01},
+                                         Grip{"parallel_jaw", "Talc", "open", true, 0.0},
                                          Grip{"parallel_jaw", "Wood cube", "open", false, 0.0}));
 
 }  // namespace
