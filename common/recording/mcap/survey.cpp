@@ -73,6 +73,7 @@ class Survey {
     std::uint64_t begin, end;
   };
   Expected<void> check_regions();
+  bool is_record(std::uint64_t offset, std::uint8_t opcode, std::uint64_t length) const;
   void walk(std::uint64_t begin, std::uint64_t end);
   void note(const RawRecord& record);
   Expected<void> take(const RawRecord& record);
@@ -118,8 +119,12 @@ Expected<void> Survey::take_summary() {
     else if (const auto* statistics = std::get_if<Statistics>(&*record))
       contents_.statistics = *statistics;
   }
-  // Without channels in the summary the messages of its chunks have no names: they are walked.
-  if (contents_.channels.empty()) contents_.chunks.clear();
+  // Without channels or their schemas in the summary the messages of its chunks have no names or
+  // types: they are walked.
+  const bool described = std::ranges::all_of(contents_.channels, [&](const auto& entry) {
+    return entry.second.schema_id == 0 || contents_.schemas.contains(entry.second.schema_id);
+  });
+  if (contents_.channels.empty() || !described) contents_.chunks.clear();
   if (contents_.statistics && contents_.statistics->message_count > 0 &&
       contents_.statistics->channel_message_counts.empty())
     contents_.statistics.reset();
@@ -128,21 +133,34 @@ Expected<void> Survey::take_summary() {
 }
 
 Expected<void> Survey::check_regions() {
-  const auto cover = [&](std::uint64_t begin, std::uint64_t length) {
-    regions_.push_back({begin, begin + length});
-    return begin >= frame_.data_begin && length >= record_head && begin + length >= begin &&
-           begin + length <= frame_.data_end;
+  // An entry that points to something else is dropped: what it meant is then found by walking.
+  const auto drop_wrong = [&](auto& entries, std::uint8_t opcode, const auto& place) {
+    std::erase_if(entries, [&](const auto& entry) {
+      const auto [offset, length] = place(entry);
+      const bool wrong = !is_record(offset, opcode, length);
+      if (wrong)
+        contents_.damage.push_back(
+            Error{"an index points here, where its record is not", file_.at(offset), ""});
+      return wrong;
+    });
   };
+  const auto of_chunk = [](const ChunkIndex& chunk) {
+    return std::pair(chunk.chunk_start_offset, chunk.chunk_length);
+  };
+  const auto of_other = [](const auto& entry) { return std::pair(entry.offset, entry.length); };
+  drop_wrong(contents_.chunks, Chunk::opcode, of_chunk);
+  drop_wrong(contents_.attachments, Attachment::opcode, of_other);
+  drop_wrong(contents_.metadata, Metadata::opcode, of_other);
+
   bool sound = true;
-  for (const ChunkIndex& chunk : contents_.chunks) {
-    sound = sound && chunk.chunk_length <= file_.size() &&
-            chunk.message_index_length <= file_.size() &&
-            cover(chunk.chunk_start_offset, chunk.chunk_length + chunk.message_index_length);
-  }
-  for (const AttachmentIndex& each : contents_.attachments)
-    sound = sound && cover(each.offset, each.length);
-  for (const MetadataIndex& each : contents_.metadata)
-    sound = sound && cover(each.offset, each.length);
+  const auto cover = [&](std::uint64_t begin, std::uint64_t length, std::uint64_t behind) {
+    sound = sound && behind <= frame_.data_end - begin - length;
+    regions_.push_back({begin, begin + length + behind});
+  };
+  for (const ChunkIndex& chunk : contents_.chunks)
+    cover(chunk.chunk_start_offset, chunk.chunk_length, chunk.message_index_length);
+  for (const AttachmentIndex& each : contents_.attachments) cover(each.offset, each.length, 0);
+  for (const MetadataIndex& each : contents_.metadata) cover(each.offset, each.length, 0);
   std::ranges::sort(regions_, {}, &Region::begin);
   for (std::size_t i = 1; sound && i < regions_.size(); ++i)
     sound = regions_[i - 1].end <= regions_[i].begin;
@@ -150,6 +168,18 @@ Expected<void> Survey::check_regions() {
     return fail("the summary's indexes point to impossible places",
                 file_.at(frame_.footer->summary_start));
   return {};
+}
+
+/// Some writers give wrong places: npm's, for attachments among messages outside chunks.
+bool Survey::is_record(std::uint64_t offset, std::uint8_t opcode, std::uint64_t length) const {
+  if (offset < frame_.data_begin || offset > frame_.data_end || length < record_head ||
+      length > frame_.data_end - offset)
+    return false;
+  const auto head = file_.read(offset, record_head);
+  if (!head) return false;
+  Cursor cursor(*head);
+  return cursor.number<std::uint8_t>() == opcode &&
+         cursor.number<std::uint64_t>() == length - record_head;
 }
 
 void Survey::walk_gaps() {

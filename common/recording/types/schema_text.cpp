@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <charconv>
 #include <map>
 #include <optional>
@@ -84,7 +85,7 @@ std::string ros2_fields(const Structure& type) {
     if (kind.many == Type::Many::array) text += fmt::format("[{}]", kind.count);
     if (kind.many == Type::Many::sequence)
       text += kind.count == 0 ? "[]" : fmt::format("[<={}]", kind.count);
-    text += " " + field.name + "\n";
+    text += fmt::format(" {}\n", ros2_field_name(field.name));
   }
   return text;
 }
@@ -239,6 +240,12 @@ class Ros2Parser {
 std::string ros2_name(std::string_view scoped_name) {
   const auto [scope, last] = split(scoped_name);
   return scope.empty() ? last : package(scope) + "/msg/" + last;
+}
+
+std::string ros2_field_name(std::string_view name) {
+  std::string lower(name);
+  for (char& c : lower) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return lower;
 }
 
 std::string ros2msg(const Structure& type) {

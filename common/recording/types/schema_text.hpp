@@ -12,6 +12,9 @@ namespace prehend::types {
 /// The name that readers of `ros2msg` expect: prehend::v1::Pose is prehend_v1/msg/Pose.
 std::string ros2_name(std::string_view scoped_name);
 
+/// ROS 2 and readers of its descriptions refuse field names with capitals: X_WH is x_wh there.
+std::string ros2_field_name(std::string_view name);
+
 /// For the schema encoding `ros2msg`: the type, then each type it needs behind a line of = signs
 /// and «MSG: name». Enumerations are uint32 behind constants of the same type.
 std::string ros2msg(const Structure& type);

@@ -96,7 +96,8 @@ TYPED_TEST(EveryTopic, IsDecodedTheSameByItsDescriptions) {
     const Value plain = decode(*ros2, bytes).value();
     for (const Field& field : type.fields) {
       if (field.type.kind == Kind::enumeration || field.type.kind == Kind::structure) continue;
-      EXPECT_EQ(to_json(*plain.find(field.name)), to_json(*value.find(field.name)));
+      EXPECT_EQ(to_json(*plain.find(ros2_field_name(field.name))),
+                to_json(*value.find(field.name)));
     }
   }
 }
