@@ -1,0 +1,88 @@
+// `prehend grasp plan`, `export`, `picture` and `table` as a user calls them: wrong use is exit
+// code 2, no grasp is 1, what one command writes the next one reads.
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+namespace {
+
+using Json = nlohmann::json;
+
+std::filesystem::path scratch(const std::string& name) {
+  return std::filesystem::path(testing::TempDir()) / (std::to_string(getpid()) + name);
+}
+
+struct Answer {
+  int code = -1;
+  std::string output, complaint;
+};
+
+std::string text_of(const std::filesystem::path& file) {
+  std::ifstream stream(file);
+  std::ostringstream text;
+  text << stream.rdbuf();
+  std::filesystem::remove(file);
+  return text.str();
+}
+
+Answer run(const std::string& arguments) {
+  const auto output = scratch("out"), complaint = scratch("err");
+  const std::string command = std::string(PREHEND_GRASP) + " " + arguments + " >" +
+                              output.string() + " 2>" + complaint.string();
+  const int status = std::system(command.c_str());
+  return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, text_of(output), text_of(complaint)};
+}
+
+TEST(GraspTool, WrongUseIsTwoAndSaysWhy) {
+  for (const auto& [arguments, says] : std::vector<std::pair<std::string, std::string>>{
+           {"plan --hand nobody --object Talc", "barrett"},
+           {"plan --hand barrett --object Nothing", "Talc"},
+           {"plan --hand barrett --object Talc --candidates 0", "candidates"},
+           {"plan --object Talc", "--hand"},
+           {"export /nowhere/at.all", "at.all"},
+           {"export", "FILE"},
+           {"picture /nowhere/at.all -o x.png", "at.all"},
+           {"table --objects Nothing", "Talc"},
+           {"table --resume", "--save"}}) {
+    const Answer answer = run(arguments);
+    EXPECT_EQ(answer.code, 2) << arguments;
+    EXPECT_NE(answer.complaint.find(says), std::string::npos) << arguments << answer.complaint;
+    EXPECT_TRUE(answer.output.empty()) << arguments;
+  }
+}
+
+TEST(GraspTool, WhatIsPlannedIsExportedDrawnAndJudgedAlike) {
+  const std::string file = scratch("talc.grasps").string();
+  const Answer planned =
+      run("plan --hand barrett --object Talc --candidates 8 --seed 3 --json -o " + file);
+  ASSERT_EQ(planned.code, 0) << planned.complaint;
+  const Json plan = Json::parse(planned.output);
+  EXPECT_EQ(plan["candidates"], 8);
+  ASSERT_FALSE(plan["grasps"].empty());
+
+  const Answer exported = run("export --index 0 " + file);
+  ASSERT_EQ(exported.code, 0);
+  const auto grasp = scratch("grasp.json");
+  std::ofstream(grasp) << exported.output;
+  const Answer judged = run("quality --json " + grasp.string());
+  ASSERT_EQ(judged.code, 0) << judged.complaint;
+  EXPECT_NEAR(Json::parse(judged.output)["epsilon"].get<double>(),
+              plan["grasps"][0]["epsilon"].get<double>(), 1e-9);
+  EXPECT_EQ(run("export --format csv --table contacts " + file).code, 0);
+  EXPECT_EQ(run("export --index 99 " + file).code, 2);
+
+  const auto picture = scratch("grasp.png");
+  EXPECT_EQ(run("picture --width 160 --height 120 -o " + picture.string() + " " + file).code, 0);
+  EXPECT_GT(std::filesystem::file_size(picture), 1000u);
+  EXPECT_EQ(run("picture -o /nowhere/at/all.png --width 64 --height 64 " + file).code, 3);
+  for (const auto& made : {std::filesystem::path(file), grasp, picture})
+    std::filesystem::remove(made);
+}
+
+}  // namespace
