@@ -49,10 +49,16 @@ void apply(Qos& qos, const TopicQos& topic, int depth, bool lockstep) {
 
 }  // namespace
 
-std::uint64_t instance_hash(const eprosima::fastrtps::rtps::InstanceHandle_t& handle) {
+std::uint64_t instance_hash(const std::array<std::uint8_t, 16>& key) {
   std::uint64_t hash = 0xcbf29ce484222325ULL;  // FNV-1a
-  for (int i = 0; i < 16; ++i) hash = (hash ^ handle.value[i]) * 0x100000001b3ULL;
+  for (const std::uint8_t byte : key) hash = (hash ^ byte) * 0x100000001b3ULL;
   return hash;
+}
+
+std::uint64_t instance_hash(const eprosima::fastrtps::rtps::InstanceHandle_t& handle) {
+  std::array<std::uint8_t, 16> key;
+  std::copy_n(static_cast<const std::uint8_t*>(handle.value), key.size(), key.begin());
+  return instance_hash(key);
 }
 
 struct Participant::State {
@@ -106,6 +112,10 @@ Expected<Participant> Participant::create(const ParticipantOptions& options) {
   udp->sendBufferSize = 1 << 21;
   udp->receiveBufferSize = 1 << 21;
   qos.transport().user_transports.push_back(udp);
+  // A participant that is just starting may miss our answer to its greeting and then knows us only
+  // by our next announcement; with the default of 3 s its first samples are lost.
+  qos.wire_protocol().builtin.discovery_config.leaseDuration_announcementperiod =
+      duration(std::chrono::milliseconds(500));
   state->participant =
       factory->create_participant(options.domain, qos, options.listener, fdds::StatusMask::none());
   if (!state->participant)

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <fastdds/dds/domain/DomainParticipantListener.hpp>
 #include <fastdds/dds/publisher/DataWriter.hpp>
 #include <fastdds/dds/subscriber/DataReader.hpp>
@@ -33,6 +34,7 @@ struct SampleInfo {
   bool gone = false;  // the instance was disposed or lost its last writer: only its key is set
 };
 
+std::uint64_t instance_hash(const std::array<std::uint8_t, 16>& key);
 std::uint64_t instance_hash(const eprosima::fastrtps::rtps::InstanceHandle_t& handle);
 
 template <class T>

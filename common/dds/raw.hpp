@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <fastdds/dds/domain/DomainParticipantListener.hpp>
@@ -34,6 +35,26 @@ struct RawSample {
   std::uint64_t sequence = 0;         // counts the writer's samples, from 1
   Time sent, received;                // clocks of the writer and of this machine
 };
+
+/// The message in a sample; false when it does not fit the topic's type.
+template <class P>
+bool decode(const Topic<P>&, const RawSample& sample, typename P::type& message) {
+  eprosima::fastrtps::rtps::SerializedPayload_t payload(
+      static_cast<std::uint32_t>(sample.payload.size()));
+  std::copy(sample.payload.begin(), sample.payload.end(), payload.data);
+  payload.length = payload.max_size;
+  return payload.length >= 4 && P().deserialize(&payload, &message);
+}
+
+/// A message as it is on the wire.
+template <class P>
+std::vector<std::uint8_t> encode(const Topic<P>&, const typename P::type& message) {
+  P type;
+  auto* data = const_cast<typename P::type*>(&message);
+  eprosima::fastrtps::rtps::SerializedPayload_t payload(type.getSerializedSizeProvider(data)());
+  if (!type.serialize(data, &payload)) return {};
+  return {payload.data, payload.data + payload.length};
+}
 
 /// A writer that has appeared, changed its QoS or gone.
 struct Discovered {

@@ -2,14 +2,16 @@
 
 namespace prehend::recorder {
 
-OperatorLink::OperatorLink(service::Shell& shell, std::string name, Obey obey)
+OperatorLink::OperatorLink(service::Shell& shell, std::string name, Obey obey,
+                           std::function<bool(std::uint64_t)> is_ours)
     : shell_(shell),
       name_(std::move(name)),
       obey_(std::move(obey)),
+      is_ours_(std::move(is_ours)),
       replies_(shell.publish(dds::operator_reply)) {
   shell.subscribe(dds::operator_command,
                   [this](const v1::OperatorCommand& command, const dds::SampleInfo& info) {
-                    if (!info.gone) on_command(command);
+                    if (!info.gone && !(is_ours_ && is_ours_(info.instance))) on_command(command);
                   });
 }
 

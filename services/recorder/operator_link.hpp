@@ -14,7 +14,9 @@ class OperatorLink {
  public:
   /// Returns what to answer; called in the shell.
   using Obey = std::function<Expected<std::string>(const std::string& order)>;
-  OperatorLink(service::Shell& shell, std::string name, Obey obey);
+  /// `is_ours`: instances of commands that we have published ourselves and do not obey.
+  OperatorLink(service::Shell& shell, std::string name, Obey obey,
+               std::function<bool(std::uint64_t)> is_ours = nullptr);
 
  private:
   void on_command(const v1::OperatorCommand& command);
@@ -22,6 +24,7 @@ class OperatorLink {
   service::Shell& shell_;
   std::string name_;
   Obey obey_;
+  std::function<bool(std::uint64_t)> is_ours_;
   service::Shell::Output<v1::OperatorReply> replies_;
 };
 

@@ -1,0 +1,209 @@
+#include "player.hpp"
+
+#include <fmt/format.h>
+#include <sys/prctl.h>
+
+#include <algorithm>
+#include <cmath>
+#include <prehend/base/log.hpp>
+#include <sstream>
+
+#include "stamps.hpp"
+
+namespace prehend::recorder {
+namespace {
+
+constexpr std::size_t most_lateness = 1'000'000;
+constexpr double slowest = 1e-3, fastest = 1e3;
+
+Time system_now() {
+  return std::chrono::time_point_cast<Duration>(std::chrono::system_clock::now());
+}
+
+}  // namespace
+
+Expected<std::unique_ptr<Player>> Player::create(Tape tape, dds::Participant& participant,
+                                                 const types::Library& types,
+                                                 PlayerOptions options) {
+  std::unique_ptr<Player> made(new Player(std::move(tape), types, std::move(options)));
+  if (made->from_ > made->to_)
+    return fail("the range is empty", "replay", "the recording ends before it begins");
+  for (const recording::Stream* stream : made->tape_.streams()) {
+    const auto key = std::pair(stream->topic.name, stream->writer);
+    if (made->writers_.contains(key)) continue;
+    dds::RawTopic topic = stream->topic;
+    if (const auto other = made->options_.remap.find(topic.name);
+        other != made->options_.remap.end())
+      topic.name = other->second;
+    auto writer = dds::RawWriter::create(participant, topic);
+    if (!writer) return tl::unexpected(writer.error());
+    made->writers_.emplace(key, std::move(*writer));
+  }
+  return made;
+}
+
+Player::Player(Tape tape, const types::Library& types, PlayerOptions options)
+    : tape_(std::move(tape)),
+      types_(types),
+      options_(std::move(options)),
+      from_(std::max(options_.from.value_or(tape_.start()), tape_.start())),
+      to_(std::min(options_.to.value_or(tape_.end()), tape_.end())),
+      transport_(from_) {
+  transport_.set_rate(clock(), options_.rate);
+}
+
+Time Player::clock() {
+  return Time(std::chrono::duration_cast<Duration>(Clock::now().time_since_epoch()));
+}
+
+void Player::fetch() {
+  next_ = tape_.next();
+  if (next_ && next_->log_time > to_) next_.reset();
+}
+
+void Player::go_to(Time position) {
+  position = std::clamp(position, from_, to_);
+  if (position > tape_.start())
+    for (const Played& played : tape_.standing(position)) publish(played);
+  tape_.seek(position);
+  transport_.seek(clock(), position);
+  fetch();
+}
+
+bool Player::write(const recording::Stream& stream, dds::RawSample sample) {
+  const auto writer = writers_.find({stream.topic.name, stream.writer});
+  return writer != writers_.end() && writer->second.write(sample, sample.sent);
+}
+
+void Player::publish(const Played& played) {
+  const recording::Stream& stream = *played.stream;
+  if (stream.topic.name == dds::operator_command.name)
+    commands_.insert(dds::instance_hash(played.sample.instance));
+  bool written = false;
+  if (options_.stamps_now) {
+    dds::RawSample sample = played.sample;
+    const Duration shift = system_now() - played.log_time;
+    sample.sent += shift;
+    if (const types::Structure* type = types_.find(stream.topic.type))
+      shift_stamps(*type, shift, sample.payload);
+    written = write(stream, std::move(sample));
+  } else {
+    written = writers_.find({stream.topic.name, stream.writer})
+                  ->second.write(played.sample, played.sample.sent);
+  }
+  ++(written ? figures_.published : figures_.refused);
+}
+
+void Player::play(const std::stop_token& stop) {
+  ::prctl(PR_SET_TIMERSLACK, 1000);  // ns; the usual 50 µs would show in every message
+  std::unique_lock lock(mutex_);
+  go_to(from_);
+  if (!options_.paused) transport_.run(clock());
+  while (!stop.stop_requested()) {
+    if (!next_ && transport_.runs()) {
+      if (!options_.loop) break;
+      ++figures_.loops;
+      go_to(from_);
+      continue;
+    }
+    if (burst_ > 0 && next_) {
+      --burst_;
+      publish(*next_);
+      transport_.seek(clock(), next_->log_time);
+      fetch();
+      continue;
+    }
+    burst_ = 0;
+    if (!transport_.runs()) {
+      const std::uint64_t orders = orders_;
+      news_.wait(lock, stop, [&] { return orders_ != orders; });
+      continue;
+    }
+    const Time due = transport_.when(next_->log_time), now = clock();
+    if (due > now) {
+      const std::uint64_t orders = orders_;
+      news_.wait_until(lock, stop, Clock::now() + (due - now), [&] { return orders_ != orders; });
+      if (clock() < due) continue;  // an order came
+    }
+    if (lateness_us_.size() < most_lateness)
+      lateness_us_.push_back(static_cast<float>(1e6 * to_seconds(clock() - due)));
+    publish(*next_);
+    fetch();
+  }
+  figures_.ended = true;
+  lock.unlock();
+  // Reliable readers get the last samples too.
+  for (auto& [key, writer] : writers_) writer.raw().wait_for_acknowledgments({2, 0});
+}
+
+Expected<std::string> Player::obey(const std::string& order) {
+  std::istringstream words(order);
+  std::string verb, rest;
+  double number = 0;
+  words >> verb;
+  const bool has_number = static_cast<bool>(words >> number) && std::isfinite(number);
+  if (!has_number) {
+    words.clear();
+    words >> rest;
+  }
+  const std::scoped_lock lock(mutex_);
+  const auto answer = [&]() -> Expected<std::string> {
+    if (verb == "start" || verb == "resume") {
+      if (!transport_.runs()) transport_.run(clock());
+      return "playing";
+    }
+    if (verb == "pause") {
+      if (transport_.runs()) transport_.pause(clock());
+      return "paused";
+    }
+    if (verb == "step" || (verb == "burst" && has_number && number >= 1)) {
+      if (transport_.runs()) transport_.pause(clock());
+      burst_ = verb == "step" ? 1 : static_cast<std::uint64_t>(std::min(number, 1e12));
+      return verb == "step" ? "stepped" : fmt::format("burst of {}", burst_);
+    }
+    if (verb == "seek" && has_number) {
+      go_to(from_ + seconds(std::clamp(number, 0.0, 1e9)));
+      return fmt::format("at {:.3f} s", to_seconds(transport_.position(clock()) - from_));
+    }
+    if (verb == "rate" && number >= slowest && number <= fastest) {
+      transport_.set_rate(clock(), number);
+      return fmt::format("rate {}", number);
+    }
+    if (verb == "loop" && (rest == "on" || rest == "off")) {
+      options_.loop = rest == "on";
+      return order;
+    }
+    return fail("unknown order '" + order + "'", "replayer",
+                "start, pause, resume, step, burst N, seek S, rate R, loop on|off or stop");
+  }();
+  ++orders_;
+  news_.notify_all();
+  return answer;
+}
+
+Player::Figures Player::figures() {
+  const std::scoped_lock lock(mutex_);
+  Figures figures = figures_;
+  figures.runs = transport_.runs();
+  figures.rate = transport_.rate();
+  figures.position = to_seconds(std::min(transport_.position(clock()), to_) - from_);
+  figures.length = to_seconds(to_ - from_);
+  if (!lateness_us_.empty() && figures.ended) {
+    std::sort(lateness_us_.begin(), lateness_us_.end());
+    const auto quantile = [&](double q) {
+      return static_cast<double>(
+          lateness_us_[static_cast<std::size_t>(q * static_cast<double>(lateness_us_.size() - 1))]);
+    };
+    figures.late_p50_us = quantile(0.5);
+    figures.late_p99_us = quantile(0.99);
+    figures.late_max_us = quantile(1);
+  }
+  return figures;
+}
+
+bool Player::has_played_command(std::uint64_t instance) {
+  const std::scoped_lock lock(mutex_);
+  return commands_.contains(instance);
+}
+
+}  // namespace prehend::recorder

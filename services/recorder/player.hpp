@@ -1,0 +1,83 @@
+#pragma once
+
+#include <atomic>
+#include <condition_variable>
+#include <map>
+#include <mutex>
+#include <optional>
+#include <prehend/dds/raw.hpp>
+#include <prehend/types/type.hpp>
+#include <set>
+#include <stop_token>
+#include <string>
+#include <vector>
+
+#include "tape.hpp"
+#include "transport.hpp"
+
+namespace prehend::recorder {
+
+struct PlayerOptions {
+  std::optional<Time> from, to;  // range of log time; none: all
+  bool loop = false;
+  double rate = 1;
+  bool paused = false;  // at first
+  /// Time stamps, inside and beside the messages, are moved so that log time is now.
+  bool stamps_now = false;
+  std::map<std::string, std::string> remap;  // topic: what it is called here
+};
+
+/// Plays a tape to topics, each recorded writer by a writer of its own with its QoS.
+class Player {
+ public:
+  /// Makes the writers; `types` are those whose stamps can be moved. All arguments must outlive it.
+  static Expected<std::unique_ptr<Player>> create(Tape tape, dds::Participant& participant,
+                                                  const types::Library& types,
+                                                  PlayerOptions options);
+
+  /// Plays until the end of the range or until it is stopped; for a thread of its own.
+  void play(const std::stop_token& stop);
+
+  /// start, resume, pause, step, burst N, seek S (from the start), rate R, loop on|off. Safe from
+  /// every thread.
+  Expected<std::string> obey(const std::string& order);
+
+  struct Figures {
+    bool runs = false, ended = false;
+    double position = 0, length = 0, rate = 1;  // s, s
+    std::uint64_t published = 0, refused = 0, loops = 0;
+    double late_p50_us = 0, late_p99_us = 0, late_max_us = 0;
+  };
+  Figures figures();
+  /// An instance of operator/command that was played and must not be obeyed.
+  bool has_played_command(std::uint64_t instance);
+
+  Tape& tape() { return tape_; }  // before play()
+  /// Writes a sample of the tape with another payload; before play().
+  bool write(const recording::Stream& stream, dds::RawSample sample);
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  Player(Tape tape, const types::Library& types, PlayerOptions options);
+  static Time clock();
+  void go_to(Time position);
+  void fetch();
+  void publish(const Played& played);
+
+  Tape tape_;
+  const types::Library& types_;
+  PlayerOptions options_;
+  Time from_, to_;
+  std::map<std::pair<std::string, dds::Guid>, dds::RawWriter> writers_;
+
+  std::mutex mutex_;  // guards what follows
+  std::condition_variable_any news_;
+  Transport transport_;
+  std::optional<Played> next_;
+  std::uint64_t burst_ = 0, orders_ = 0;
+  Figures figures_;
+  std::vector<float> lateness_us_;
+  std::set<std::uint64_t> commands_;
+};
+
+}  // namespace prehend::recorder

@@ -1,0 +1,154 @@
+#include "tape.hpp"
+
+#include <algorithm>
+#include <deque>
+
+namespace prehend::recorder {
+
+using Kind = dds::RawSample::Kind;
+
+namespace {
+
+Played played(const recording::Stream& stream, const mcap::Message& message) {
+  Played result;
+  result.stream = &stream;
+  result.log_time = from_ns(static_cast<std::int64_t>(message.log_time));
+  dds::RawSample& sample = result.sample;
+  sample.kind = stream.kind;
+  if (stream.kind == Kind::data) sample.payload.assign(message.data.begin(), message.data.end());
+  sample.instance = stream.instance;
+  sample.writer = stream.writer;
+  sample.sequence = message.sequence;
+  sample.sent = from_ns(static_cast<std::int64_t>(message.publish_time));
+  sample.received = result.log_time;
+  return result;
+}
+
+}  // namespace
+
+Expected<Tape> Tape::open(const std::vector<std::filesystem::path>& files, const Wanted& wanted) {
+  Tape tape;
+  bool any = false;
+  for (const auto& path : files) {
+    auto reader = mcap::Reader::open(path);
+    if (!reader) return tl::unexpected(reader.error());
+    auto file = std::make_unique<File>(File{std::move(*reader), {}, {}, {}});
+    for (const Error& error : file->reader.contents().damage) tape.note(error);
+    const auto statistics = file->reader.statistics();
+    if (!statistics) return tl::unexpected(statistics.error());
+    const auto& contents = file->reader.contents();
+    for (const auto& [id, channel] : contents.channels) {
+      const auto schema = contents.schemas.find(channel.schema_id);
+      auto stream = recording::to_stream(
+          channel, schema == contents.schemas.end() ? "" : schema->second.name);
+      if (!stream) {
+        tape.note(stream.error());
+        continue;
+      }
+      if (wanted(stream->topic.name)) file->streams.emplace(id, std::move(*stream));
+    }
+    tape.files_.push_back(std::move(file));
+    if (statistics->message_count == 0) continue;
+    const Time first = from_ns(static_cast<std::int64_t>(statistics->message_start_time));
+    const Time last = from_ns(static_cast<std::int64_t>(statistics->message_end_time));
+    tape.start_ = any ? std::min(tape.start_, first) : first;
+    tape.end_ = any ? std::max(tape.end_, last) : last;
+    any = true;
+  }
+  tape.seek(tape.start_);
+  std::optional<Time> first;
+  for (const auto& file : tape.files_)
+    if (file->waiting) first = std::min(first.value_or(tape.end_), file->waiting->log_time);
+  if (!first)
+    return fail("holds no message of these topics", files.empty() ? "" : files.front().string(),
+                "see prehend recording info");
+  tape.start_ = *first;
+  return tape;
+}
+
+void Tape::note(const Error& error) {
+  if (damage_.size() < 100) damage_.push_back(error);
+}
+
+std::vector<const recording::Stream*> Tape::streams() const {
+  std::vector<const recording::Stream*> all;
+  for (const auto& file : files_)
+    for (const auto& [id, stream] : file->streams) all.push_back(&stream);
+  return all;
+}
+
+void Tape::advance(File& file) {
+  file.waiting.reset();
+  while (file.cursor) {
+    const auto message = file.cursor->next();
+    if (!message) {
+      note(message.error());
+      continue;
+    }
+    if (!*message) return;
+    const auto stream = file.streams.find((*message)->message.channel_id);
+    if (stream == file.streams.end()) continue;
+    file.waiting = played(stream->second, (*message)->message);
+    return;
+  }
+}
+
+void Tape::seek(Time time) {
+  for (auto& file : files_) {
+    mcap::Selection selection;
+    selection.start = static_cast<std::uint64_t>(std::max<std::int64_t>(0, to_ns(time)));
+    selection.wanted = [raw = file.get()](const mcap::Channel& channel) {
+      return raw->streams.contains(channel.id);
+    };
+    file->cursor.emplace(file->reader.messages(selection));
+    advance(*file);
+  }
+}
+
+std::optional<Played> Tape::next() {
+  File* earliest = nullptr;
+  for (const auto& file : files_)
+    if (file->waiting && (!earliest || file->waiting->log_time < earliest->waiting->log_time))
+      earliest = file.get();
+  if (!earliest) return std::nullopt;
+  std::optional<Played> result = std::move(earliest->waiting);
+  advance(*earliest);
+  return result;
+}
+
+std::vector<Played> Tape::standing(Time time) {
+  std::map<std::tuple<std::string, dds::Guid, dds::Guid>, std::deque<Played>> alive;
+  for (const auto& file : files_) {
+    mcap::Selection selection;
+    selection.end = static_cast<std::uint64_t>(std::max<std::int64_t>(1, to_ns(time))) - 1;
+    selection.wanted = [raw = file.get()](const mcap::Channel& channel) {
+      const auto stream = raw->streams.find(channel.id);
+      return stream != raw->streams.end() && stream->second.topic.qos.transient_local;
+    };
+    auto cursor = file->reader.messages(selection);
+    while (true) {
+      const auto message = cursor.next();
+      if (!message) continue;
+      if (!*message) break;
+      const auto found = file->streams.find((*message)->message.channel_id);
+      if (found == file->streams.end()) continue;
+      const recording::Stream& stream = found->second;
+      auto& kept = alive[{stream.topic.name, stream.writer, stream.instance}];
+      if (stream.kind != Kind::data) {
+        kept.clear();
+        continue;
+      }
+      kept.push_back(played(stream, (*message)->message));
+      const int depth = stream.topic.qos.writer_depth;
+      if (depth > 0 && kept.size() > static_cast<std::size_t>(depth)) kept.pop_front();
+    }
+  }
+  std::vector<Played> all;
+  for (auto& [key, kept] : alive)
+    for (Played& one : kept) all.push_back(std::move(one));
+  std::stable_sort(all.begin(), all.end(),
+                   [](const Played& a, const Played& b) { return a.log_time < b.log_time; });
+  return all;
+}
+
+}  // namespace prehend::recorder
