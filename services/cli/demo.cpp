@@ -146,6 +146,8 @@ class Demonstration {
 
     lab_.emplace(file, sets, folder_->path());
     const std::string truth = "lab.scene=" + scene_file.string();
+    if (!options_.record.empty())
+      if (const auto trouble = start_recorder(sets, truth)) return trouble;
     for (const std::string service : {"recognition", "mapping", "simulation"}) {
       if (in(options_.without, service)) continue;
       // A real camera sees a table that nobody described: the world is built from what it sees.
@@ -183,6 +185,21 @@ class Demonstration {
     }
     const auto started = lab_->start_service("glove", sets);
     if (!started) return broken(started.error());
+    return std::nullopt;
+  }
+
+  /// Up before the others, so that it misses nothing.
+  Trouble start_recorder(std::vector<std::string> sets, const std::string& truth) {
+    sets.push_back(truth);
+    std::vector<std::string> arguments{"--output", absolute(options_.record), "--quiet", "--config",
+                                       options_.lab.file()};
+    for (const std::string& set : sets) arguments.insert(arguments.end(), {"--set", set});
+    if (const auto started = lab_->start("recorder", "prehend-record", arguments); !started)
+      return broken(started.error());
+    while (!observer_.is_up("recorder")) {
+      if (const auto trouble = step("starting")) return trouble;
+      if (Clock::now() >= end_) return broken({"did not come up", "recorder", ""});
+    }
     return std::nullopt;
   }
 
@@ -328,6 +345,7 @@ int demo_command(const std::vector<std::string>& arguments) {
       ->check(CLI::IsMember({"direct", "intelligent"}));
   app.add_option("--timeout", demo.timeout, "s until it ends without a grasp")
       ->check(CLI::Range(1.0, 3600.0));
+  app.add_option("--record", demo.record, "record all topics into this file");
   app.add_flag("--attach", demo.attach, "start nothing, judge the lab that runs");
   app.add_flag("--keep", demo.keep, "keep scene and logs");
   app.add_flag("--json", json, "one JSON document on standard output");

@@ -23,6 +23,7 @@ struct DemoOptions {
   bool attach = false;                  // starts nothing, judges a lab that runs
   bool keep = false;                    // keeps the folder with scene and logs
   double timeout = 45;                  // s
+  std::string record;                   // file that takes all topics; empty: none
 };
 
 /// A demonstration that could not be given.

@@ -13,6 +13,8 @@ namespace prehend::cli {
 const std::vector<Tool>& tools() {
   static const std::vector<Tool> table{
       {"record", "prehend-record", "topics into a file"},
+      {"replay", "prehend-replay", "a file back to topics"},
+      {"check", "prehend-check", "do services still answer as recorded"},
       {"recording", "prehend-recording", "what is in recordings, parts of them, comparisons"},
       {"glove", "prehend-glove-tool", "decode a serial capture, emulate a tracker"},
       {"objects", "prehend-objects", "train, detect and evaluate object models"},
