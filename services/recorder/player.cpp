@@ -39,6 +39,8 @@ Expected<std::unique_ptr<Player>> Player::create(Tape tape, dds::Participant& pa
     if (!writer) return tl::unexpected(writer.error());
     made->writers_.emplace(key, std::move(*writer));
   }
+  // Before any order comes, which may move it.
+  made->go_to(made->from_);
   return made;
 }
 
@@ -97,7 +99,7 @@ void Player::publish(const Played& played) {
 void Player::play(const std::stop_token& stop) {
   ::prctl(PR_SET_TIMERSLACK, 1000);  // ns; the usual 50 µs would show in every message
   std::unique_lock lock(mutex_);
-  go_to(from_);
+  if (next_) transport_.seek(clock(), next_->log_time);
   if (!options_.paused) transport_.run(clock());
   while (!stop.stop_requested()) {
     if (!next_ && transport_.runs()) {

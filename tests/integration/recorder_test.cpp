@@ -184,20 +184,21 @@ TEST_F(Recorder, RecordedPlayedAndRecordedAgainIsTheSame) {
 TEST_F(Recorder, KilledAtAnyMomentItsFileIsReadableButForTheLastSecond) {
   const int points = std::getenv("PREHEND_LONG") ? 200 : 20;
   std::mt19937 random(std::random_device{}());
-  auto reports = writer(dds::grasp_report);
+  // Volatile: a late recorder of a topic that keeps all is first given what was before.
+  auto postures = writer(dds::hand_posture);
   std::atomic<bool> stop = false;
   std::mutex mutex;
   std::map<std::uint64_t, std::int64_t> sent;  // number: when
   std::thread source([&] {
     for (std::uint64_t i = 0; !stop; ++i) {
-      v1::GraspReport report;
-      report.hand("hand");
-      report.sequence_number(i);
-      report.stamp_ns(now_ns());
-      reports.write(report);
+      v1::HandPosture posture;
+      posture.glove("glove");
+      posture.sequence_number(i);
+      posture.stamp_ns(now_ns());
+      postures.write(posture);
       {
         const std::scoped_lock lock(mutex);
-        sent[i] = report.stamp_ns();
+        sent[i] = posture.stamp_ns();
       }
       std::this_thread::sleep_for(std::chrono::milliseconds(2));
     }
@@ -216,14 +217,14 @@ TEST_F(Recorder, KilledAtAnyMomentItsFileIsReadableButForTheLastSecond) {
     const std::int64_t killed = now_ns();
     process.signal(SIGKILL);
     process.wait(seconds(5));
-    auto tape = Tape::open({file(name)}, [](const std::string& t) { return t == "grasp/report"; });
+    auto tape = Tape::open({file(name)}, [](const std::string& t) { return t == "hand/posture"; });
     ASSERT_TRUE(tape) << tape.error().message();
     std::int64_t last = 0;
     std::uint64_t count = 0;
     while (const auto one = tape->next()) {
-      v1::GraspReport report;
-      ASSERT_TRUE(dds::decode(dds::grasp_report, one->sample, report));
-      last = std::max(last, report.stamp_ns());
+      v1::HandPosture posture;
+      ASSERT_TRUE(dds::decode(dds::hand_posture, one->sample, posture));
+      last = std::max(last, posture.stamp_ns());
       ++count;
     }
     EXPECT_GT(count, 0u);
