@@ -5,6 +5,7 @@
 #include <cmath>
 #include <fstream>
 #include <initializer_list>
+#include <prehend/base/paths.hpp>
 #include <sstream>
 
 #include "hand_model.hpp"
@@ -402,6 +403,11 @@ Expected<HandModel> HandModel::parse(std::string_view urdf, std::string_view tom
   if (auto done = loader.load(root); !done)
     return tl::unexpected(located(done.error(), "hand.toml"));
   return std::move(loader.hand);
+}
+
+std::filesystem::path hand_directory(const std::string& hand) {
+  if (hand.find('/') != std::string::npos) return hand;
+  return share_directory() / "models" / "hands" / hand;
 }
 
 Expected<HandModel> HandModel::load(const std::filesystem::path& directory) {

@@ -71,6 +71,9 @@ struct HandFingertip {
   Eigen::Vector3d p_LT;  // tip in the link's frame
 };
 
+/// The folder of a hand: what has a slash is a path, anything else a name in models/hands.
+std::filesystem::path hand_directory(const std::string& hand);
+
 /// A robot hand as data: kinematics and collision shapes from hand.urdf, the rest from hand.toml.
 /// B: base frame (the root link). Values are checked when loaded, so users need not.
 class HandModel {

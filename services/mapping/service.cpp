@@ -158,8 +158,7 @@ class Service {
 
 Expected<int> run(service::Shell& shell) {
   const service::Config& config = shell.config();
-  const auto hand =
-      model::HandModel::load(share_directory() / "models" / "hands" / config.text("mapping.hand"));
+  const auto hand = model::HandModel::load(model::hand_directory(config.text("mapping.hand")));
   if (!hand) return tl::unexpected(hand.error());
   const auto model = MappingModel::load(config.path("mapping.model"), *hand);
   if (!model) return tl::unexpected(model.error());

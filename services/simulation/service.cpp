@@ -20,12 +20,12 @@ Expected<std::unique_ptr<Service>> Service::create(service::Shell& shell, int& e
   const service::Config& config = shell.config();
   exit_code = 2;
   const std::string& kind = config.text("simulation.hand");
-  if (kind.empty() || kind.find('/') != std::string::npos)
-    return fail("is no name of a hand", "simulation.hand", "for example barrett");
+  if (kind.empty())
+    return fail("is no hand", "simulation.hand", "for example barrett, or the path of a folder");
   if (!(config.number("simulation.state_rate") > 0))
     return fail("must be positive", "simulation.state_rate");
   exit_code = 3;
-  auto hand = model::HandModel::load(share_directory() / "models/hands" / kind);
+  auto hand = model::HandModel::load(model::hand_directory(kind));
   if (!hand) return tl::unexpected(hand.error());
   auto catalogue = model::Catalogue::load(config.path("lab.catalogue"));
   if (!catalogue) return tl::unexpected(catalogue.error());
