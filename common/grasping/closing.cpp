@@ -9,21 +9,49 @@ namespace {
 using Eigen::VectorXd;
 
 constexpr double lead = 1.0 / 3;     // share of the squeeze, and so of the torque, while closing
-constexpr double still = 0.02;       // rad/s: slower joints stand still
-constexpr double stands_for = 0.15;  // s
-constexpr double overlap = 0.001;    // m, that a preshape may already press into the object
-constexpr double damping = 20;       // 1/s, of an object that floats while it is grasped
+constexpr double stands_for = 0.15;  // s, that hand and object stand still, on average slower than
+constexpr double still = 0.02;       // rad/s, of every joint
+constexpr double object_still = 0.002;  // m/s
+constexpr double object_turns = 0.05;   // rad/s
+constexpr double overlap = 0.001;       // m, that a preshape may already press into the object
+constexpr double damping = 20;          // 1/s, of an object that floats while it is grasped
 
-bool stands_still(const World& world) {
-  const VectorXd velocity = world.hand_motion().velocity;
-  for (Eigen::Index i = 0; i < velocity.size(); ++i) {
-    const auto& joint = world.hand().joints()[static_cast<std::size_t>(i)];
-    const auto& dof = world.hand().dofs()[static_cast<std::size_t>(joint.dof)];
-    if (!(std::abs(velocity[i]) < still * radian_of(dof))) return false;
+/// Tells when hand and object have kept their place for a while. Positions are looked at, since
+/// joints that are pressed against their limits or each other report speeds without moving.
+class Rest {
+ public:
+  explicit Rest(const World& world) { restart(world); }
+
+  /// True if nothing has moved on since `stands_for` before; to be asked after each step.
+  bool reached(const World& world) {
+    since_ += world.time_step();
+    if (moved(world)) restart(world);
+    return since_ > stands_for;
   }
-  const BodyMotion object = world.body_motion(0);
-  return object.velocity.norm() < 0.002 && object.angular_velocity.norm() < 0.05;
-}
+
+ private:
+  bool moved(const World& world) const {
+    const VectorXd joint = world.hand_motion().joint;
+    for (Eigen::Index i = 0; i < joint.size(); ++i) {
+      const auto& driven = world.hand().joints()[static_cast<std::size_t>(i)];
+      const auto& dof = world.hand().dofs()[static_cast<std::size_t>(driven.dof)];
+      if (!(std::abs(joint[i] - joint_[i]) < still * stands_for * radian_of(dof))) return true;
+    }
+    const Pose X_WO = world.body_motion(0).X_WO;
+    return !((X_WO.translation() - X_WO_.translation()).norm() < object_still * stands_for) ||
+           !(angle_between(X_WO.linear(), X_WO_.linear()) < object_turns * stands_for);
+  }
+
+  void restart(const World& world) {
+    joint_ = world.hand_motion().joint;
+    X_WO_ = world.body_motion(0).X_WO;
+    since_ = 0;
+  }
+
+  VectorXd joint_;
+  Pose X_WO_;
+  double since_ = 0;  // s
+};
 
 /// Commands every closing DoF ahead of its joint until all have stopped. False if they never do.
 bool close_until_still(World& world, const ClosingOptions& options) {
@@ -31,7 +59,7 @@ bool close_until_still(World& world, const ClosingOptions& options) {
   const Pose X_WB = world.commanded_base();
   VectorXd command = world.commanded_dof();
   const double dt = world.time_step();
-  double standing = 0;
+  Rest rest(world);
   for (double t = 0; t < options.longest; t += dt) {
     const VectorXd now = world.hand_motion().dof;
     for (Eigen::Index i = 0; i < command.size(); ++i) {
@@ -44,8 +72,7 @@ bool close_until_still(World& world, const ClosingOptions& options) {
     world.command(X_WB, hand.clamp(command));
     world.step();
     // The drives need a moment before they move at all.
-    standing = t > 0.1 && stands_still(world) ? standing + dt : 0;
-    if (standing > stands_for) return true;
+    if (rest.reached(world) && t > 0.1 + stands_for) return true;
   }
   return false;
 }
