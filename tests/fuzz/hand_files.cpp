@@ -12,7 +12,7 @@ std::vector<HandFiles> all_hands() {
   std::vector<std::filesystem::path> folders;
   for (const auto& entry :
        std::filesystem::directory_iterator(PREHEND_SOURCE "/common/models/hands"))
-    folders.push_back(entry.path());
+    if (entry.is_directory()) folders.push_back(entry.path());
   std::sort(folders.begin(), folders.end());
   std::vector<HandFiles> hands;
   for (const auto& folder : folders)

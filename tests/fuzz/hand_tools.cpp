@@ -1,0 +1,67 @@
+// Damaged URDF through `prehend hand check` and `prehend hand add`: findings that say where and
+// what, and if a hand is made of it, a sound one with every collision shape of the file in it.
+#include <console_bridge/console.h>
+
+#include <numeric>
+#include <prehend/hands/make_hand.hpp>
+
+#include "fuzz.hpp"
+#include "hand_files.hpp"
+#include "mutation.hpp"
+
+using namespace prehend;
+
+namespace {
+
+std::size_t solids_of(const hands::Robot& robot) {
+  return std::accumulate(
+      robot.links.begin(), robot.links.end(), std::size_t{0},
+      [](std::size_t sum, const auto& link) { return sum + link.collision.size(); });
+}
+
+bool make(const std::string& urdf) {
+  const auto robot = hands::read_robot(urdf);
+  if (!robot) {
+    fuzz::require(!robot.error().what.empty(), "refused without a reason");
+    return false;
+  }
+  const auto block = [](const hands::Solid&) -> Expected<std::vector<Eigen::Vector3d>> {
+    return std::vector<Eigen::Vector3d>{{0, 0, 0}, {0.02, 0.03, 0.04}};
+  };
+  for (const hands::Finding& finding : hands::check(*robot, block))
+    fuzz::require(!finding.what.empty() && !finding.mend.empty() && !finding.element.empty(),
+                  "a finding that does not say what, where and the mend");
+  const auto hand = hands::make_hand(*robot, "fuzzed", block);
+  if (!hand) return false;
+  fuzz::require_sound(hand->model);
+  std::size_t made = 0;
+  for (const model::HandLink& link : hand->model.links()) made += link.collision.size();
+  fuzz::require(made >= solids_of(*robot), "a collision shape was lost");
+  return true;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  console_bridge::noOutputHandler();
+  fuzz::Fuzzer fuzzer;
+  for (const fuzz::HandFiles& hand : fuzz::all_hands()) fuzzer.seeds.push_back(hand.urdf);
+  fuzzer.mutate = [](Random& random, std::string text) {
+    for (std::size_t i = 0, changes = 1 + random.index(3); i < changes; ++i) {
+      switch (random.index(5)) {
+        case 0:
+          text = fuzz::mutate_bytes(random, std::move(text));
+          break;
+        case 1:
+        case 2:
+          text = fuzz::mutate_number(random, std::move(text));
+          break;
+        default:
+          text = fuzz::mutate_xml(random, std::move(text));
+      }
+    }
+    return text;
+  };
+  fuzzer.target = make;
+  return fuzz::run(fuzzer, argc, argv);
+}
