@@ -29,4 +29,8 @@ double friction(Material a, Material b) {
   return table[static_cast<std::size_t>(a)][static_cast<std::size_t>(b)];
 }
 
+double torsion(Material a, Material b) {
+  return a == Material::rubber || b == Material::rubber ? 0.002 : 0;
+}
+
 }  // namespace prehend::analysis

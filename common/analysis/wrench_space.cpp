@@ -32,10 +32,14 @@ double torque_scale(const model::Shape& shape) {
   return model::half_extents(shape).norm();
 }
 
+Expected<Quality> grasp_quality(const std::vector<Contact>& contacts, double torque_scale) {
+  if (!(torque_scale > 0)) return fail("the scale of torques must be positive");
+  return wrench_quality(contact_wrenches(spread_contacts(contacts, most_contacts), torque_scale));
+}
+
 Expected<Quality> grasp_quality(const std::vector<Contact>& contacts, const model::Shape& shape) {
   if (!model::is_valid(shape)) return fail("the object has no valid shape");
-  return wrench_quality(
-      contact_wrenches(spread_contacts(contacts, most_contacts), torque_scale(shape)));
+  return grasp_quality(contacts, torque_scale(shape));
 }
 
 }  // namespace prehend::analysis

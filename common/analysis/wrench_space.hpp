@@ -26,7 +26,10 @@ Expected<Quality> wrench_quality(const Eigen::MatrixXd& wrenches);
 /// ρ: the largest distance of a point of the shape from its centre, m.
 double torque_scale(const model::Shape& shape);
 
-/// Quality of contacts on a shape whose centre of mass is its centre (at most ten contacts count).
+/// Quality of contacts on an object with that ρ (at most ten contacts count).
+Expected<Quality> grasp_quality(const std::vector<Contact>& contacts, double torque_scale);
+
+/// The same on a shape whose centre of mass is its centre.
 Expected<Quality> grasp_quality(const std::vector<Contact>& contacts, const model::Shape& shape);
 
 }  // namespace prehend::analysis

@@ -78,10 +78,10 @@ bool close_until_still(World& world, const ClosingOptions& options) {
 }
 
 Expected<analysis::Quality> judge(const std::vector<analysis::Contact>& contacts,
-                                  const model::Shape& shape, bool volume) {
-  if (volume) return analysis::grasp_quality(contacts, shape);
+                                  const Body& object, bool volume) {
+  if (volume) return analysis::grasp_quality(contacts, torque_scale(object));
   auto resistance = analysis::l1_resistance(analysis::contact_wrenches(
-      analysis::spread_contacts(contacts, analysis::most_contacts), analysis::torque_scale(shape)));
+      analysis::spread_contacts(contacts, analysis::most_contacts), torque_scale(object)));
   if (!resistance) return tl::unexpected(resistance.error());
   return analysis::Quality{std::move(*resistance)};
 }
@@ -133,7 +133,7 @@ Expected<ClosedGrasp> close_hand(const model::HandModel& hand, const Body& objec
   grasp.contacts = world->contacts(0);
   if (grasp.contacts.size() < 2)
     return fail("fewer than two contacts", object.name, "the object is out of the fingers' reach");
-  auto quality = judge(grasp.contacts, object.shape, options.volume);
+  auto quality = judge(grasp.contacts, object, options.volume);
   if (!quality) return tl::unexpected(quality.error());
   grasp.quality = std::move(*quality);
   if (options.hold_test) {

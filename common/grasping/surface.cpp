@@ -12,7 +12,6 @@ namespace prehend::grasping {
 namespace {
 
 constexpr double collision_margin = 0.0005;  // m; Bullet's default of 0.04 is far too much here
-constexpr double spinning_friction = 0.002;  // of soft pads, m
 constexpr double rolling_friction = 0.0002;  // m; keeps a standing or lying cylinder where it is
 
 double friction_between(const Surface& a, const Surface& b) {
@@ -29,7 +28,8 @@ bool set_friction(btManifoldPoint& point, const btCollisionObjectWrapper* a, int
   const Surface& second = surface_of(b->getCollisionObject());
   point.m_combinedFriction = friction_between(first, second);
   const bool slippery = point.m_combinedFriction < 0.1;
-  point.m_combinedSpinningFriction = slippery ? 0 : spinning_friction;
+  point.m_combinedSpinningFriction =
+      slippery ? 0 : analysis::torsion(first.material, second.material);
   point.m_combinedRollingFriction = slippery ? 0 : rolling_friction;
   return true;
 }
@@ -59,13 +59,21 @@ std::unique_ptr<btCollisionShape> make_shape(const model::Shape& shape) {
   return made;
 }
 
+std::unique_ptr<btCollisionShape> make_shape(const std::vector<Eigen::Vector3d>& corners) {
+  auto made = std::make_unique<btConvexHullShape>();
+  for (const Eigen::Vector3d& corner : corners) made->addPoint(to_bullet(corner), false);
+  made->recalcLocalAabb();
+  made->setMargin(collision_margin);
+  return made;
+}
+
 void make_touchable(btCollisionObject& collider, Surface& surface) {
   install_friction();
   collider.setUserPointer(&surface);
   collider.setCollisionFlags(collider.getCollisionFlags() |
                              btCollisionObject::CF_CUSTOM_MATERIAL_CALLBACK);
   // Bullet skips rolling and spinning friction unless the objects ask for some.
-  collider.setSpinningFriction(spinning_friction);
+  collider.setSpinningFriction(1.0);
   collider.setRollingFriction(rolling_friction);
   collider.setFriction(1.0);
   collider.setRestitution(0);

@@ -6,6 +6,7 @@
 #include <optional>
 #include <prehend/analysis/materials.hpp>
 #include <prehend/model/shape.hpp>
+#include <vector>
 
 class btCollisionShape;
 
@@ -21,6 +22,9 @@ struct Surface {
 
 /// Bullet's shape of a solid about its centre; without the thick margin that Bullet likes.
 std::unique_ptr<btCollisionShape> make_shape(const model::Shape& shape);
+
+/// The same of a convex solid with these corners.
+std::unique_ptr<btCollisionShape> make_shape(const std::vector<Eigen::Vector3d>& corners);
 
 /// Gives the collider a surface, whose address must stay. Friction between two colliders is that of
 /// their two surfaces.

@@ -5,10 +5,12 @@
 #include <btBulletCollisionCommon.h>
 #include <btBulletDynamicsCommon.h>
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <deque>
 #include <prehend/analysis/materials.hpp>
+#include <prehend/analysis/wrench_space.hpp>
 #include <utility>
 
 #include "bullet.hpp"
@@ -19,6 +21,7 @@
 namespace prehend::grasping {
 namespace {
 
+constexpr int most_bodies = 1000;
 constexpr double beyond = 0.01;  // share of a DoF's range that rounding may leave its limits
 
 Expected<void> check(const model::HandModel& hand, const Pose& X_WB, const Eigen::VectorXd& dof) {
@@ -41,6 +44,10 @@ Expected<void> check(const model::HandModel& hand, const Pose& X_WB, const Eigen
 using Eigen::Vector3d;
 using Eigen::VectorXd;
 
+double torque_scale(const Body& body) {
+  return body.mesh ? body.mesh->radius : analysis::torque_scale(body.shape);
+}
+
 double radian_of(const model::HandDof& dof) {
   return dof.kind == model::JointKind::prismatic ? dof.squeeze / 0.15 : 1.0;
 }
@@ -48,8 +55,11 @@ double radian_of(const model::HandDof& dof) {
 struct World::State {
   struct Placed {
     Body body;
-    std::unique_ptr<btCollisionShape> shape;
+    Pose X_OC = Pose::Identity();  // C: principal axes of inertia, which Bullet wants
+    std::vector<std::unique_ptr<btCollisionShape>> shapes;  // the last one is the whole
     std::unique_ptr<btRigidBody> rigid;
+
+    explicit Placed(const Body& placed) : body(placed) {}
   };
 
   const model::HandModel& hand;
@@ -131,6 +141,35 @@ struct World::State {
   }
 };
 
+namespace {
+
+/// Makes the shapes of a body and its frame C, and returns its moments of inertia there.
+template <class Placed>
+btVector3 build_shape(Placed& placed) {
+  const double mass = placed.body.mass;
+  btVector3 inertia(0, 0, 0);
+  if (!placed.body.mesh) {
+    placed.shapes.push_back(make_shape(placed.body.shape));
+    if (mass > 0) placed.shapes.back()->calculateLocalInertia(mass, inertia);
+    return inertia;
+  }
+  const SolidMesh& mesh = *placed.body.mesh;
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> principal(mesh.inertia_O);
+  Eigen::Matrix3d R_OC = principal.eigenvectors();
+  if (R_OC.determinant() < 0) R_OC.col(0) *= -1;
+  placed.X_OC.linear() = R_OC;
+  auto compound = std::make_unique<btCompoundShape>();
+  for (const auto& corners : mesh.parts.parts) {
+    placed.shapes.push_back(make_shape(corners));
+    compound->addChildShape(to_bullet(placed.X_OC.inverse()), placed.shapes.back().get());
+  }
+  placed.shapes.push_back(std::move(compound));
+  if (mass > 0) inertia = to_bullet(Vector3d(mass * principal.eigenvalues()));
+  return inertia;
+}
+
+}  // namespace
+
 World::World(std::unique_ptr<State> state) : state_(std::move(state)) {}
 World::~World() = default;
 
@@ -178,6 +217,10 @@ std::unique_ptr<World> World::clone() const {
 
 Expected<int> World::add_body(const Body& body, const Pose& X_WO) {
   if (!model::is_valid(body.shape)) return fail("shape is not valid", body.name);
+  if (body.mesh && (body.mesh->parts.parts.empty() || !body.mesh->inertia_O.allFinite()))
+    return fail("mesh is not valid", body.name, "see load_body");
+  if (body_count() >= most_bodies)
+    return fail("too many bodies", body.name, "at most " + std::to_string(most_bodies));
   if (!std::isfinite(body.mass) || body.mass < 0) return fail("mass must be 0 or more", body.name);
   if (!is_finite(X_WO)) return fail("pose must be finite", body.name);
   if (body.friction && !(*body.friction >= 0 && std::isfinite(*body.friction)))
@@ -185,11 +228,11 @@ Expected<int> World::add_body(const Body& body, const Pose& X_WO) {
   const auto material = analysis::material_from_string(body.material);
   if (!material) return fail("unknown material " + body.material, body.name);
 
-  State::Placed placed{body, make_shape(body.shape), nullptr};
-  btVector3 inertia(0, 0, 0);
-  if (body.mass > 0) placed.shape->calculateLocalInertia(body.mass, inertia);
-  btRigidBody::btRigidBodyConstructionInfo info(body.mass, nullptr, placed.shape.get(), inertia);
-  info.m_startWorldTransform = to_bullet(X_WO);
+  State::Placed placed(body);
+  const btVector3 inertia = build_shape(placed);
+  btRigidBody::btRigidBodyConstructionInfo info(body.mass, nullptr, placed.shapes.back().get(),
+                                                inertia);
+  info.m_startWorldTransform = to_bullet(X_WO * placed.X_OC);
   info.m_linearDamping = info.m_angularDamping = 0;
   placed.rigid = std::make_unique<btRigidBody>(info);
   const int index = body_count();
@@ -203,9 +246,10 @@ Expected<int> World::add_body(const Body& body, const Pose& X_WO) {
 }
 
 void World::move_body(int body, const Pose& X_WO) {
-  btRigidBody& rigid = *state_->bodies[static_cast<std::size_t>(body)].rigid;
-  rigid.setWorldTransform(to_bullet(X_WO));
-  rigid.setInterpolationWorldTransform(to_bullet(X_WO));
+  State::Placed& placed = state_->bodies[static_cast<std::size_t>(body)];
+  btRigidBody& rigid = *placed.rigid;
+  rigid.setWorldTransform(to_bullet(X_WO * placed.X_OC));
+  rigid.setInterpolationWorldTransform(rigid.getWorldTransform());
   rigid.setLinearVelocity(btVector3(0, 0, 0));
   rigid.setAngularVelocity(btVector3(0, 0, 0));
   rigid.clearForces();
@@ -305,9 +349,10 @@ const Body& World::body(int index) const {
 }
 
 BodyMotion World::body_motion(int index) const {
-  const btRigidBody& rigid = *state_->bodies[static_cast<std::size_t>(index)].rigid;
-  return {from_bullet(rigid.getWorldTransform()), from_bullet(rigid.getLinearVelocity()),
-          from_bullet(rigid.getAngularVelocity())};
+  const State::Placed& placed = state_->bodies[static_cast<std::size_t>(index)];
+  const btRigidBody& rigid = *placed.rigid;
+  return {from_bullet(rigid.getWorldTransform()) * placed.X_OC.inverse(),
+          from_bullet(rigid.getLinearVelocity()), from_bullet(rigid.getAngularVelocity())};
 }
 
 std::vector<analysis::Contact> World::contacts(int body) const {
@@ -323,7 +368,8 @@ std::vector<analysis::Contact> World::contacts(int body) const {
         from_bullet(hand_first ? point.getPositionWorldOnB() : point.getPositionWorldOnA());
     found.push_back({state_->hand.links()[static_cast<std::size_t>(link.link)].name, X_OW * p_W,
                      X_OW.linear() * normal_W, point.m_combinedFriction,
-                     point.getAppliedImpulse() / time_step(), std::max(0.0, -point.getDistance())});
+                     point.getAppliedImpulse() / time_step(), std::max(0.0, -point.getDistance()),
+                     point.m_combinedSpinningFriction});
   });
   return found;
 }

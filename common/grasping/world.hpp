@@ -7,13 +7,24 @@
 #include <prehend/base/error.hpp>
 #include <prehend/base/pose.hpp>
 #include <prehend/model/hand_model.hpp>
+#include <prehend/model/mesh.hpp>
 #include <prehend/model/shape.hpp>
 #include <string>
 #include <vector>
 
 #include "arm.hpp"
+#include "convex_parts.hpp"
 
 namespace prehend::grasping {
+
+/// A mesh made fit for the world, in the body's frame O, which lies in its centre of mass.
+struct SolidMesh {
+  model::Mesh surface;
+  ConvexParts parts;          // what touches; Bullet adds its margin of 0.5 mm to them
+  Eigen::Matrix3d inertia_O;  // per kg, m²
+  Eigen::Vector3d p_FO;       // of the centre of mass in the file's frame, m
+  double radius = 0;          // of the farthest vertex, m
+};
 
 /// A rigid body besides the hand.
 struct Body {
@@ -22,11 +33,15 @@ struct Body {
   double mass = 0;                 // kg; 0: does not move
   std::string material = "wood";   // of the friction table
   std::optional<double> friction;  // against everything, instead of the material's
+  std::optional<SolidMesh> mesh;   // touches instead of the shape; see mesh_body.hpp
 };
+
+/// ρ of its wrenches: the largest distance of a point of the body from its centre of mass, m.
+double torque_scale(const Body& body);
 
 struct WorldOptions {
   double rate = 500;                          // Hz, physics steps
-  int iterations = 100;                       // of the contact solver
+  int iterations = 60;                        // of the contact solver; 100 hold no better
   bool table = true;                          // a fixed plane z = 0, of wood
   Eigen::Vector3d gravity_W = {0, 0, -9.81};  // m/s², of the objects; the hand is compensated
   /// 1/s: damps free objects; for closing without gravity.

@@ -60,7 +60,7 @@ TEST(LongHoldTest, TheShortFormLeavesThePhasesOut) {
 
 TEST(LongHoldTest, WhatIsHeldLooselyIsShakenOut) {
   Body slippery = cylinder(0.024, 0.145, 0.15);
-  slippery.friction = 0.25;
+  slippery.friction = 0.26;
   const auto world = gripped(slippery);
   ASSERT_TRUE(hold_test(*world->clone(), 0).held);
   const HoldResult result = hold_test(*world->clone(), 0, {.shake = true});

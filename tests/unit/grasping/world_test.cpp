@@ -219,6 +219,20 @@ TEST(World, RefusesNonsense) {
   EXPECT_TRUE(is_finite(world->hand_motion().X_WB));
 }
 
+TEST(World, ThousandsOfContactsAreCarriedAndTooManyBodiesRefused) {
+  auto world = empty_world(make_pose(Vector3d(0, 0, 2)));
+  for (int i = 0; i < 1000; ++i)
+    ASSERT_TRUE(world->add_body(cube, standing(cube, 0.06 * (i % 32), 0.06 * (i / 32))));
+  const auto refused = world->add_body(cube, standing(cube, -1));
+  ASSERT_FALSE(refused);
+  EXPECT_FALSE(refused.error().what.empty());
+  for (int i = 0; i < 30; ++i) world->step();  // four contacts each
+  for (int i = 0; i < 1000; i += 37) {
+    EXPECT_TRUE(world->touches_others(i));
+    EXPECT_LT(world->body_motion(i).velocity.norm(), 0.05);
+  }
+}
+
 TEST(World, DistanceToTheHandIsThatOfTheirSurfaces) {
   // The palm's plate ends at z = 12 mm of B.
   auto world = empty_world(make_pose(Vector3d(0, 0, 1)));

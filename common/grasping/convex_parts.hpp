@@ -1,0 +1,31 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <prehend/base/error.hpp>
+#include <prehend/model/mesh.hpp>
+#include <vector>
+
+namespace prehend::grasping {
+
+struct PartsOptions {
+  /// Share of the solid's volume by which all parts together may exceed it. A mesh whose own hull
+  /// exceeds it by less is taken as that hull.
+  double most_excess = 0.03;
+  int most_parts = 16;
+};
+
+/// A solid as a union of convex ones that covers it, which is what Bullet can collide.
+struct ConvexParts {
+  std::vector<std::vector<Eigen::Vector3d>> parts;  // corners of each, m
+  double concavity = 0;  // volume of the mesh's hull over that of the mesh, less 1: 0 when convex
+  double excess = 0;     // the same of the parts
+  bool is_hull() const { return parts.size() == 1; }
+};
+
+/// Cuts the box about the mesh by planes along the axes, always where that takes most off what the
+/// hulls of the pieces exceed the solid by, until little is left (greedy; in the spirit of Mamou's
+/// volumetric decomposition, but with exact pieces of the surface). Deterministic. Curved hollows
+/// need more parts than most_parts: `excess` says what is left. Fails when no hull can be made.
+Expected<ConvexParts> convex_parts(const model::Mesh& mesh, const PartsOptions& options = {});
+
+}  // namespace prehend::grasping
