@@ -35,7 +35,11 @@ bool LinkPairFilter::needBroadphaseCollision(btBroadphaseProxy* a, btBroadphaseP
   const int i = surface_of(first).link, j = surface_of(second).link;
   if (i < 0 && j < 0) return !(first->isStaticObject() && second->isStaticObject());
   if (i < 0 || j < 0) return true;
-  return std::find(ignored.begin(), ignored.end(), std::pair(std::min(i, j), std::max(i, j))) ==
+  return !ignores(i, j);
+}
+
+bool LinkPairFilter::ignores(int a, int b) const {
+  return std::find(ignored.begin(), ignored.end(), std::pair(std::min(a, b), std::max(a, b))) !=
          ignored.end();
 }
 
@@ -261,6 +265,10 @@ Pose HandBody::X_WC_of(const Pose& X_WB) const {
   Pose X_WC = X_WB;
   X_WC.translation() = X_WB * hand_.links()[0].com_L;
   return X_WC;
+}
+
+bool HandBody::may_touch(int link, int other) const {
+  return !filter_.ignores(link, other);
 }
 
 double HandBody::torque(int i) const {

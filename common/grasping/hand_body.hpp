@@ -24,6 +24,7 @@ namespace prehend::grasping {
 struct LinkPairFilter : btOverlapFilterCallback {
   std::vector<std::pair<int, int>> ignored;  // the smaller number first
 
+  bool ignores(int a, int b) const;
   bool needBroadphaseCollision(btBroadphaseProxy* a, btBroadphaseProxy* b) const override;
 };
 
@@ -66,6 +67,8 @@ class HandBody {
   /// go, with the joint coupled to it.
   double motor(int dof) const;
   double motor_velocity(int dof) const;
+  /// False for links that overlap when the hand rests.
+  bool may_touch(int link, int other) const;
   const std::vector<std::unique_ptr<btMultiBodyLinkCollider>>& colliders() const {
     return colliders_;
   }
