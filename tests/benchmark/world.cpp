@@ -1,0 +1,139 @@
+// How fast the world steps while each hand grips an object, as a multiple of real time at 500 Hz,
+// and what contacts and bodies cost. A step is deterministic, so the figures differ by the machine
+// alone; floors: Barrett 10, DLR 5, Robonaut 3 times real time on one core.
+#include <benchmark/benchmark.h>
+#include <malloc.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <map>
+#include <prehend/grasping/world.hpp>
+
+namespace {
+
+using namespace prehend;
+using namespace prehend::grasping;
+using Eigen::Vector3d;
+using Eigen::VectorXd;
+
+const std::filesystem::path hands_folder =
+    std::filesystem::path(PREHEND_SOURCE) / "common/models/hands";
+
+const model::HandModel& hand(const std::string& name) {
+  static std::map<std::string, model::HandModel> loaded;
+  const auto found = loaded.find(name);
+  if (found != loaded.end()) return found->second;
+  auto made = model::HandModel::load(hands_folder / name);
+  if (!made) throw std::runtime_error(made.error().message());
+  return loaded.emplace(name, std::move(*made)).first->second;
+}
+
+/// A hand that has closed on a ball at its grasp frame and squeezes it.
+std::unique_ptr<World> gripping(const model::HandModel& model, double radius) {
+  auto world =
+      std::move(*World::create(model, make_pose(Vector3d(0, 0, 0.6)), model.postures().at("open")));
+  world->set_gravity(Vector3d::Zero());
+  world->set_object_damping(20);
+  const Body ball{"ball", {model::ShapeKind::sphere, Vector3d::Constant(radius)}, 0.15, "wood", {}};
+  const Vector3d p_WG = world->hand_motion().X_WB * model.X_BG().translation();
+  if (!world->add_body(ball, make_pose(p_WG))) throw std::runtime_error("no ball");
+  VectorXd command = world->commanded_dof();
+  for (int step = 0; step < 1500; ++step) {
+    const VectorXd now = world->hand_motion().dof;
+    for (Eigen::Index i = 0; i < command.size(); ++i) {
+      const model::HandDof& dof = model.dofs()[static_cast<std::size_t>(i)];
+      if (dof.closing == 0) continue;
+      const double next = command[i] + dof.closing * radian_of(dof) * world->time_step();
+      const double most = now[i] + dof.closing * dof.squeeze;
+      command[i] = dof.closing > 0 ? std::min(next, most) : std::max(next, most);
+    }
+    if (!world->command(world->commanded_base(), model.clamp(command)))
+      throw std::runtime_error("refused");
+    world->step();
+  }
+  return world;
+}
+
+void report(benchmark::State& state, const World& world, double contacts) {
+  const double steps = static_cast<double>(state.iterations());
+  state.counters["steps"] = benchmark::Counter(steps, benchmark::Counter::kIsRate);
+  state.counters["real_time"] =
+      benchmark::Counter(steps * world.time_step(), benchmark::Counter::kIsRate);
+  state.counters["contacts"] = contacts;
+}
+
+void gripped(benchmark::State& state, const std::string& name) {
+  const std::size_t before = mallinfo2().uordblks;
+  // Hands differ in size: the largest ball that two links hold.
+  std::unique_ptr<World> world;
+  for (double radius = 0.04; radius > 0.01; radius -= 0.005) {
+    world = gripping(hand(name), radius);
+    const auto contacts = world->contacts(0);
+    if (std::any_of(contacts.begin(), contacts.end(),
+                    [&](const auto& contact) { return contact.link != contacts.front().link; }))
+      break;
+  }
+  const auto memory = static_cast<double>(mallinfo2().uordblks - before);
+  const auto contacts = static_cast<double>(world->contacts(0).size());
+  for (auto _ : state) world->step();
+  report(state, *world, contacts);
+  state.counters["memory_kB"] = memory / 1024;
+}
+
+/// Cubes that rest on the table, each with four contacts; the hand far above.
+void bodies(benchmark::State& state) {
+  const auto count = static_cast<int>(state.range(0));
+  auto world = std::move(*World::create(hand("barrett"), make_pose(Vector3d(0, 0, 2)),
+                                        hand("barrett").postures().at("open")));
+  const Body cube{"cube", {model::ShapeKind::box, Vector3d::Constant(0.04)}, 0.05, "wood", {}};
+  for (int i = 0; i < count; ++i)
+    if (!world->add_body(cube, make_pose(Vector3d(0.06 * (i % 8), 0.06 * (i / 8), 0.02))))
+      throw std::runtime_error("no cube");
+  for (int i = 0; i < 100; ++i) world->step();
+  for (auto _ : state) world->step();
+  report(state, *world, 4.0 * count);
+}
+
+/// A pile of cubes in one column, so that all contacts are solved together.
+void stacked(benchmark::State& state) {
+  const auto count = static_cast<int>(state.range(0));
+  auto world = std::move(*World::create(hand("barrett"), make_pose(Vector3d(1, 0, 2)),
+                                        hand("barrett").postures().at("open")));
+  const Body cube{"cube", {model::ShapeKind::box, Vector3d::Constant(0.04)}, 0.05, "wood", {}};
+  for (int i = 0; i < count; ++i)
+    if (!world->add_body(cube, make_pose(Vector3d(0, 0, 0.02 + 0.04 * i))))
+      throw std::runtime_error("no cube");
+  for (int i = 0; i < 50; ++i) world->step();
+  for (auto _ : state) world->step();
+  report(state, *world, 4.0 * count);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  std::vector<std::string> names;
+  for (const auto& entry : std::filesystem::directory_iterator(hands_folder))
+    if (std::filesystem::exists(entry.path() / "hand.urdf"))
+      names.push_back(entry.path().filename().string());
+  std::sort(names.begin(), names.end());
+  for (const std::string& name : names)
+    benchmark::RegisterBenchmark(("gripping/" + name).c_str(), gripped, name)
+        ->Unit(benchmark::kMicrosecond);
+  benchmark::RegisterBenchmark("bodies", bodies)
+      ->Arg(0)
+      ->Arg(1)
+      ->Arg(4)
+      ->Arg(16)
+      ->Arg(32)
+      ->Unit(benchmark::kMicrosecond);
+  benchmark::RegisterBenchmark("stacked", stacked)
+      ->Arg(1)
+      ->Arg(4)
+      ->Arg(8)
+      ->Arg(16)
+      ->Unit(benchmark::kMicrosecond);
+  benchmark::Initialize(&argc, argv);
+  if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
+  benchmark::RunSpecifiedBenchmarks();
+  return 0;
+}
