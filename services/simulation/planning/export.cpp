@@ -57,11 +57,11 @@ Json to_json(const Plan& plan, const PlannedGrasp& grasp) {
                         {"position_m", list(contact.p_OC)},
                         {"normal", list(contact.normal_O)},
                         {"friction", contact.friction},
+                        {"torsion_m", contact.torsion},
                         {"force_n", contact.force},
                         {"depth_m", contact.depth}});
   for (Eigen::Index i = 0; i < grasp.wrenches.cols(); ++i)
     wrenches.push_back(list(grasp.wrenches.col(i)));
-  const auto contact_count = static_cast<Eigen::Index>(std::max<std::size_t>(1, contacts.size()));
   return {{"hand", plan.hand},
           {"object", plan.object.name},
           {"candidate", grasp.candidate},
@@ -78,7 +78,7 @@ Json to_json(const Plan& plan, const PlannedGrasp& grasp) {
           {"hold", hold_json(grasp.hold)},
           {"center_of_mass_m", {0, 0, 0}},
           {"torque_scale_m", analysis::torque_scale(plan.object.shape)},
-          {"edges", grasp.wrenches.cols() / contact_count},
+          {"edges", 8},  // of each ring, as contact_wrenches() makes them
           {"contacts", contacts},
           {"wrenches", wrenches}};
 }
@@ -111,7 +111,7 @@ std::string to_csv(const Plan& plan, Table table) {
       line("grasp,candidate,epsilon,volume,held,slip_m,turn_rad,x_m,y_m,z_m,qw,qx,qy,qz,reason");
       break;
     case Table::contacts:
-      line("grasp,link,x_m,y_m,z_m,nx,ny,nz,friction,force_n,depth_m");
+      line("grasp,link,x_m,y_m,z_m,nx,ny,nz,friction,force_n,depth_m,torsion_m");
       break;
     case Table::wrenches:
       line("grasp,fx,fy,fz,tx,ty,tz");
@@ -131,8 +131,9 @@ std::string to_csv(const Plan& plan, Table table) {
                        quoted(grasp.hold.reason)));
     } else if (table == Table::contacts) {
       for (const analysis::Contact& contact : grasp.contacts)
-        line(fmt::format("{},{},{},{},{},{},{}", g, quoted(contact.link), row(contact.p_OC),
-                         row(contact.normal_O), contact.friction, contact.force, contact.depth));
+        line(fmt::format("{},{},{},{},{},{},{},{}", g, quoted(contact.link), row(contact.p_OC),
+                         row(contact.normal_O), contact.friction, contact.force, contact.depth,
+                         contact.torsion));
     } else if (table == Table::wrenches) {
       for (Eigen::Index i = 0; i < grasp.wrenches.cols(); ++i)
         line(fmt::format("{},{}", g, row(grasp.wrenches.col(i))));
