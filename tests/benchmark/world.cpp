@@ -28,15 +28,18 @@ const model::HandModel& hand(const std::string& name) {
   return loaded.emplace(name, std::move(*made)).first->second;
 }
 
-/// A hand that has closed on a ball at its grasp frame and squeezes it.
+/// A hand that has closed on a cylinder across its palm and squeezes it.
 std::unique_ptr<World> gripping(const model::HandModel& model, double radius) {
   auto world =
       std::move(*World::create(model, make_pose(Vector3d(0, 0, 0.6)), model.postures().at("open")));
   world->set_gravity(Vector3d::Zero());
   world->set_object_damping(20);
-  const Body ball{"ball", {model::ShapeKind::sphere, Vector3d::Constant(radius)}, 0.15, "wood", {}};
-  const Vector3d p_WG = world->hand_motion().X_WB * model.X_BG().translation();
-  if (!world->add_body(ball, make_pose(p_WG))) throw std::runtime_error("no ball");
+  const Body bar{"bar", {model::ShapeKind::cylinder, {radius, radius, 0.15}}, 0.15, "wood", {}};
+  Eigen::Matrix3d R_GO;  // the cylinder's axis along x of G
+  R_GO << 0, 0, 1, 1, 0, 0, 0, 1, 0;
+  const Pose X_WG = world->hand_motion().X_WB * model.X_BG();
+  if (!world->add_body(bar, X_WG * make_pose(Vector3d::Zero(), R_GO)))
+    throw std::runtime_error("no bar");
   VectorXd command = world->commanded_dof();
   for (int step = 0; step < 1500; ++step) {
     const VectorXd now = world->hand_motion().dof;
@@ -64,7 +67,7 @@ void report(benchmark::State& state, const World& world, double contacts) {
 
 void gripped(benchmark::State& state, const std::string& name) {
   const std::size_t before = mallinfo2().uordblks;
-  // Hands differ in size: the largest ball that two links hold.
+  // Hands differ in size: the thickest bar that two links hold.
   std::unique_ptr<World> world;
   for (double radius = 0.04; radius > 0.01; radius -= 0.005) {
     world = gripping(hand(name), radius);
