@@ -111,6 +111,7 @@ Expected<ClosedGrasp> close_hand(const model::HandModel& hand, const Body& objec
     return fail("down needs a direction", "closing");
   WorldOptions world_options;
   world_options.table = false;
+  world_options.iterations = 100;  // many fingers, as of the human hand, hold better for it
   world_options.gravity_W.setZero();
   world_options.object_damping = damping;
   auto created = World::create(hand, Pose::Identity(), preshape, world_options);
