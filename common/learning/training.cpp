@@ -4,23 +4,27 @@
 #include <doublefann.h>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cstdlib>
 #include <limits>
 #include <memory>
+#include <mutex>
 #include <utility>
 
 namespace prehend::learning {
 
 namespace {
 
-constexpr std::array<std::pair<TrainingMethod, std::string_view>, 5> method_names{{
-    {TrainingMethod::incremental, "incremental"},
-    {TrainingMethod::batch, "batch"},
-    {TrainingMethod::rprop, "rprop"},
-    {TrainingMethod::quickprop, "quickprop"},
-    {TrainingMethod::sarprop, "sarprop"},
-}};
+constexpr std::array<std::pair<TrainingMethod, std::string_view>, training_methods.size()>
+    method_names{{
+        {TrainingMethod::incremental, "incremental"},
+        {TrainingMethod::batch, "batch"},
+        {TrainingMethod::rprop, "rprop"},
+        {TrainingMethod::quickprop, "quickprop"},
+        {TrainingMethod::sarprop, "sarprop"},
+        {TrainingMethod::cascade, "cascade"},
+    }};
 
 fann_train_enum fann_method(TrainingMethod method) {
   switch (method) {
@@ -33,9 +37,14 @@ fann_train_enum fann_method(TrainingMethod method) {
     case TrainingMethod::sarprop:
       return FANN_TRAIN_SARPROP;
     case TrainingMethod::rprop:
+    case TrainingMethod::cascade:  // how it trains candidates and outputs
       break;
   }
   return FANN_TRAIN_RPROP;
+}
+
+bool draws_while_training(TrainingMethod method) {
+  return method == TrainingMethod::sarprop || method == TrainingMethod::cascade;
 }
 
 struct Destroy {
@@ -57,18 +66,136 @@ FannData to_fann(const Samples& samples) {
   return data;
 }
 
-/// FANN keeps the weights of a fully connected network layer by layer, neuron by neuron, the bias
-/// last.
-std::vector<Layer> weights_of(const fann& network, const std::array<int, 3>& sizes) {
+/// FANN keeps the weights neuron by neuron, in the order of the neurons that they come from. Each
+/// layer ends with a bias neuron; with shortcuts only the inputs do.
+Expected<Network> to_network(const fann& from) {
+  const bool shortcut = from.network_type == FANN_NETTYPE_SHORTCUT;
   std::vector<Layer> layers;
-  const fann_type* weight = network.weights;
-  for (std::size_t i = 0; i + 1 < sizes.size(); ++i) {
-    Layer layer(sizes[i + 1], sizes[i] + 1);
-    for (Eigen::Index row = 0; row < layer.rows(); ++row)
-      for (Eigen::Index col = 0; col < layer.cols(); ++col) layer(row, col) = *weight++;
+  for (const fann_layer* l = from.first_layer + 1; l != from.last_layer; ++l) {
+    const auto rows = l->last_neuron - l->first_neuron - (shortcut ? 0 : 1);
+    const auto cols = static_cast<Eigen::Index>(l->first_neuron->last_con) -
+                      static_cast<Eigen::Index>(l->first_neuron->first_con);
+    const auto bias = shortcut ? static_cast<Eigen::Index>(from.num_input) : cols - 1;
+    Layer layer(rows, cols);
+    for (Eigen::Index row = 0; row < rows; ++row) {
+      const auto weights =
+          Eigen::RowVectorXd::Map(from.weights + l->first_neuron[row].first_con, cols);
+      layer.row(row) << weights.head(bias), weights.tail(cols - 1 - bias), weights[bias];
+    }
     layers.push_back(std::move(layer));
   }
-  return layers;
+  return Network::create(std::move(layers), shortcut ? Wiring::shortcut : Wiring::layered);
+}
+
+/// FANN seeds rand() whenever it makes a network, and some methods draw from it.
+std::mutex& rand_mutex() {
+  static std::mutex mutex;
+  return mutex;
+}
+
+/// A network with random first weights. Call with the mutex locked.
+FannNetwork make_fann(int inputs, int outputs, const TrainingOptions& options) {
+  fann_set_error_log(nullptr, nullptr);  // it would write to standard error
+  const bool cascade = options.method == TrainingMethod::cascade;
+  FannNetwork network(cascade ? fann_create_shortcut(2, inputs, outputs)
+                              : fann_create_standard(3, inputs, options.hidden, outputs));
+  if (!network) return network;
+  fann_set_activation_function_hidden(network.get(), FANN_SIGMOID_SYMMETRIC);
+  fann_set_activation_function_output(network.get(), FANN_SIGMOID_SYMMETRIC);
+  fann_set_training_algorithm(network.get(), fann_method(options.method));
+  fann_set_learning_rate(network.get(), static_cast<float>(options.learning_rate));
+  if (cascade) {
+    // Every neuron has the one activation that Network knows; candidates differ by their weights.
+    constexpr unsigned candidates = 8;
+    fann_activationfunc_enum activation = FANN_SIGMOID_SYMMETRIC;
+    fann_type steepness = 0.5;
+    fann_set_cascade_activation_functions(network.get(), &activation, 1);
+    fann_set_cascade_activation_steepnesses(network.get(), &steepness, 1);
+    fann_set_cascade_num_candidate_groups(network.get(), candidates);
+  }
+  std::srand(options.seed);
+  fann_randomize_weights(network.get(), -0.5, 0.5);
+  return network;
+}
+
+/// Looks at a network now and then while it is trained, and keeps the best.
+class Judge {
+ public:
+  Judge(const Samples& training, const Samples& validation, const TrainingOptions& options,
+        const std::function<void(double)>& progress)
+      : training_(training),
+        validation_(validation),
+        validated_(validation.inputs.cols() > 0),
+        options_(options),
+        progress_(progress) {}
+
+  /// False when there is no point in training on.
+  bool look(const fann& network, int epoch) {
+    epochs_ = epoch;
+    auto now = to_network(network);
+    if (!now) return false;  // diverged; the best so far stands
+    const double error = squared_error(*now, validated_ ? validation_ : training_);
+    if (options_.curve)
+      curve_.push_back({epoch, validated_ ? squared_error(*now, training_) : error, error});
+    if (error < best_error_) {
+      best_error_ = error;
+      best_epoch_ = epoch;
+      best_ = std::move(*now);
+    }
+    if (progress_) progress_(std::min(1.0, static_cast<double>(epoch) / options_.epochs));
+    return epoch < options_.epochs && epoch - best_epoch_ < options_.patience;
+  }
+
+  Expected<TrainingResult> result() {
+    if (!best_)
+      return fail("training diverged", std::string(to_string(options_.method)),
+                  "choose rprop or a smaller learning rate");
+    const double training_error = squared_error(*best_, training_);
+    if (progress_) progress_(1.0);
+    return TrainingResult{std::move(*best_), training_error, best_error_, epochs_,
+                          std::move(curve_)};
+  }
+
+ private:
+  const Samples &training_, &validation_;
+  bool validated_;
+  const TrainingOptions& options_;
+  const std::function<void(double)>& progress_;
+  std::optional<Network> best_;
+  double best_error_ = std::numeric_limits<double>::infinity();
+  int best_epoch_ = 0, epochs_ = 0;
+  std::vector<Look> curve_;
+};
+
+void train_epochs(fann& network, fann_train_data& data, const TrainingOptions& options,
+                  Judge& judge) {
+  for (int epoch = 1;; ++epoch) {
+    fann_train_epoch(&network, &data);
+    if ((epoch % options.check_every == 0 || epoch == options.epochs) &&
+        !judge.look(network, epoch))
+      return;
+  }
+}
+
+void train_cascade(fann& network, fann_train_data& data, const TrainingOptions& options,
+                   Judge& judge) {
+  struct Growing {
+    Judge& judge;
+    unsigned epochs = 0;
+    bool ended = false;
+  } growing{judge};
+  fann_set_user_data(&network, &growing);
+  // Called when the outputs have been trained, before another neuron is grown.
+  fann_set_callback(&network,
+                    [](fann* now, fann_train_data*, unsigned, unsigned, float, unsigned epochs) {
+                      auto& seen = *static_cast<Growing*>(fann_get_user_data(now));
+                      seen.epochs = epochs;
+                      seen.ended = !seen.judge.look(*now, static_cast<int>(epochs));
+                      return seen.ended ? -1 : 0;
+                    });
+  fann_cascadetrain_on_data(&network, &data, static_cast<unsigned>(options.hidden), 1, 0);
+  // Outputs have been trained once more after the last neuron, in epochs that FANN does not tell.
+  if (!growing.ended) judge.look(network, static_cast<int>(growing.epochs));
 }
 
 Expected<void> check(const Samples& samples, std::string_view which) {
@@ -116,45 +243,19 @@ Expected<TrainingResult> train(const Samples& training, const Samples& validatio
   if (options.hidden < 1 || options.epochs < 1 || options.check_every < 1)
     return fail("hidden neurons, epochs and check_every must be at least 1", "training options");
 
-  const std::array<int, 3> sizes{static_cast<int>(training.inputs.rows()), options.hidden,
-                                 static_cast<int>(training.outputs.rows())};
-  fann_set_error_log(nullptr, nullptr);  // it would write to standard error
-  const FannNetwork network(fann_create_standard(3, sizes[0], sizes[1], sizes[2]));
+  std::unique_lock lock(rand_mutex());
+  const FannNetwork network = make_fann(static_cast<int>(training.inputs.rows()),
+                                        static_cast<int>(training.outputs.rows()), options);
+  if (!draws_while_training(options.method)) lock.unlock();
   const FannData data = to_fann(training);
   if (!network || !data) return fail("no memory for a network", "training");
-  fann_set_activation_function_hidden(network.get(), FANN_SIGMOID_SYMMETRIC);
-  fann_set_activation_function_output(network.get(), FANN_SIGMOID_SYMMETRIC);
-  fann_set_training_algorithm(network.get(), fann_method(options.method));
-  fann_set_learning_rate(network.get(), static_cast<float>(options.learning_rate));
-  // fann_create_standard has just seeded rand() from the system; only this makes it repeatable.
-  std::srand(options.seed);
-  fann_randomize_weights(network.get(), -0.5, 0.5);
 
-  const Samples& judged = validated ? validation : training;
-  std::optional<Network> best;
-  double best_error = std::numeric_limits<double>::infinity();
-  int best_epoch = 0, epoch = 0;
-  while (epoch < options.epochs) {
-    fann_train_epoch(network.get(), data.get());
-    ++epoch;
-    if (epoch % options.check_every != 0 && epoch != options.epochs) continue;
-    auto now = Network::create(weights_of(*network, sizes));
-    if (!now) break;  // diverged; the best so far stands
-    const double error = squared_error(*now, judged);
-    if (error < best_error) {
-      best_error = error;
-      best_epoch = epoch;
-      best = std::move(*now);
-    }
-    if (progress) progress(static_cast<double>(epoch) / options.epochs);
-    if (epoch - best_epoch >= options.patience) break;
-  }
-  if (!best)
-    return fail("training diverged", std::string(to_string(options.method)),
-                "choose rprop or a smaller learning rate");
-  const double training_error = squared_error(*best, training);
-  if (progress) progress(1.0);
-  return TrainingResult{std::move(*best), training_error, best_error, epoch};
+  Judge judge(training, validation, options, progress);
+  if (options.method == TrainingMethod::cascade)
+    train_cascade(*network, *data, options, judge);
+  else
+    train_epochs(*network, *data, options, judge);
+  return judge.result();
 }
 
 }  // namespace prehend::learning
