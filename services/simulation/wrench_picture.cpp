@@ -4,9 +4,8 @@
 
 #include <algorithm>
 #include <prehend/analysis/convex_hull.hpp>
+#include <prehend/base/gnuplot.hpp>
 #include <string>
-
-#include "gnuplot.hpp"
 
 namespace prehend::simulation {
 namespace {

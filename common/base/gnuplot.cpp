@@ -12,7 +12,7 @@
 
 extern char** environ;
 
-namespace prehend::simulation {
+namespace prehend {
 namespace {
 
 /// Runs `gnuplot script` and waits. Its exit code, or -1 with errno when it cannot be started.
@@ -55,4 +55,4 @@ Expected<void> draw_by_gnuplot(const std::string& commands, const std::filesyste
   return done;
 }
 
-}  // namespace prehend::simulation
+}  // namespace prehend
