@@ -80,6 +80,8 @@ void Recorder::take(const Source& source, dds::RawSample&& sample) {
   if (error_) return;
   lost_.try_emplace(source.topic.name, 0);
   if (options_.snapshot.count() > 0) {
+    // What a late reader would be given belongs to a snapshot also when it came in a pause.
+    if (is_left_out(source, sample) && !source.topic.qos.transient_local) return;
     const Time newest = sample.received;
     ring_.push_back({&source, std::move(sample)});
     ring_bytes_ += ring_.back().size();
@@ -93,7 +95,7 @@ void Recorder::take(const Source& source, dds::RawSample&& sample) {
     return;
   }
   remember(source, sample);
-  if (paused_) return;
+  if (is_left_out(source, sample)) return;
   if (file_->size() >= options_.split_bytes || file_->is_full() ||
       sample.received - opened_ >= options_.split_time) {
     check(close());
@@ -105,7 +107,8 @@ void Recorder::take(const Source& source, dds::RawSample&& sample) {
       return;
     }
   }
-  check(file_->write(source, sample, sample.received));
+  // Not before what resume() has written.
+  check(file_->write(source, sample, is_in_pause(sample) ? pause_end_ : sample.received));
   if (!error_) ++messages_;
 }
 
@@ -128,12 +131,32 @@ void Recorder::tick(Time now) {
       return;
     }
   }
+  // More often would make small chunks, which compress badly, and a long index.
+  if (now - flushed_ < std::chrono::milliseconds(500)) return;
+  flushed_ = now;
   check(file_->flush());
 }
 
+void Recorder::pause(Time now) {
+  if (paused()) return;
+  pause_begin_ = now;
+  pause_end_ = Time::max();
+}
+
 void Recorder::resume(Time now) {
-  if (!std::exchange(paused_, false) || !file_ || error_) return;
-  check(write_remembered(*file_, now));
+  if (!paused()) return;
+  pause_end_ = now;
+  if (file_ && !error_) check(write_remembered(*file_, now));
+}
+
+bool Recorder::is_in_pause(const dds::RawSample& sample) const {
+  return sample.received >= pause_begin_ && sample.received < pause_end_;
+}
+
+bool Recorder::is_left_out(const Source& source, const dds::RawSample& sample) const {
+  if (!is_in_pause(sample)) return false;
+  // resume() has written what a late reader would be given; this one was still on its way then.
+  return paused() || !source.topic.qos.transient_local;
 }
 
 Expected<std::filesystem::path> Recorder::snapshot(Time now) {

@@ -35,12 +35,14 @@ class Recorder {
   void take(const Source& source, dds::RawSample&& sample);
   /// Samples of the topic that are known to be lost, since the start.
   void set_lost(const std::string& topic, std::uint64_t total) { lost_[topic] = total; }
-  /// To be called several times a second: writes out what is there, watches the disk.
+  /// To be called several times a second: writes out twice a second what is there, watches the
+  /// disk.
   void tick(Time now);
 
-  void pause() { paused_ = true; }
+  /// What is received from now on, until resume(), is left out: also what is taken later.
+  void pause(Time now);
   void resume(Time now);
-  bool paused() const { return paused_; }
+  bool paused() const { return pause_end_ == Time::max() && pause_begin_ != Time::max(); }
   /// Writes the ring to a file of its own and returns its name.
   Expected<std::filesystem::path> snapshot(Time now);
   /// Ends the file properly. Fails when it could not be ended so or had failed before; the file is
@@ -71,6 +73,8 @@ class Recorder {
   Recorder(RecorderOptions options, const Heading& heading)
       : options_(std::move(options)), heading_(&heading) {}
   void check(const Expected<void>& done);
+  bool is_in_pause(const dds::RawSample& sample) const;
+  bool is_left_out(const Source& source, const dds::RawSample& sample) const;
   Expected<RecordingFile> open(const std::filesystem::path& path);
   void open_next(Time now);
   void remember(const Source& source, const dds::RawSample& sample);
@@ -82,8 +86,8 @@ class Recorder {
   std::filesystem::path path_;
   std::deque<std::filesystem::path> files_;
   int splits_ = 0, snapshots_ = 0;
-  Time opened_{}, looked_at_disk_{};
-  bool paused_ = false;
+  Time opened_{}, flushed_{}, looked_at_disk_{};
+  Time pause_begin_ = Time::max(), pause_end_ = Time::max();  // of the last pause
   std::uint64_t messages_ = 0, written_ = 0;
   std::map<std::string, std::uint64_t> lost_, lost_written_;
   /// What a late reader would be given: it belongs to the head of every file.

@@ -48,8 +48,9 @@ class RecordingFile {
 
   std::uint64_t size() const { return writer_.size(); }
   std::uint64_t messages() const { return writer_.statistics().message_count; }
-  /// Channels are numbered with 16 bits: a file that has all needs a successor.
-  bool is_full() const { return channels_.size() >= 60000; }
+  /// Channels are numbered with 16 bits, and the file's index is kept in memory: a file that has
+  /// most of either needs a successor.
+  bool is_full() const { return channels_.size() >= 60000 || writer_.index_size() >= 16'000'000; }
 
  private:
   struct Key {

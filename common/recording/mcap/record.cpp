@@ -137,10 +137,12 @@ void Statistics::count(std::uint16_t channel, std::uint64_t log_time) {
   message_start_time = message_count == 0 ? log_time : std::min(message_start_time, log_time);
   message_end_time = message_count == 0 ? log_time : std::max(message_end_time, log_time);
   ++message_count;
-  auto entry = std::ranges::find(channel_message_counts, channel, &CountMap::value_type::first);
-  if (entry == channel_message_counts.end())
-    entry = channel_message_counts.insert(entry, {channel, 0});
-  ++entry->second;
+  if (channel >= places.size()) places.resize(channel + std::size_t{1});
+  if (places[channel] == 0) {
+    channel_message_counts.emplace_back(channel, 0);
+    places[channel] = static_cast<std::uint32_t>(channel_message_counts.size());
+  }
+  ++channel_message_counts[places[channel] - 1].second;
 }
 
 template <class Type>

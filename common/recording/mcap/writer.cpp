@@ -114,10 +114,14 @@ Expected<void> Writer::write(const Message& message) {
     return pending_.size() < most_pending ? Expected<void>{} : put();
   }
   if (options_.message_index) {
-    auto index = std::ranges::find(chunk_indexes_, message.channel_id, &MessageIndex::channel_id);
-    if (index == chunk_indexes_.end())
-      index = chunk_indexes_.insert(index, MessageIndex{message.channel_id, {}});
-    index->records.emplace_back(time, chunk_.size());
+    if (message.channel_id >= index_places_.size())
+      index_places_.resize(message.channel_id + std::size_t{1});
+    std::uint32_t& place = index_places_[message.channel_id];
+    if (place == 0) {
+      chunk_indexes_.push_back(MessageIndex{message.channel_id, {}});
+      place = static_cast<std::uint32_t>(chunk_indexes_.size());
+    }
+    chunk_indexes_[place - 1].records.emplace_back(time, chunk_.size());
   }
   append_data(message);
   if (chunk_times_) {
@@ -193,6 +197,7 @@ Expected<void> Writer::close_chunk() {
   ++statistics_.chunk_count;
   chunk_.clear();
   chunk_times_.reset();
+  for (const MessageIndex& each : chunk_indexes_) index_places_[each.channel_id] = 0;
   chunk_indexes_.clear();
   return {};
 }

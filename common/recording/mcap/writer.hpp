@@ -72,6 +72,11 @@ class Writer {
 
   /// Bytes in the file and in the chunk that is open.
   std::uint64_t size() const { return file_.size() + pending_.size() + chunk_.size(); }
+  /// Bytes of the summary's indexes, which are kept in memory until close().
+  std::uint64_t index_size() const {
+    return chunk_index_records_.size() + attachment_index_records_.size() +
+           metadata_index_records_.size();
+  }
   const Statistics& statistics() const { return statistics_; }
 
  private:
@@ -94,6 +99,7 @@ class Writer {
   Bytes compressed_;
   std::optional<std::pair<std::uint64_t, std::uint64_t>> chunk_times_;
   std::vector<MessageIndex> chunk_indexes_;  // of the open chunk, in order of first message
+  std::vector<std::uint32_t> index_places_;  // by channel, 1 + its place there; 0: it has none
   std::uint32_t data_crc_ = 0;
   Statistics statistics_;
   std::vector<Schema> schemas_;
