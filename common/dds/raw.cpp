@@ -27,11 +27,11 @@ Guid guid_of(const rtps::InstanceHandle_t& handle) {
   return bytes;
 }
 
-/// A type that is nothing but its bytes. The key cannot be read out of them: it is the one that
-/// came with the sample.
+/// A type that is nothing but its bytes. Its key is the one that came with the sample; where none
+/// came, it is what `key` finds in them.
 class RawType : public fdds::TopicDataType {
  public:
-  RawType(const std::string& name, bool keyed) {
+  RawType(const std::string& name, bool keyed, KeyOf key = {}) : key_(std::move(key)) {
     setName(name.c_str());
     m_isGetKeyDefined = keyed;
     m_typeSize = 256;  // to begin with; histories grow as needed
@@ -55,12 +55,17 @@ class RawType : public fdds::TopicDataType {
   }
   bool getKey(void* data, rtps::InstanceHandle_t* handle, bool) override {
     if (!m_isGetKeyDefined) return false;
-    const Guid& key = static_cast<const RawSample*>(data)->instance;
+    const auto& sample = *static_cast<const RawSample*>(data);
+    const auto found = key_ && !sample.payload.empty() ? key_(sample.payload) : std::nullopt;
+    const Guid& key = found ? *found : sample.instance;
     std::copy(key.begin(), key.end(), static_cast<rtps::octet*>(handle->value));
     return true;
   }
   void* createData() override { return new RawSample; }
   void deleteData(void* data) override { delete static_cast<RawSample*>(data); }
+
+ private:
+  KeyOf key_;
 };
 
 std::chrono::milliseconds milliseconds_of(const eprosima::fastrtps::Duration_t& period) {
@@ -185,14 +190,16 @@ RawReader::~RawReader() {
 }
 
 Expected<std::unique_ptr<RawReader>> RawReader::create(Participant& participant,
-                                                       const RawTopic& topic, Take take) {
+                                                       const RawTopic& topic, Take take,
+                                                       KeyOf key) {
   auto listener = std::make_unique<Listener>(std::move(take));
   TopicQos qos = topic.qos;
   qos.name = topic.name;
   qos.reader_depth = 0;
   qos.deadline = {};  // nobody waits here
-  auto made = participant.make_reader(qos, fdds::TypeSupport(new RawType(topic.type, topic.keyed)),
-                                      listener.get(), true);
+  auto made = participant.make_reader(
+      qos, fdds::TypeSupport(new RawType(topic.type, topic.keyed, std::move(key))), listener.get(),
+      true);
   if (!made) return tl::unexpected(made.error());
   return std::unique_ptr<RawReader>(
       new RawReader(std::move(listener), participant.subscriber(), *made));

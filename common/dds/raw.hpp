@@ -6,6 +6,8 @@
 #include <fastdds/dds/domain/DomainParticipantListener.hpp>
 #include <functional>
 #include <memory>
+#include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -35,6 +37,9 @@ struct RawSample {
   std::uint64_t sequence = 0;         // counts the writer's samples, from 1
   Time sent, received;                // clocks of the writer and of this machine
 };
+
+/// The instance that a payload belongs to, from its key fields; nothing when it cannot be told.
+using KeyOf = std::function<std::optional<Guid>(std::span<const std::uint8_t> payload)>;
 
 /// The message in a sample; false when it does not fit the topic's type.
 template <class P>
@@ -81,8 +86,11 @@ class RawReader {
  public:
   /// Called for every change in the thread that received it, one call at a time.
   using Take = std::function<void(RawSample&&)>;
+  /// `key`: for writers that send no keys beside their samples. Without it their instances are one,
+  /// whose key is zero.
   static Expected<std::unique_ptr<RawReader>> create(Participant& participant,
-                                                     const RawTopic& topic, Take take);
+                                                     const RawTopic& topic, Take take,
+                                                     KeyOf key = {});
   ~RawReader();
 
   /// Samples that were sent after their writer was matched and never came: gaps in the writers'

@@ -1,8 +1,11 @@
 #include "describe.hpp"
 
+#include <map>
 #include <memory>
 #include <prehend/types/idl.hpp>
 #include <prehend/types/schema_text.hpp>
+
+#include "key_hash.hpp"
 
 namespace prehend::recorder {
 
@@ -19,6 +22,21 @@ Expected<decltype(Heading::describe)> describe_types(std::string_view encoding) 
         ros ? mcap::Schema{0, types::ros2_name(name), "ros2msg", types::ros2msg(*type)}
             : mcap::Schema{0, name, "omgidl", types::omgidl(*type)},
         type->source ? *type->source : types::omgidl(*type)};
+  };
+}
+
+Expected<std::function<dds::KeyOf(const std::string&)>> keys_of_types() {
+  const auto contract = types::load_contract();
+  if (!contract) return tl::unexpected(contract.error());
+  std::map<std::string, KeyHash> hashes;
+  for (const auto& [name, type] : contract->structures())
+    if (const auto hash = KeyHash::of(*type)) hashes.emplace(name, *hash);
+  return [hashes](const std::string& type) -> dds::KeyOf {
+    const auto found = hashes.find(type);
+    if (found == hashes.end()) return {};
+    return [hash = found->second](std::span<const std::uint8_t> payload) {
+      return hash.of_message(payload);
+    };
   };
 }
 

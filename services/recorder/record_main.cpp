@@ -94,11 +94,14 @@ class Recording {
         operator_(shell, "recorder", [this](const std::string& order) { return obey(order); }) {}
 
   Expected<void> start() {
-    if (arguments_.paused) recorder_.pause();
+    if (arguments_.paused) recorder_.pause(system_now());
+    auto keys = keys_of_types();
+    if (!keys) return tl::unexpected(keys.error());
     auto listener = TopicListener::create(
         {.domain = static_cast<int>(shell_.config().integer("lab.domain")),
          .rig = arguments_.rig.empty() ? shell_.config().text("lab.rig") : arguments_.rig,
          .topics = arguments_.topics,
+         .keys = std::move(*keys),
          .on_found = [this] { shell_.post([this] { listener_->poll(); }); }},
         [this](const Source& source, dds::RawSample&& sample) {
           const std::scoped_lock lock(mutex_);
@@ -147,7 +150,7 @@ class Recording {
     }
     const std::scoped_lock lock(mutex_);
     if (order == "pause") {
-      recorder_.pause();
+      recorder_.pause(shell_.now());
       return "paused";
     }
     if (order == "start" || order == "resume") {

@@ -75,9 +75,11 @@ void TopicListener::read(const dds::Discovered& found, const std::string& rig) {
   auto reading = std::make_unique<Reading>();
   reading->source = {found.topic, rig};
   Reading* raw = reading.get();
+  dds::KeyOf key = options_.keys(found.topic.type);
+  reading->keyless = found.topic.keyed && !key;
   auto reader = dds::RawReader::create(
       *participant_, found.topic,
-      [this, raw](dds::RawSample&& sample) { queue(*raw, std::move(sample)); });
+      [this, raw](dds::RawSample&& sample) { queue(*raw, std::move(sample)); }, std::move(key));
   if (reader)
     reading->reader = std::move(*reader);
   else
@@ -86,6 +88,13 @@ void TopicListener::read(const dds::Discovered& found, const std::string& rig) {
 }
 
 void TopicListener::queue(Reading& reading, dds::RawSample&& sample) {
+  if (reading.keyless && sample.instance == dds::Guid{}) {
+    reading.keyless = false;
+    log::warning(
+        "{}: its writer sends no keys and the type {} is not known; its instances are "
+        "recorded as one",
+        reading.source.topic.name, reading.source.topic.type);
+  }
   {
     const std::scoped_lock lock(queue_mutex_);
     const std::uint64_t size = sample.payload.size() + sizeof(Item);

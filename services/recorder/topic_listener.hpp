@@ -25,6 +25,10 @@ class TopicListener {
     /// Held for a disk that is slower than the topics for a while; what is more is lost and
     /// counted.
     std::uint64_t queue_bytes = 48'000'000;
+    /// Finds keys in messages of a type, for writers that do not send them.
+    std::function<dds::KeyOf(const std::string& type)> keys = [](const std::string&) {
+      return dds::KeyOf();
+    };
     /// Called in the discovery's thread when poll() has something to do.
     std::function<void()> on_found = [] {};
   };
@@ -51,6 +55,7 @@ class TopicListener {
     std::unique_ptr<dds::RawReader> reader;
     std::uint64_t overflow = 0;  // guarded by queue_mutex_
     bool complained = false;
+    bool keyless = false;  // nothing tells its keys but what its writers send
   };
   struct Item {
     const Source* source;
