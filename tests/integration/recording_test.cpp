@@ -1,0 +1,526 @@
+// Recording with real processes: killed at any moment the file is readable but for its last second;
+// a full disk ends the recording and nothing else; files are split, rotated and begin with what a
+// late reader would get; orders come by topic, key and signal; what is chosen is recorded, and what
+// was lost is counted.
+#include <poll.h>
+#include <pty.h>
+#include <sys/mount.h>
+#include <sys/wait.h>
+#include <termios.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <csignal>
+#include <fstream>
+#include <map>
+#include <mutex>
+#include <nlohmann/json.hpp>
+#include <prehend/mcap/reader.hpp>
+#include <random>
+#include <set>
+
+#include "recorder_rig.hpp"
+
+namespace prehend::integration {
+namespace {
+
+using Kind = dds::RawSample::Kind;
+
+class Recording : public RecorderRig {
+ protected:
+  static v1::CameraImage image(std::size_t bytes, std::uint64_t number = 0) {
+    v1::CameraImage made;
+    made.camera("camera");
+    made.sequence_number(number);
+    made.data(std::vector<std::uint8_t>(bytes, 7));
+    return made;
+  }
+  nlohmann::json info(const std::string& path) {
+    const Answer answer = run("prehend", {"recording", "info", path, "--json"}, 20);
+    EXPECT_EQ(answer.exit_code, 0) << answer.log;
+    return nlohmann::json::parse(answer.output);
+  }
+  /// Topics with the number of their samples.
+  std::map<std::string, int> counts(const std::string& path) {
+    std::map<std::string, int> all;
+    const auto document = info(path);
+    for (const auto& topic : document["topics"]) all[topic["name"]] = topic["count"];
+    return all;
+  }
+  /// How many samples of a topic have been written out to a file that is still being written.
+  static std::uint64_t written(const std::string& path, const std::string& topic) {
+    auto reader = mcap::Reader::open(path);
+    if (!reader) return 0;
+    const auto statistics = reader->statistics();
+    std::uint64_t sum = 0;
+    for (const auto& [id, channel] : reader->contents().channels)
+      for (const auto& [counted, count] : statistics->channel_message_counts)
+        if (counted == id && channel.topic == topic) sum += count;
+    return sum;
+  }
+  template <class P>
+  static typename P::type decoded(const dds::Topic<P>& topic, const Played& one) {
+    typename P::type message;
+    EXPECT_TRUE(dds::decode(topic, one.sample, message));
+    return message;
+  }
+};
+
+/// A program on a terminal of its own.
+class Terminal {
+ public:
+  Terminal(const std::string& program, const Strings& arguments) {
+    std::vector<char*> pointers{const_cast<char*>(program.c_str())};
+    for (const std::string& each : arguments) pointers.push_back(const_cast<char*>(each.c_str()));
+    pointers.push_back(nullptr);
+    pid_ = ::forkpty(&descriptor_, nullptr, nullptr, nullptr);
+    if (pid_ == 0) {
+      ::execv(program.c_str(), pointers.data());
+      ::_exit(127);
+    }
+  }
+  ~Terminal() {
+    if (!ended_) {
+      ::kill(pid_, SIGKILL);
+      ::waitpid(pid_, nullptr, 0);
+    }
+    ::close(descriptor_);
+  }
+  Terminal(const Terminal&) = delete;
+  Terminal& operator=(const Terminal&) = delete;
+
+  void press(char key) { EXPECT_EQ(::write(descriptor_, &key, 1), 1); }
+  /// Until it shows the text; what it showed before does not count again.
+  bool shows(const std::string& text) {
+    return eventually(20, [&] {
+      take();
+      const auto at = shown_.find(text);
+      if (at == std::string::npos) return false;
+      shown_.erase(0, at + text.size());
+      return true;
+    });
+  }
+  /// Its exit code; -1: it did not end.
+  int end() {
+    int status = 0;
+    ended_ = eventually(20, [&] {
+      take();  // a terminal that nobody reads would hold it up
+      return ::waitpid(pid_, &status, WNOHANG) == pid_;
+    });
+    return ended_ && WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  }
+  bool waits_for_enter() const {
+    termios now{};
+    ::tcgetattr(descriptor_, &now);
+    return (now.c_lflag & ICANON) != 0;
+  }
+  const std::string& shown() const { return shown_; }
+
+ private:
+  void take() {
+    pollfd input{descriptor_, POLLIN, 0};
+    char bytes[4096];
+    while (::poll(&input, 1, 0) == 1 && (input.revents & POLLIN) != 0) {
+      const ssize_t count = ::read(descriptor_, bytes, sizeof bytes);
+      if (count <= 0) return;
+      shown_.append(bytes, static_cast<std::size_t>(count));
+    }
+  }
+
+  pid_t pid_ = -1;
+  int descriptor_ = -1;
+  bool ended_ = false;
+  std::string shown_;
+};
+
+TEST_F(Recording, KilledAtAnyMomentItsFileIsReadableButForTheLastSecond) {
+  const int points = std::getenv("PREHEND_LONG") ? 200 : 20;
+  std::mt19937 random(std::random_device{}());
+  // Volatile: a late recorder of a topic that keeps all is first given what was before.
+  auto postures = writer(dds::hand_posture);
+  std::atomic<bool> stop = false;
+  std::mutex mutex;
+  std::map<std::uint64_t, std::int64_t> sent;  // number: when
+  std::thread source([&] {
+    for (std::uint64_t i = 0; !stop; ++i) {
+      v1::HandPosture posture;
+      posture.glove("glove");
+      posture.sequence_number(i);
+      posture.stamp_ns(now_ns());
+      postures.write(posture);
+      {
+        const std::scoped_lock lock(mutex);
+        sent[i] = posture.stamp_ns();
+      }
+      std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    }
+  });
+  for (int point = 0; point < points; ++point) {
+    const std::string name = "killed-" + std::to_string(point) + ".mcap";
+    Strings arguments = lab_arguments();
+    arguments.insert(arguments.end(), {"--output", file(name), "--quiet"});
+    auto process = start_program("prehend-record", arguments);
+    ASSERT_TRUE(eventually(20, [&] {
+      std::error_code ignored;
+      return std::filesystem::exists(file(name)) &&
+             std::filesystem::file_size(file(name), ignored) > 20'000;
+    }));
+    std::this_thread::sleep_for(std::chrono::microseconds(random() % 700'000));
+    const std::int64_t killed = now_ns();
+    process.signal(SIGKILL);
+    process.wait(seconds(5));
+    auto tape = recorder::Tape::open({file(name)},
+                                     [](const std::string& t) { return t == "hand/posture"; });
+    ASSERT_TRUE(tape) << tape.error().message();
+    std::int64_t last = 0;
+    std::uint64_t count = 0;
+    while (const auto one = tape->next()) {
+      v1::HandPosture posture;
+      ASSERT_TRUE(dds::decode(dds::hand_posture, one->sample, posture));
+      last = std::max(last, posture.stamp_ns());
+      ++count;
+    }
+    EXPECT_GT(count, 0u);
+    EXPECT_GT(last, killed - 1'000'000'000) << "more than a second is gone";
+    std::filesystem::remove(file(name));
+  }
+  stop = true;
+  source.join();
+}
+
+TEST_F(Recording, OnAFullDiskItEndsCleanlyAndSaysSo) {
+  const auto disk = folder_ / "disk";
+  std::filesystem::create_directories(disk);
+  if (::mount("tmpfs", disk.c_str(), "tmpfs", 0, "size=4m") != 0)
+    GTEST_SKIP() << "a small file system cannot be mounted here";
+  {
+    auto process = record("disk/full.mcap", {"--keep-free", "0", "--compression", "none"});
+    auto images = writer(dds::camera_image);
+    meet(images);
+    v1::CameraImage image;
+    image.camera("camera");
+    image.data(std::vector<std::uint8_t>(60'000, 7));
+    ASSERT_TRUE(eventually(20, [&] {
+      images.write(image);
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+      return process.exit().has_value();
+    }));
+    EXPECT_EQ(process.exit()->code, 3);
+    const std::string said = service::last_lines(folder_ / "prehend-record.log", 10);
+    EXPECT_NE(said.find("No space left"), std::string::npos) << said;
+    const auto kept = content((disk / "full.mcap").string(), "camera/image");
+    EXPECT_GT(kept.size(), 5u);
+    for (const Played& one : kept) EXPECT_GT(one.sample.payload.size(), 60'000u);
+    tapes_.clear();
+  }
+  ::umount2(disk.c_str(), MNT_DETACH);
+}
+
+TEST_F(Recording, ASplitRecordingBeginsWithWhatALateReaderWouldGet) {
+  auto scenes = writer(dds::scene_state);
+  v1::SceneState scene;
+  scene.scene("table");
+  scene.sequence_number(42);
+  ASSERT_TRUE(scenes.write(scene));
+  auto process = record("split.mcap", {"--split-size", "0.05", "--compression", "none"});
+  auto images = writer(dds::camera_image);
+  meet(images);
+  v1::CameraImage image;
+  image.camera("camera");
+  image.data(std::vector<std::uint8_t>(10'000, 7));
+  ASSERT_TRUE(eventually(20, [&] {
+    images.write(image);
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    return std::filesystem::exists(file("split_2.mcap"));
+  }));
+  ASSERT_EQ(end(process), 0);
+  for (const char* name : {"split.mcap", "split_1.mcap", "split_2.mcap"}) {
+    const auto scenes_there = content(file(name), "scene/state");
+    ASSERT_EQ(scenes_there.size(), 1u) << name;
+    v1::SceneState there;
+    ASSERT_TRUE(dds::decode(dds::scene_state, scenes_there[0].sample, there));
+    EXPECT_EQ(there.sequence_number(), 42u);
+  }
+}
+
+TEST_F(Recording, SnapshotPauseAndStopByTopic) {
+  auto process = record("ring.mcap", {"--snapshot", "30"});
+  auto reports = writer(dds::grasp_report);
+  meet(reports);
+  v1::GraspReport report;
+  report.hand("hand");
+  for (int i = 0; i < 10; ++i) ASSERT_TRUE(reports.write(report));
+  const auto unknown = order("recorder", "sing");
+  EXPECT_FALSE(unknown.done());
+  EXPECT_NE(unknown.message().to_string().find("snapshot"), std::string::npos);
+  // A busy recorder may answer the order before it has taken the reports.
+  ASSERT_TRUE(eventually(10, [&] {
+    const auto snapshot = order("recorder", "snapshot");
+    return written(snapshot.message().to_string(), "grasp/report") == 10;
+  }));
+  EXPECT_FALSE(std::filesystem::exists(file("ring.mcap")));
+  EXPECT_TRUE(order("recorder", "pause").done());
+  EXPECT_TRUE(order("recorder", "stop").done());
+  const auto exit = process.wait(seconds(10));
+  ASSERT_TRUE(exit);
+  EXPECT_EQ(exit->code, 0);
+}
+
+TEST_F(Recording, OfASplitRecordingOnlyTheNewestFilesAreKept) {
+  auto process =
+      record("ring.mcap", {"--split-size", "0.05", "--keep", "2", "--compression", "none"});
+  auto images = writer(dds::camera_image);
+  meet(images);
+  std::uint64_t sent = 0;
+  ASSERT_TRUE(eventually(20, [&] {
+    images.write(image(10'000, sent++));
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    return std::filesystem::exists(file("ring_4.mcap"));
+  }));
+  ASSERT_EQ(end(process), 0);
+  std::set<std::string> files;
+  for (const auto& entry : std::filesystem::directory_iterator(folder_))
+    if (entry.path().extension() == ".mcap") files.insert(entry.path().filename());
+  EXPECT_EQ(files.size(), 2u);
+  std::vector<std::uint64_t> numbers;
+  for (const std::string& name : files)
+    for (const Played& one : content(file(name), "camera/image"))
+      numbers.push_back(decoded(dds::camera_image, one).sequence_number());
+  // Without a gap up to the last one.
+  ASSERT_FALSE(numbers.empty());
+  EXPECT_EQ(numbers.back(), sent - 1);
+  for (std::size_t i = 1; i < numbers.size(); ++i) EXPECT_EQ(numbers[i], numbers[i - 1] + 1);
+}
+
+TEST_F(Recording, SplitByTimeNothingIsMissingAndNothingDouble) {
+  auto process = record("split.mcap", {"--split-time", "0.2"});
+  auto postures = writer(dds::hand_posture);
+  meet(postures);
+  v1::HandPosture posture;
+  posture.glove("glove");
+  std::uint64_t sent = 0;
+  ASSERT_TRUE(eventually(20, [&] {
+    posture.sequence_number(sent++);
+    postures.write(posture);
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    return std::filesystem::exists(file("split_2.mcap"));
+  }));
+  ASSERT_EQ(end(process), 0);
+  std::uint64_t next = 0;
+  for (const char* name : {"split.mcap", "split_1.mcap", "split_2.mcap"}) {
+    const auto part = content(file(name), "hand/posture");
+    ASSERT_FALSE(part.empty()) << name;
+    EXPECT_LT(part.back().log_time - part.front().log_time, seconds(0.2));
+    for (const Played& one : part)
+      ASSERT_EQ(decoded(dds::hand_posture, one).sequence_number(), next++) << name;
+  }
+  EXPECT_EQ(next, sent);
+}
+
+TEST_F(Recording, EndsBeforeTheDiskIsFull) {
+  auto process = record("guarded.mcap", {"--keep-free", "1e9"});
+  const auto exit = process.wait(seconds(20));
+  ASSERT_TRUE(exit);
+  EXPECT_EQ(exit->code, 3);
+  const std::string said = service::last_lines(folder_ / "prehend-record.log", 10);
+  EXPECT_NE(said.find("are free on the disk"), std::string::npos) << said;
+  EXPECT_NE(said.find("--keep-free"), std::string::npos) << said;
+  EXPECT_TRUE(info(file("guarded.mcap"))["closed"]);
+}
+
+TEST_F(Recording, SignalsEndTheFileProperly) {
+  for (const int signal : {SIGINT, SIGTERM}) {
+    const std::string name = std::to_string(signal) + ".mcap";
+    auto process = record(name, {"grasp/report"});
+    auto reports = writer(dds::grasp_report);
+    meet(reports);
+    v1::GraspReport report;
+    report.hand("hand");
+    for (int i = 0; i < 20; ++i) ASSERT_TRUE(reports.write(report));
+    ASSERT_EQ(reports.raw().wait_for_acknowledgments({5, 0}), ReturnCode_t::RETCODE_OK);
+    EXPECT_EQ(end(process, signal), 0);
+    const auto document = info(file(name));
+    EXPECT_TRUE(document["closed"]);
+    EXPECT_EQ(document["damage"].size(), 0u) << document;
+    EXPECT_GE(document["messages"], 20);
+  }
+}
+
+TEST_F(Recording, KeysOnATerminalPauseWriteASnapshotAndQuit) {
+  Strings arguments = lab_arguments();
+  arguments.insert(arguments.end(), {"--output", file("ring.mcap"), "--snapshot", "30"});
+  Terminal terminal(program("prehend-record"), arguments);
+  ASSERT_TRUE(terminal.shows("recording 0 s"));
+  EXPECT_FALSE(terminal.waits_for_enter());
+  auto reports = writer(dds::grasp_report);
+  meet(reports);
+  v1::GraspReport report;
+  report.hand("hand");
+  ASSERT_TRUE(reports.write(report));
+  ASSERT_EQ(reports.raw().wait_for_acknowledgments({5, 0}), ReturnCode_t::RETCODE_OK);
+  terminal.press(' ');
+  EXPECT_TRUE(terminal.shows("paused ")) << terminal.shown();
+  terminal.press(' ');
+  EXPECT_TRUE(terminal.shows("recording ")) << terminal.shown();
+  terminal.press('s');
+  EXPECT_TRUE(terminal.shows("_1.mcap")) << terminal.shown();
+  terminal.press('q');
+  EXPECT_EQ(terminal.end(), 0);
+  EXPECT_TRUE(terminal.waits_for_enter()) << "the terminal is not as it was";
+  std::size_t snapshots = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(folder_))
+    if (entry.path().extension() == ".mcap") {
+      ++snapshots;
+      EXPECT_EQ(content(entry.path(), "grasp/report").size(), 1u);
+    }
+  EXPECT_EQ(snapshots, 1u);
+}
+
+TEST_F(Recording, TypesAreDescribedAsAskedFor) {
+  auto detections = writer(dds::object_detection);
+  ASSERT_TRUE(detections.write(detection(1, 1)));
+  for (const auto& [schema, name] : {std::pair{"ros2msg", "prehend_v1/msg/ObjectDetection"},
+                                     std::pair{"omgidl", "prehend::v1::ObjectDetection"}}) {
+    const std::string path = std::string(schema) + ".mcap";
+    auto process = record(path, {"object/detection", "--schema", schema});
+    ASSERT_TRUE(eventually(20, [&] {
+      return order("recorder", "resume").done() && std::filesystem::file_size(file(path)) > 3000;
+    }));
+    ASSERT_EQ(end(process), 0);
+    const auto reader = mcap::Reader::open(file(path));
+    ASSERT_TRUE(reader);
+    const auto& contents = reader->contents();
+    ASSERT_EQ(contents.channels.size(), 1u);
+    const auto& described = contents.schemas.at(contents.channels.begin()->second.schema_id);
+    EXPECT_EQ(described.encoding, schema);
+    EXPECT_EQ(described.name, name);
+    EXPECT_NE(described.data.find("probability"), std::string::npos);
+  }
+}
+
+TEST_F(Recording, WhatIsChosenIsRecordedAlsoWhenItComesLate) {
+  auto detections = writer(dds::object_detection);
+  auto states = writer(dds::object_state);
+  auto process = record("some.mcap", {"object/*", "glove/*", "-x", "object/st?te"});
+  meet(detections);
+  auto frames = writer(dds::glove_frame);  // late
+  auto reports = writer(dds::grasp_report);
+  meet(frames);
+  v1::GloveFrame frame;
+  frame.glove("glove");
+  v1::ObjectState state;
+  state.body("body");
+  v1::GraspReport report;
+  report.hand("hand");
+  for (int i = 0; i < 5; ++i) {
+    ASSERT_TRUE(detections.write(detection(1, 1)));
+    ASSERT_TRUE(frames.write(frame));
+    ASSERT_TRUE(states.write(state));
+    ASSERT_TRUE(reports.write(report));
+  }
+  ASSERT_EQ(reports.raw().wait_for_acknowledgments({5, 0}), ReturnCode_t::RETCODE_OK);
+  EXPECT_TRUE(eventually(20, [&] { return written(file("some.mcap"), "glove/frame") == 5; }));
+  ASSERT_EQ(end(process), 0);
+  EXPECT_EQ(counts(file("some.mcap")),
+            (std::map<std::string, int>{{"glove/frame", 5}, {"object/detection", 5}}));
+}
+
+TEST_F(Recording, StartsPausesAndGoesOnByOrder) {
+  auto process = record("orders.mcap", {"--paused", "hand/posture"});
+  auto postures = writer(dds::hand_posture);
+  meet(postures);
+  v1::HandPosture posture;
+  posture.glove("glove");
+  const auto send = [&](std::uint64_t number) {
+    posture.sequence_number(number);
+    ASSERT_TRUE(postures.write(posture));
+    ASSERT_EQ(postures.raw().wait_for_acknowledgments({5, 0}), ReturnCode_t::RETCODE_OK);
+  };
+  const auto ordered = [&](const char* argument) {
+    EXPECT_TRUE(order("recorder", argument).done()) << argument;
+  };
+  send(1);
+  ordered("start");
+  send(2);
+  ordered("pause");
+  send(3);
+  ordered("resume");
+  send(4);
+  ordered("pause");
+  ordered("stop");
+  const auto exit = process.wait(seconds(10));
+  ASSERT_TRUE(exit && exit->code == 0);
+  std::vector<std::uint64_t> numbers;
+  for (const Played& one : content(file("orders.mcap"), "hand/posture"))
+    numbers.push_back(decoded(dds::hand_posture, one).sequence_number());
+  EXPECT_EQ(numbers, (std::vector<std::uint64_t>{2, 4}));
+}
+
+// A recorder that stands still while more is sent than the socket holds loses samples of a best
+// effort topic: each of them is either in the file or counted there.
+TEST_F(Recording, WhatWasLostIsCountedInTheFile) {
+  auto process = record("lossy.mcap", {"camera/image"});
+  auto images = writer(dds::camera_image);
+  meet(images);
+  std::uint64_t sent = 0;
+  const auto send = [&](int count) {
+    for (int i = 0; i < count; ++i) ASSERT_TRUE(images.write(image(50'000, sent++)));
+  };
+  const auto written_out = [&] { return written(file("lossy.mcap"), "camera/image"); };
+  send(3);
+  ASSERT_TRUE(eventually(20, [&] { return written_out() == 3; }));
+  process.signal(SIGSTOP);
+  send(400);
+  process.signal(SIGCONT);
+  // Until the socket has been emptied and one that was sent after that has come.
+  std::uint64_t before = 0;
+  ASSERT_TRUE(eventually(20, [&] { return std::exchange(before, written_out()) > 3; }));
+  ASSERT_TRUE(eventually(20, [&] {
+    send(1);
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    return written_out() > before + 2;
+  }));
+  const std::uint64_t last = sent;
+  ASSERT_TRUE(eventually(20, [&] {
+    const auto images_there = content(file("lossy.mcap"), "camera/image");
+    return decoded(dds::camera_image, images_there.back()).sequence_number() + 1 == last;
+  }));
+  ASSERT_EQ(end(process), 0);
+  const auto document = info(file("lossy.mcap"));
+  const std::uint64_t lost = document["lost"], recorded = document["messages"];
+  EXPECT_GT(lost, 0u);
+  EXPECT_EQ(recorded + lost, sent);
+}
+
+TEST_F(Recording, EndsOfInstancesAreKeptAsTheyWere) {
+  auto process = record("ends.mcap", {"some/topic"});
+  auto made = dds::RawWriter::create(*participant_, {.name = "some/topic",
+                                                     .type = "some::Type",
+                                                     .keyed = true,
+                                                     .qos = {.name = "", .writer_depth = 0}});
+  ASSERT_TRUE(made);
+  ASSERT_TRUE(eventually(10, [&] {
+    eprosima::fastdds::dds::PublicationMatchedStatus status;
+    made->raw().get_publication_matched_status(status);
+    return status.current_count > 0;
+  }));
+  std::vector<std::pair<int, Kind>> changes{
+      {1, Kind::data}, {2, Kind::data},         {1, Kind::unregistered}, {2, Kind::disposed},
+      {1, Kind::data}, {2, Kind::unregistered}, {1, Kind::disposed}};
+  for (std::size_t i = 0; i < changes.size(); ++i) {
+    dds::RawSample sample;
+    sample.kind = changes[i].second;
+    sample.instance[0] = static_cast<std::uint8_t>(changes[i].first);
+    if (sample.kind == Kind::data) sample.payload = {0, 1, 0, 0, sample.instance[0], 2, 3, 4};
+    ASSERT_TRUE(made->write(sample, from_ns(now_ns())));
+  }
+  ASSERT_EQ(made->raw().wait_for_acknowledgments({5, 0}), ReturnCode_t::RETCODE_OK);
+  ASSERT_EQ(end(process), 0);
+  std::vector<std::pair<int, Kind>> kept;
+  for (const Played& one : content(file("ends.mcap"), "some/topic"))
+    kept.emplace_back(one.sample.instance[0], one.sample.kind);
+  EXPECT_EQ(kept, changes);
+}
+
+}  // namespace
+}  // namespace prehend::integration
