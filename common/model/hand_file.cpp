@@ -297,7 +297,8 @@ class HandLoader {
       const std::string where = "[[fingertip]] " + tip.name;
       if (find_named(hand.fingertips_, tip.name) >= 0)
         return fail("there are two of this name", where);
-      if (auto known = only_keys(*table, {"name", "link", "position"}, where); !known) return known;
+      if (auto known = only_keys(*table, {"name", "link", "position", "human"}, where); !known)
+        return known;
       const auto link = text_of(*table, "link", where);
       if (!link) return tl::unexpected(link.error());
       tip.link = find_named(hand.links_, *link);
@@ -305,6 +306,13 @@ class HandLoader {
       const auto position = numbers(table->get("position"), 3, where + ".position");
       if (!position) return tl::unexpected(position.error());
       tip.p_LT = *position;
+      if (table->contains("human")) {
+        const auto human = text_of(*table, "human", where);
+        if (!human) return tl::unexpected(human.error());
+        tip.human = finger_from_string(*human);
+        if (!tip.human)
+          return fail("«human» is «" + *human + "»", where, "thumb, index, middle, ring or little");
+      }
       hand.fingertips_.push_back(std::move(tip));
     }
     assign_fingers();

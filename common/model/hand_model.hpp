@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "human_hand.hpp"
 #include "placement.hpp"
 #include "shape.hpp"
 
@@ -69,6 +70,8 @@ struct HandFingertip {
   std::string name;  // finger
   int link = 0;
   Eigen::Vector3d p_LT;  // tip in the link's frame
+  /// Whose tip it follows when fingertips are mapped to fingertips; none: of no human finger.
+  std::optional<Finger> human;
 };
 
 /// The folder of a hand: what has a slash is a path, anything else a name in models/hands.

@@ -133,6 +133,14 @@ double clearance(const Capsule& capsule, const Shape& shape, const Pose& X_OH) {
 
 }  // namespace
 
+std::optional<Finger> finger_from_string(std::string_view name) {
+  constexpr std::array<std::string_view, finger_count> names{"thumb", "index", "middle", "ring",
+                                                             "little"};
+  const auto found = std::find(names.begin(), names.end(), name);
+  if (found == names.end()) return std::nullopt;
+  return static_cast<Finger>(found - names.begin());
+}
+
 HumanHand::HumanHand(double scale) : scale_(std::clamp(scale, 0.7, 1.4)) {}
 
 std::array<Pose, finger_count> HumanHand::fingertip_poses(const HumanPosture& posture) const {

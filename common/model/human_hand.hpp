@@ -1,7 +1,9 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <prehend/base/pose.hpp>
+#include <string_view>
 #include <vector>
 
 #include "shape.hpp"
@@ -10,6 +12,7 @@ namespace prehend::model {
 
 enum class Finger { thumb, index, middle, ring, little };
 inline constexpr int finger_count = 5;
+std::optional<Finger> finger_from_string(std::string_view name);
 inline constexpr int human_dof_count = 20;
 
 /// Joint angles of a human hand, rad: four a finger, index, middle, ring, little, thumb:
