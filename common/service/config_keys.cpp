@@ -50,6 +50,8 @@ const std::vector<ConfigKey>& config_keys() {
       {"mapping.hand_name", Text("hand"), "key of robot/command"},
       {"mapping.model", Text("share:trained/barrett.mapping"), "trained mapping model"},
       {"mapping.intelligent", true, "let detections improve the mapping"},
+      {"mapping.placement", true, "let them correct the hand's placement as well"},
+      {"mapping.mode", Text("joints"), "fingers: joints, cartesian, combined or retargeting"},
 
       {"simulation.hand", Text("barrett"), "kind of robot hand"},
       {"simulation.hand_name", Text("hand"), "key of robot/command"},

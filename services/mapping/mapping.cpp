@@ -1,6 +1,8 @@
 #include "mapping.hpp"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <prehend/model/human_hand.hpp>
 #include <prehend/model/placement.hpp>
@@ -8,11 +10,77 @@
 
 namespace prehend::mapping {
 
+namespace {
+
+constexpr std::array<std::pair<FingerMode, std::string_view>, 4> finger_modes{{
+    {FingerMode::joints, "joints"},
+    {FingerMode::cartesian, "cartesian"},
+    {FingerMode::combined, "combined"},
+    {FingerMode::retargeting, "retargeting"},
+}};
+
+/// How much of the fingertips' answer the combined mode takes in the end: what is held by the tips
+/// needs them in place, what is wrapped needs the fingers' shape.
+double precision_of(GraspType type) {
+  switch (type) {
+    case GraspType::precision:
+      return 1;
+    case GraspType::circular_sphere:
+      return 0.5;
+    case GraspType::power_wrap:
+    case GraspType::none:
+      break;
+  }
+  return 0;
+}
+
+/// What 1 rad of a finger is for this DoF where closing is meant: 1, or the length of a slide that
+/// grips as hard.
+double radian_of(const model::HandDof& dof) {
+  return dof.kind == model::JointKind::prismatic ? dof.squeeze / 0.15 : 1.0;
+}
+
+retargeting::HumanTips tips_in_grasp_frame(const Fingertips& fingertips, const Pose& X_HG) {
+  const Pose X_GH = X_HG.inverse();
+  retargeting::HumanTips p_GT;
+  for (std::size_t f = 0; f < fingertips.size(); ++f)
+    if (fingertips[f].valid) p_GT[f] = X_GH * fingertips[f].p_HF;
+  return p_GT;
+}
+
+}  // namespace
+
+std::string_view to_string(FingerMode mode) {
+  for (const auto& [known, name] : finger_modes)
+    if (known == mode) return name;
+  return "unknown";
+}
+
+std::optional<FingerMode> finger_mode_from_string(std::string_view name) {
+  for (const auto& [mode, known] : finger_modes)
+    if (known == name) return mode;
+  return std::nullopt;
+}
+
+Expected<Mapping> Mapping::create(const model::HandModel& hand, const MappingModel& model,
+                                  const MappingOptions& options) {
+  std::optional<retargeting::Retargeter> retargeter;
+  if (options.fingers != FingerMode::joints) {
+    const auto method = options.fingers == FingerMode::retargeting ? retargeting::Method::vector
+                                                                   : retargeting::Method::cartesian;
+    auto made = retargeting::Retargeter::create(hand, method);
+    if (!made) return tl::unexpected(made.error());
+    retargeter = std::move(*made);
+  }
+  return Mapping(hand, model, options, std::move(retargeter));
+}
+
 Mapping::Mapping(const model::HandModel& hand, const MappingModel& model,
-                 const MappingOptions& options)
+                 const MappingOptions& options, std::optional<retargeting::Retargeter> retargeter)
     : hand_(hand),
       model_(model),
       options_(options),
+      retargeter_(std::move(retargeter)),
       arbitration_(options.ramp),
       grip_(hand, options.grip) {}
 
@@ -21,16 +89,24 @@ Expected<void> Mapping::on_detection(const Detection& detection) {
   if (!is_finite(detection.X_WO)) return fail("detection not finite");
   if (!(detection.probability >= options_.least_probability))
     return fail("detection not confident");
+  if (!detection.covariance.allFinite() || (detection.covariance.diagonal().array() < 0).any())
+    return fail("detection without a usable covariance");
+  const double size = characteristic_size(detection.shape);
+  const auto [known, is_new] = tracks_.try_emplace(detection.track, Track{detection, size});
+  if (is_new) return {};
+  Track& track = known->second;
   // Late ones must not bring back an older place.
-  const auto known = detections_.find(detection.track);
-  if (known != detections_.end() && known->second.stamp > detection.stamp)
-    return fail("detection out of order");
-  detections_[detection.track] = detection;
+  if (track.detection.stamp > detection.stamp) return fail("detection out of order");
+  track.detection = detection;
+  constexpr double newest = 0.2;  // share of the newest size in mean and variance
+  const double off = size - track.size;
+  track.size += newest * off;
+  track.size_variance = (1 - newest) * (track.size_variance + newest * off * off);
   return {};
 }
 
 void Mapping::on_detection_gone(std::uint32_t track) {
-  detections_.erase(track);
+  tracks_.erase(track);
 }
 
 Expected<void> Mapping::on_state(const RobotState& state) {
@@ -67,12 +143,27 @@ bool Mapping::start(const Pose& X_WG, Time stamp, Time now) {
   return true;
 }
 
-std::optional<Mapping::Candidate> Mapping::candidate(const Detection& detection, const Pose& X_WG,
+/// How far a detection can be relied on, 0 to 1: see MappingOptions::sure_position.
+double Mapping::trust(const Track& track) const {
+  const Eigen::Matrix4d& covariance = track.detection.covariance;
+  const auto share = [](double tolerance, double variance) {
+    return std::min(1.0, tolerance * tolerance / std::max(variance, 1e-12));
+  };
+  const double position =
+      covariance.topLeftCorner<3, 3>().selfadjointView<Eigen::Lower>().eigenvalues().maxCoeff();
+  double least = share(options_.sure_position, position);
+  if (track.detection.shape.kind == model::ShapeKind::box)
+    least = std::min(least, share(options_.sure_turn, covariance(3, 3)));
+  return std::min(least, share(options_.sure_size * track.size, track.size_variance));
+}
+
+std::optional<Mapping::Candidate> Mapping::candidate(const Track& track, const Pose& X_WG,
                                                      bool engaged) const {
+  const Detection& detection = track.detection;
   const auto X_OG =
       model::nearest_grasp(detection.shape, detection.X_WO.inverse() * X_WG, hand_.reach());
   if (!X_OG) return std::nullopt;
-  Candidate found{detection, 0, detection.X_WO * *X_OG};
+  Candidate found{detection, trust(track), 0, detection.X_WO * *X_OG};
   found.distance = (found.X_WG.translation() - X_WG.translation()).norm();
   const double angle = angle_between(found.X_WG.linear(), X_WG.linear());
   if (found.distance > (engaged ? options_.leave : options_.enter) ||
@@ -83,15 +174,15 @@ std::optional<Mapping::Candidate> Mapping::candidate(const Detection& detection,
 
 /// The object within reach: the engaged one, while there is one and no other is clearly nearer.
 std::optional<Mapping::Candidate> Mapping::choose(const Pose& X_WG, Time now) {
-  if (!options_.intelligent) return std::nullopt;
-  std::erase_if(detections_, [&](const auto& entry) {
-    return std::chrono::abs(now - entry.second.stamp) > options_.fresh;
+  if (!options_.intelligent && !options_.place) return std::nullopt;
+  std::erase_if(tracks_, [&](const auto& entry) {
+    return std::chrono::abs(now - entry.second.detection.stamp) > options_.fresh;
   });
   std::optional<Candidate> nearest, kept;
-  for (const auto& [track, detection] : detections_) {
-    if (!model_.knows(detection.shape.kind)) continue;
-    const bool engaged = engaged_ && engaged_->track == track;
-    auto found = candidate(detection, X_WG, engaged);
+  for (const auto& [number, track] : tracks_) {
+    if (!model_.knows(track.detection.shape.kind)) continue;
+    const bool engaged = engaged_ && engaged_->track == number;
+    auto found = candidate(track, X_WG, engaged);
     if (!found) continue;
     if (engaged) kept = found;
     if (!nearest || found->distance < nearest->distance) nearest = std::move(found);
@@ -102,9 +193,19 @@ std::optional<Mapping::Candidate> Mapping::choose(const Pose& X_WG, Time now) {
   return kept;
 }
 
+/// Follows the trust in what is seen no faster than the weight moves. What is gripped or lost keeps
+/// the trust that it had.
+void Mapping::update_trust(const std::optional<Candidate>& seen, Duration elapsed) {
+  if (arbitration_.phase() == Phase::direct) trust_ = 0;
+  if (!seen || arbitration_.phase() == Phase::gripping) return;
+  const double change = to_seconds(elapsed) / to_seconds(options_.ramp);
+  trust_ += std::clamp(seen->trust - trust_, -change, change);
+}
+
 /// The hand's grasp frame with its placement corrected toward the object's nearest grasp.
 Pose Mapping::corrected(const Pose& X_WG, const std::optional<Candidate>& seen, Duration elapsed) {
   const double t = to_seconds(elapsed);
+  if (!options_.place) return X_WG * correction_;
   // In a grip, the object moves with the hand: what was corrected stays.
   if (arbitration_.phase() != Phase::gripping) {
     if (arbitration_.phase() == Phase::direct)
@@ -112,7 +213,7 @@ Pose Mapping::corrected(const Pose& X_WG, const std::optional<Candidate>& seen, 
     else if (seen && arbitration_.phase() != Phase::leaving)
       full_correction_ = X_WG.inverse() * limit_step(X_WG, seen->X_WG, options_.correct_distance,
                                                      options_.correct_angle);
-    const Pose wanted = interpolate(Pose::Identity(), full_correction_, arbitration_.weight());
+    const Pose wanted = interpolate(Pose::Identity(), full_correction_, weight());
     correction_ = limit_step(correction_, wanted, options_.correct_speed * t,
                              options_.correct_turn_speed * t);
   }
@@ -132,29 +233,46 @@ double Mapping::mean_closing(const Eigen::VectorXd& dof) const {
   return count == 0 ? 0 : sum / count;
 }
 
-void Mapping::move_toward(const Eigen::VectorXd& dof, const Pose& X_WB, Duration elapsed) {
+/// together: how much, 0 to 1, the fingers close in proportion and slowly enough to arrive
+/// together, since one that came first would push the object away.
+void Mapping::move_toward(const Eigen::VectorXd& dof, const Pose& X_WB, double together,
+                          Duration elapsed) {
   const double t = to_seconds(elapsed);
   const Eigen::VectorXd change = dof - command_.dof;
-  // Fingers that close on a known object move in proportion, slowly enough to arrive together: one
-  // that came first would push the object away.
   const auto closes = [&](Eigen::Index i) {
     return hand_.dofs()[static_cast<std::size_t>(i)].closing * change[i] > 0;
+  };
+  const auto unit = [&](Eigen::Index i) {
+    return radian_of(hand_.dofs()[static_cast<std::size_t>(i)]);
   };
   const auto speed = [&](Eigen::Index i) {
     const double most = hand_.dofs()[static_cast<std::size_t>(i)].max_velocity;
     if (!closes(i)) return most;
-    return most + command_.weight * (std::min(most, options_.closing_speed) - most);
+    return most + together * (std::min(most, options_.closing_speed * unit(i)) - most);
   };
-  double together = 1;
+  double slowest = 1;
   for (Eigen::Index i = 0; i < change.size(); ++i)
-    if (closes(i)) together = std::min(together, speed(i) * t / std::abs(change[i]));
+    if (closes(i)) slowest = std::min(slowest, speed(i) * t / std::abs(change[i]));
   for (Eigen::Index i = 0; i < change.size(); ++i) {
     const double most = speed(i) * t;
     const double alone = std::clamp(change[i], -most, most);
-    command_.dof[i] += closes(i) ? alone + command_.weight * (together * change[i] - alone) : alone;
+    command_.dof[i] += closes(i) ? alone + together * (slowest * change[i] - alone) : alone;
   }
   command_.X_WB =
       limit_step(command_.X_WB, X_WB, options_.base_speed * t, options_.base_turn_speed * t);
+}
+
+/// The fingers' answer as if no object were known.
+Expected<Eigen::VectorXd> Mapping::without_object(const Posture& posture, const Answer& joints,
+                                                  Duration elapsed) {
+  if (!retargeter_) return joints.dof;
+  const Pose X_HG = model::HumanHand(posture.hand_scale).X_HG();
+  auto fingertips = retargeter_->answer(tips_in_grasp_frame(posture.fingertips, X_HG),
+                                        X_HG.inverse().translation(), command_.dof);
+  if (!fingertips || options_.fingers != FingerMode::combined) return fingertips;
+  const double change = to_seconds(elapsed) / to_seconds(options_.ramp);
+  precision_ += std::clamp(precision_of(command_.grasp_type) - precision_, -change, change);
+  return joints.dof + precision_ * (*fingertips - joints.dof);
 }
 
 Expected<Command> Mapping::on_posture(const Posture& posture, Time now) {
@@ -178,17 +296,23 @@ Expected<Command> Mapping::on_posture(const Posture& posture, Time now) {
   else if (seen && before != Phase::gripping)
     engaged_ = seen->detection;
 
-  const Answer direct = model_.direct(*features);
-  Eigen::VectorXd dof = direct.dof;
-  command_.extrapolating = direct.extrapolating;
-  command_.weight = arbitration_.weight();
+  update_trust(seen, elapsed);
+
+  const Answer joints = model_.direct(*features);
+  auto imitated = without_object(posture, joints, elapsed);
+  if (!imitated) return tl::unexpected(imitated.error());
+  Eigen::VectorXd dof = std::move(*imitated);
+  command_.extrapolating = joints.extrapolating;
+  command_.weight = weight();
   command_.object.clear();
   if (engaged_ && command_.weight > 0) {
-    // choose() lets through only shapes that have a network.
-    const Answer known = *model_.intelligent(*features, engaged_->shape);
-    dof += command_.weight * (known.dof - direct.dof);
-    command_.extrapolating = known.extrapolating || (direct.extrapolating && command_.weight < 1);
     command_.object = engaged_->name;
+    if (options_.intelligent) {
+      // choose() lets through only shapes that have a network.
+      const Answer known = *model_.intelligent(*features, engaged_->shape);
+      dof += command_.weight * (known.dof - dof);
+      command_.extrapolating = known.extrapolating || (joints.extrapolating && command_.weight < 1);
+    }
   }
   command_.mode = command_.object.empty() ? Mode::direct : Mode::intelligent;
   dof = hand_.clamp(dof);
@@ -197,7 +321,7 @@ Expected<Command> Mapping::on_posture(const Posture& posture, Time now) {
                           engaged_ ? engaged_->shape.kind : model::ShapeKind::unknown);
 
   const Pose X_WB = corrected(X_WG, seen, elapsed) * hand_.X_BG().inverse();
-  move_toward(grip_.squeeze(dof), X_WB, elapsed);
+  move_toward(grip_.squeeze(dof), X_WB, options_.intelligent ? command_.weight : 0, elapsed);
   command_.stamp = posture.stamp;
   command_.origin = posture.origin;
   last_answer_ = now;

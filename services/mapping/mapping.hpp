@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <map>
 #include <optional>
@@ -7,7 +8,9 @@
 #include <prehend/base/pose.hpp>
 #include <prehend/base/time.hpp>
 #include <prehend/model/hand_model.hpp>
+#include <prehend/retargeting/retargeter.hpp>
 #include <string>
+#include <string_view>
 
 #include "arbitration.hpp"
 #include "features.hpp"
@@ -33,7 +36,20 @@ struct Detection {
   Pose X_WO = Pose::Identity();
   double probability = 0;
   Time stamp;
+  /// Of x, y, z (m) and the turn about z (rad); zero: exact.
+  Eigen::Matrix4d covariance = Eigen::Matrix4d::Zero();
 };
+
+/// How fingers are answered where no object is known; with one, its network's answer is blended in.
+enum class FingerMode {
+  joints,      // the trained direct network: postures to postures
+  cartesian,   // fingertips to fingertips by inverse kinematics
+  combined,    // joints for power grasps, fingertips for precision grasps, and smoothly between
+  retargeting  // vectors to fingertips by optimisation
+};
+
+std::string_view to_string(FingerMode mode);
+std::optional<FingerMode> finger_mode_from_string(std::string_view name);
 
 enum class Mode { hold, direct, intelligent };
 
@@ -51,11 +67,17 @@ struct Command {
 };
 
 struct MappingOptions {
-  bool intelligent = true;                      // let detections improve the mapping
+  FingerMode fingers = FingerMode::joints;
+  bool intelligent = true;                      // let detections improve the fingers
+  bool place = true;                            // let detections correct the placement
   double enter = 0.15, leave = 0.20;            // m, from G to the nearest grasp of an object
   double enter_angle = 0.8, leave_angle = 1.1;  // rad, the same
   double prefer = 0.03;  // m, by which another object must be nearer to take over
   double least_probability = 0.6;
+  /// Standard deviations up to which a detection is as good as exact, because a grasp forgives as
+  /// much: position, turn of what is not round, and size as a share of itself. Beyond, the
+  /// intelligent answer counts (tolerance / deviation)² at most.
+  double sure_position = 0.01, sure_turn = 0.1745, sure_size = 0.2;  // m, rad, 1
   Duration fresh = std::chrono::milliseconds(500);       // age at which a detection counts as gone
   Duration ramp = std::chrono::milliseconds(300);        // weight from 0 to 1
   Duration silence = std::chrono::milliseconds(60);      // without postures, until it holds
@@ -77,7 +99,9 @@ struct MappingOptions {
 /// the first one starts from where the robot hand is. Keeps references to the hand and the model.
 class Mapping {
  public:
-  Mapping(const model::HandModel& hand, const MappingModel& model, const MappingOptions& options);
+  /// Fails when the hand does not allow the mode of the fingers.
+  static Expected<Mapping> create(const model::HandModel& hand, const MappingModel& model,
+                                  const MappingOptions& options);
 
   /// The answer to a posture; call tick() too. The error's `what` is a short reason to count: bad
   /// postures are not answered, so the hand holds still. now: when the posture arrived.
@@ -93,26 +117,41 @@ class Mapping {
   Phase phase() const { return arbitration_.phase(); }
 
  private:
+  /// An object with how much its size has varied from picture to picture.
+  struct Track {
+    Detection detection;
+    double size = 0, size_variance = 0;  // m, m²: characteristic_size, recent ones count more
+  };
   struct Candidate {
     Detection detection;
+    double trust = 1;     // most that the intelligent answer may count
     double distance = 0;  // m, to its nearest grasp
     Pose X_WG;            // that grasp
   };
+  Mapping(const model::HandModel& hand, const MappingModel& model, const MappingOptions& options,
+          std::optional<retargeting::Retargeter> retargeter);
+  Expected<Eigen::VectorXd> without_object(const Posture& posture, const Answer& joints,
+                                           Duration elapsed);
   bool start(const Pose& X_WG, Time stamp, Time now);
-  std::optional<Candidate> candidate(const Detection& detection, const Pose& X_WG,
-                                     bool engaged) const;
+  double trust(const Track& track) const;
+  std::optional<Candidate> candidate(const Track& track, const Pose& X_WG, bool engaged) const;
   std::optional<Candidate> choose(const Pose& X_WG, Time now);
   Pose corrected(const Pose& X_WG, const std::optional<Candidate>& seen, Duration elapsed);
   double mean_closing(const Eigen::VectorXd& dof) const;
-  void move_toward(const Eigen::VectorXd& dof, const Pose& X_WB, Duration elapsed);
+  void update_trust(const std::optional<Candidate>& seen, Duration elapsed);
+  double weight() const { return std::min(arbitration_.weight(), trust_); }
+  void move_toward(const Eigen::VectorXd& dof, const Pose& X_WB, double together, Duration elapsed);
 
   const model::HandModel& hand_;
   const MappingModel& model_;
   MappingOptions options_;
+  std::optional<retargeting::Retargeter> retargeter_;
+  double precision_ = 0;  // of the combined mode: share of the fingertips' answer
   Arbitration arbitration_;
   Grip grip_;
-  std::map<std::uint32_t, Detection> detections_;
+  std::map<std::uint32_t, Track> tracks_;
   std::optional<Detection> engaged_;         // the object that the weight is for
+  double trust_ = 0;                         // in the engaged object; moves like the weight
   Pose full_correction_ = Pose::Identity();  // X_GG', for weight 1, as last seen
   Pose correction_ = Pose::Identity();       // X_GG' in force
   std::optional<RobotState> state_;

@@ -59,7 +59,8 @@ Expected<Detection> from_message(const v1::ObjectDetection& message) {
                    {dds::from_message(message.shape()), dds::from_message(message.size())},
                    *X_WO,
                    message.probability(),
-                   from_ns(message.stamp_ns())};
+                   from_ns(message.stamp_ns()),
+                   Eigen::Matrix4d::Map(message.covariance().data())};
 }
 
 Expected<RobotState> from_message(const v1::HandState& message) {
@@ -73,10 +74,9 @@ Expected<RobotState> from_message(const v1::HandState& message) {
 /// The topics' side of a Mapping. Lives as long as the shell runs.
 class Service {
  public:
-  Service(service::Shell& shell, const model::HandModel& hand, const MappingModel& model,
-          const MappingOptions& options)
+  Service(service::Shell& shell, const model::HandModel& hand, Mapping mapping)
       : shell_(shell),
-        mapping_(hand, model, options),
+        mapping_(std::move(mapping)),
         hand_name_(shell.config().text("mapping.hand_name")),
         output_(shell.publish(dds::robot_command)) {
     message_.hand(hand_name_);
@@ -163,11 +163,21 @@ Expected<int> run(service::Shell& shell) {
   const auto model = MappingModel::load(config.path("mapping.model"), *hand);
   if (!model) return tl::unexpected(model.error());
   MappingOptions options;
+  const auto fingers = finger_mode_from_string(config.text("mapping.mode"));
+  if (!fingers) {
+    log::error("mapping.mode: there is no «{}» (joints, cartesian, combined or retargeting)",
+               config.text("mapping.mode"));
+    return 2;
+  }
+  options.fingers = *fingers;
   options.intelligent = config.flag("mapping.intelligent");
+  options.place = options.intelligent && config.flag("mapping.placement");
+  auto mapping = Mapping::create(*hand, *model, options);
+  if (!mapping) return tl::unexpected(mapping.error());
 
-  const Service service(shell, *hand, *model, options);
-  log::info("{}, {}{}", hand->name(), model->scheme(),
-            options.intelligent ? "" : ", direct mapping only");
+  const Service service(shell, *hand, std::move(*mapping));
+  log::info("{}, {}, fingers by {}{}", hand->name(), model->scheme(), to_string(options.fingers),
+            options.intelligent ? "" : ", whatever the object");
   shell.status().running();
   return shell.run();
 }

@@ -40,12 +40,16 @@ void Demonstrator::new_take() {
   for (Eigen::Vector3d& p : p_FS_) p = direction(random_) * random_.uniform(0, options_.mounting);
 }
 
-Features Demonstrator::read(const Closure& closure) {
+Fingertips Demonstrator::sense(const Closure& closure) {
   const auto tips = hand_.fingertip_poses(model::HumanHand::posture(closure));
-  Fingertips read;
+  Fingertips sensed;
   for (std::size_t f = 0; f < tips.size(); ++f)
-    read[f] = {true, X_HR_.inverse() * (tips[f] * p_FS_[f]) + random_.normal3(options_.noise)};
-  return *features(read, calibrated_scale_);  // a hand's own fingertips are always usable
+    sensed[f] = {true, X_HR_.inverse() * (tips[f] * p_FS_[f]) + random_.normal3(options_.noise)};
+  return sensed;
+}
+
+Features Demonstrator::read(const Closure& closure) {
+  return *features(sense(closure), calibrated_scale_);  // its own fingertips are always usable
 }
 
 Closure Demonstrator::repeat(const Closure& closure) {
@@ -55,15 +59,21 @@ Closure Demonstrator::repeat(const Closure& closure) {
 }
 
 std::optional<Closure> Demonstrator::grasp(const model::Shape& shape, const Pose& X_OG) {
+  const auto grasp = reach(shape, X_OG);
+  return grasp ? std::optional(grasp->closure) : std::nullopt;
+}
+
+std::optional<HumanGrasp> Demonstrator::reach(const model::Shape& shape, const Pose& X_OG) {
   constexpr int attempts = 20;
   for (int attempt = 0; attempt < attempts; ++attempt) {
     const double d = options_.approach;
     const double x = random_.uniform(-d, d), y = random_.uniform(-d, d), z = random_.uniform(-d, d);
     const Pose error = make_pose({x, y, z}, turn(random_, options_.approach_turn));
-    const Pose X_HO = hand_.X_HG() * (X_OG * error).inverse();
+    const Pose X_OG_reached = X_OG * error;
+    const Pose X_HO = hand_.X_HG() * X_OG_reached.inverse();
     const auto closure = hand_.close_on(shape, X_HO);
     const bool free = std::all_of(closure.begin(), closure.end(), [](double c) { return c > 0; });
-    if (free) return closure;
+    if (free) return HumanGrasp{closure, X_OG_reached};
   }
   return std::nullopt;
 }

@@ -27,6 +27,12 @@ struct DemonstratorOptions {
 /// How far each finger is closed, 0 to 1.
 using Closure = std::array<double, model::finger_count>;
 
+/// A hand that has closed on an object.
+struct HumanGrasp {
+  Closure closure;
+  Pose X_OG;  // where its grasp frame was
+};
+
 /// A synthetic person with four sensors on the hand, repeating postures and grasps as people do:
 /// never twice the same. Everything follows from the seed.
 class Demonstrator {
@@ -39,12 +45,19 @@ class Demonstrator {
   /// Takes the glove off and puts it on again: the sensors then sit elsewhere.
   void new_take();
 
-  /// What the glove says of fingers closed so far.
+  /// The same to the glove: the hand's scale as calibrated, and where the sensor on the back of the
+  /// hand, which it takes for H, really sits.
+  double calibrated_scale() const { return calibrated_scale_; }
+  const Pose& X_HR() const { return X_HR_; }
+
+  /// What the glove says of fingers closed so far: fingertips, and the features made of them.
+  Fingertips sense(const Closure& closure);
   Features read(const Closure& closure);
   /// A posture repeated as people do: never exactly.
   Closure repeat(const Closure& closure);
   /// How far the fingers close on an object until they touch it, with the grasp frame near X_OG.
   /// None when no attempt came to a place where the open hand does not already touch.
+  std::optional<HumanGrasp> reach(const model::Shape& shape, const Pose& X_OG);
   std::optional<Closure> grasp(const model::Shape& shape, const Pose& X_OG);
 
  private:

@@ -57,7 +57,7 @@ Pose base_at(const Pose& X_WG) {
 class MappingTest : public testing::Test {
  protected:
   MappingModel model_ = random_model(21);
-  Mapping mapping_{barrett(), model_, {}};
+  Mapping mapping_ = *Mapping::create(barrett(), model_, {});
   Eigen::VectorXd open_ = barrett().postures().at("open");
 };
 
@@ -149,7 +149,7 @@ TEST_F(MappingTest, CorrectsNoMoreThanThreeCentimetresAndTwentyDegrees) {
 
 TEST_F(MappingTest, ReturnsToDirectWhenTheDetectionIsGone) {
   for (const bool disposed : {false, true}) {
-    Mapping mapping(barrett(), model_, {});
+    Mapping mapping = *Mapping::create(barrett(), model_, {});
     const Pose X_WO = standing(talc), X_WG = side_grasp(talc, X_WO);
     ASSERT_TRUE(mapping.on_state(state_at(base_at(X_WG), open_, 0)));
     for (int ms = 0; ms < 1000; ms += 20) {
@@ -179,7 +179,7 @@ TEST_F(MappingTest, ReturnsToDirectWhenTheDetectionIsGone) {
 }
 
 TEST_F(MappingTest, IsDirectOnlyWhenToldSo) {
-  Mapping mapping(barrett(), model_, {.intelligent = false});
+  Mapping mapping = *Mapping::create(barrett(), model_, {.intelligent = false, .place = false});
   const Pose X_WO = standing(talc), X_WG = side_grasp(talc, X_WO);
   ASSERT_TRUE(mapping.on_state(state_at(base_at(X_WG), open_, 0)));
   for (int ms = 0; ms < 1000; ms += 20) {
@@ -309,7 +309,7 @@ TEST_P(WildInput, NeverMovesFasterThanTheLimits) {
   Random random(seed);
   const MappingModel model = random_model(seed);
   const MappingOptions options;
-  Mapping mapping(barrett(), model, options);
+  Mapping mapping = *Mapping::create(barrett(), model, options);
   const model::Shape box{ShapeKind::box, {0.04, 0.12, 0.20}};
   Eigen::VectorXd robot = barrett().postures().at("open");
   Pose base = make_pose(Eigen::Vector3d(0.5, 0.5, 0.5));
@@ -374,7 +374,7 @@ TEST_P(WildInput, NeverMovesFasterThanTheLimits) {
 INSTANTIATE_TEST_SUITE_P(Mapping, WildInput, testing::Range(1, 7));
 
 TEST_F(MappingTest, GivesTheSameAnswersAgain) {
-  Mapping again(barrett(), model_, {});
+  Mapping again = *Mapping::create(barrett(), model_, {});
   for (Mapping* mapping : {&mapping_, &again})
     ASSERT_TRUE(mapping->on_state(state_at(Pose::Identity(), open_, 0)));
   Random random(9);
