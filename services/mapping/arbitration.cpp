@@ -1,8 +1,30 @@
 #include "arbitration.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 namespace prehend::mapping {
+
+std::string_view to_string(Phase phase) {
+  constexpr std::array<std::string_view, 5> names{"direct", "engaging", "engaged", "gripping",
+                                                  "leaving"};
+  return names[static_cast<std::size_t>(phase)];
+}
+
+std::string_view to_string(Event event) {
+  constexpr std::array<std::string_view, 6> names{"in reach", "lost", "touched",
+                                                  "released", "full", "empty"};
+  return names[static_cast<std::size_t>(event)];
+}
+
+std::string drawing() {
+  std::string text = fmt::format("stateDiagram-v2\n    [*] --> {}\n", to_string(Phase::direct));
+  for (const Transition& t : transitions)
+    text +=
+        fmt::format("    {} --> {}: {}\n", to_string(t.from), to_string(t.to), to_string(t.event));
+  return text;
+}
 
 void Arbitration::handle(Event event) {
   for (const Transition& transition : transitions)

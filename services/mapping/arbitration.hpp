@@ -3,6 +3,8 @@
 #include <array>
 #include <optional>
 #include <prehend/base/time.hpp>
+#include <string>
+#include <string_view>
 
 namespace prehend::mapping {
 
@@ -43,6 +45,12 @@ inline constexpr std::array transitions{
     Transition{Phase::leaving, Event::touched, Phase::gripping},
     Transition{Phase::leaving, Event::empty, Phase::direct},
 };
+
+std::string_view to_string(Phase phase);
+std::string_view to_string(Event event);
+
+/// The table as a Mermaid state diagram, as in README.md.
+std::string drawing();
 
 /// The state machine above with the weight of the intelligent answer, 0 to 1, which moves at a
 /// constant rate. Knows no clock: it is told how much time has passed.

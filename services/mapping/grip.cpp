@@ -5,6 +5,10 @@
 
 namespace prehend::mapping {
 
+double radian_of(const model::HandDof& dof) {
+  return dof.kind == model::JointKind::prismatic ? dof.squeeze / GripOptions{}.squeeze : 1.0;
+}
+
 Grip::Grip(const model::HandModel& hand, const GripOptions& options)
     : hand_(hand), options_(options), contacts_(hand.dofs().size()), stops_(hand.dofs().size()) {}
 
@@ -12,8 +16,10 @@ Grip::Grip(const model::HandModel& hand, const GripOptions& options)
 bool Grip::pushing(std::size_t dof, const RobotState& state,
                    const Eigen::VectorXd& commanded) const {
   const int closing = hand_.dofs()[dof].closing;
+  const double unit = radian_of(hand_.dofs()[dof]);
   const auto i = static_cast<Eigen::Index>(dof);
-  if (commanded.size() > 0 && closing * (commanded[i] - state.dof[i]) > options_.lag) return true;
+  if (commanded.size() > 0 && closing * (commanded[i] - state.dof[i]) > options_.lag * unit)
+    return true;
   for (std::size_t j = 0; j < hand_.joints().size(); ++j) {
     const model::HandJoint& joint = hand_.joints()[j];
     if (joint.dof != static_cast<int>(dof) || joint.multiplier == 0) continue;
@@ -28,17 +34,18 @@ void Grip::observe(const RobotState& state, const Eigen::VectorXd& commanded) {
   for (std::size_t i = 0; i < contacts_.size(); ++i) {
     const int closing = hand_.dofs()[i].closing;
     if (closing == 0) continue;
+    const double unit = radian_of(hand_.dofs()[i]);
     const auto k = static_cast<Eigen::Index>(i);
     const double q = state.dof[k];
     // The finger got through: what it touched has gone.
-    if (commanded.size() > 0 && closing * (commanded[k] - q) < options_.arrived)
+    if (commanded.size() > 0 && closing * (commanded[k] - q) < options_.arrived * unit)
       contacts_[i].reset();
     std::optional<Stop>& stop = stops_[i];
     if (!pushing(i, state, commanded)) {
       stop.reset();
       continue;
     }
-    if (!stop || std::abs(q - stop->dof) > options_.still) stop = Stop{state.stamp, q};
+    if (!stop || std::abs(q - stop->dof) > options_.still * unit) stop = Stop{state.stamp, q};
     if (state.stamp - stop->since < options_.settle) continue;
     if (!contacts_[i]) contacts_[i] = q;
   }
@@ -55,12 +62,13 @@ Eigen::VectorXd Grip::squeeze(const Eigen::VectorXd& mapped) {
     if (closing == 0 && held_)
       result[static_cast<Eigen::Index>(i)] = (*held_)[static_cast<Eigen::Index>(i)];
     if (!contacts_[i]) continue;
+    const double unit = radian_of(hand_.dofs()[i]);
     double& q = result[static_cast<Eigen::Index>(i)];
-    if (closing * (q - *contacts_[i]) < -options_.open) {
+    if (closing * (q - *contacts_[i]) < -options_.open * unit) {
       contacts_[i].reset();
       stops_[i].reset();
     } else {
-      q = *contacts_[i] + closing * options_.squeeze;
+      q = *contacts_[i] + closing * options_.squeeze * unit;
     }
   }
   return hand_.clamp(result);

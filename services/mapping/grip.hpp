@@ -18,6 +18,7 @@ struct RobotState {
   Pose X_WB = Pose::Identity();
 };
 
+/// Angles are of what turns; what slides counts by radian_of().
 struct GripOptions {
   double squeeze = 0.15;      // rad, commanded past contact
   double open = 0.10;         // rad, by which the operator opens to let go
@@ -27,6 +28,10 @@ struct GripOptions {
   double arrived = 0.02;      // rad, behind its command, that means nothing is in the way
   Duration settle = std::chrono::milliseconds(100);  // for which it must last
 };
+
+/// What 1 rad of a finger is for this DoF where closing is meant: 1, or the length of a slide that
+/// grips as hard.
+double radian_of(const model::HandDof& dof);
 
 /// Remembers where each closing finger was stopped first, and squeezes by the same angle in every
 /// mode: a contact posture reproduced exactly would grip with no force, and a drive pressed to its

@@ -34,12 +34,6 @@ double precision_of(GraspType type) {
   return 0;
 }
 
-/// What 1 rad of a finger is for this DoF where closing is meant: 1, or the length of a slide that
-/// grips as hard.
-double radian_of(const model::HandDof& dof) {
-  return dof.kind == model::JointKind::prismatic ? dof.squeeze / 0.15 : 1.0;
-}
-
 retargeting::HumanTips tips_in_grasp_frame(const Fingertips& fingertips, const Pose& X_HG) {
   const Pose X_GH = X_HG.inverse();
   retargeting::HumanTips p_GT;
@@ -64,23 +58,33 @@ std::optional<FingerMode> finger_mode_from_string(std::string_view name) {
 
 Expected<Mapping> Mapping::create(const model::HandModel& hand, const MappingModel& model,
                                   const MappingOptions& options) {
+  Mapping made(hand, model, options);
+  if (auto used = made.use(options.fingers, options.intelligent, options.place); !used)
+    return tl::unexpected(used.error());
+  return made;
+}
+
+Expected<void> Mapping::use(FingerMode fingers, bool intelligent, bool place) {
   std::optional<retargeting::Retargeter> retargeter;
-  if (options.fingers != FingerMode::joints) {
-    const auto method = options.fingers == FingerMode::retargeting ? retargeting::Method::vector
-                                                                   : retargeting::Method::cartesian;
-    auto made = retargeting::Retargeter::create(hand, method);
+  if (fingers != FingerMode::joints) {
+    const auto method = fingers == FingerMode::retargeting ? retargeting::Method::vector
+                                                           : retargeting::Method::cartesian;
+    auto made = retargeting::Retargeter::create(hand_, method);
     if (!made) return tl::unexpected(made.error());
-    retargeter = std::move(*made);
+    retargeter.emplace(std::move(*made));
   }
-  return Mapping(hand, model, options, std::move(retargeter));
+  retargeter_.swap(retargeter);
+  options_.fingers = fingers;
+  options_.intelligent = intelligent;
+  options_.place = place;
+  return {};
 }
 
 Mapping::Mapping(const model::HandModel& hand, const MappingModel& model,
-                 const MappingOptions& options, std::optional<retargeting::Retargeter> retargeter)
+                 const MappingOptions& options)
     : hand_(hand),
       model_(model),
       options_(options),
-      retargeter_(std::move(retargeter)),
       arbitration_(options.ramp),
       grip_(hand, options.grip) {}
 
@@ -205,10 +209,9 @@ void Mapping::update_trust(const std::optional<Candidate>& seen, Duration elapse
 /// The hand's grasp frame with its placement corrected toward the object's nearest grasp.
 Pose Mapping::corrected(const Pose& X_WG, const std::optional<Candidate>& seen, Duration elapsed) {
   const double t = to_seconds(elapsed);
-  if (!options_.place) return X_WG * correction_;
   // In a grip, the object moves with the hand: what was corrected stays.
   if (arbitration_.phase() != Phase::gripping) {
-    if (arbitration_.phase() == Phase::direct)
+    if (arbitration_.phase() == Phase::direct || !options_.place)
       full_correction_ = Pose::Identity();
     else if (seen && arbitration_.phase() != Phase::leaving)
       full_correction_ = X_WG.inverse() * limit_step(X_WG, seen->X_WG, options_.correct_distance,

@@ -103,6 +103,10 @@ class Mapping {
   static Expected<Mapping> create(const model::HandModel& hand, const MappingModel& model,
                                   const MappingOptions& options);
 
+  /// Changes how it answers from now on; the hand goes there no faster than it may. Fails, and
+  /// leaves all as it was, when the hand does not allow the mode of the fingers.
+  Expected<void> use(FingerMode fingers, bool intelligent, bool place);
+
   /// The answer to a posture; call tick() too. The error's `what` is a short reason to count: bad
   /// postures are not answered, so the hand holds still. now: when the posture arrived.
   Expected<Command> on_posture(const Posture& posture, Time now);
@@ -128,8 +132,7 @@ class Mapping {
     double distance = 0;  // m, to its nearest grasp
     Pose X_WG;            // that grasp
   };
-  Mapping(const model::HandModel& hand, const MappingModel& model, const MappingOptions& options,
-          std::optional<retargeting::Retargeter> retargeter);
+  Mapping(const model::HandModel& hand, const MappingModel& model, const MappingOptions& options);
   Expected<Eigen::VectorXd> without_object(const Posture& posture, const Answer& joints,
                                            Duration elapsed);
   bool start(const Pose& X_WG, Time stamp, Time now);

@@ -2,6 +2,8 @@
 // its phase says and no faster than the ramp.
 #include <gtest/gtest.h>
 
+#include <fstream>
+#include <iterator>
 #include <prehend/base/random.hpp>
 #include <prehend/mapping/arbitration.hpp>
 
@@ -89,6 +91,13 @@ TEST(Arbitration, EveryTransitionIsReachedAndTheWeightFollowsItsPhase) {
     // A released grip passes through engaging within one step when the object is gone.
     EXPECT_TRUE(seen[t]) << "transition " << t;
   }
+}
+
+// The page shows the table that runs. When this fails, put the text it prints on the page.
+TEST(Arbitration, IsDrawnInTheDocumentationAsItIs) {
+  std::ifstream file(PREHEND_SOURCE "/services/mapping/README.md");
+  const std::string page{std::istreambuf_iterator<char>(file), {}};
+  EXPECT_NE(page.find("```mermaid\n" + drawing() + "```\n"), std::string::npos) << drawing();
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <map>
 #include <prehend/base/random.hpp>
 #include <prehend/mapping/mapping.hpp>
 #include <prehend/mapping/mapping_model.hpp>
@@ -9,13 +10,18 @@
 
 namespace prehend::mapping {
 
+inline const model::HandModel& hand_named(const std::string& name) {
+  static std::map<std::string, model::HandModel> loaded;
+  const auto found = loaded.find(name);
+  if (found != loaded.end()) return found->second;
+  auto made = model::HandModel::load(PREHEND_SOURCE "/common/models/hands/" + name);
+  if (!made) throw std::runtime_error(made.error().message());
+  return loaded.emplace(name, std::move(*made)).first->second;
+}
+
 /// The Barrett hand of the lab.
 inline const model::HandModel& barrett() {
-  static const model::HandModel hand = [] {
-    auto loaded = model::HandModel::load(PREHEND_SOURCE "/common/models/hands/barrett");
-    if (!loaded) throw std::runtime_error(loaded.error().message());
-    return *loaded;
-  }();
+  static const model::HandModel& hand = hand_named("barrett");
   return hand;
 }
 
@@ -29,10 +35,17 @@ inline Fingertips tips(const std::array<double, model::finger_count>& closure) {
 
 /// A network of random weights over the range of hand features: whatever it answers, the mapping
 /// around it must keep its promises. shape unknown: direct.
-inline MappingNetwork random_network(model::ShapeKind shape, std::uint64_t seed) {
+inline MappingNetwork random_network(model::ShapeKind shape, std::uint64_t seed,
+                                     const model::HandModel& hand = barrett()) {
   Random random(seed);
+  const auto outputs = static_cast<Eigen::Index>(hand.dofs().size());
+  Eigen::VectorXd lower(outputs), upper(outputs);
+  for (Eigen::Index i = 0; i < outputs; ++i) {
+    lower[i] = hand.dofs()[static_cast<std::size_t>(i)].lower;
+    upper[i] = hand.dofs()[static_cast<std::size_t>(i)].upper;
+  }
   const int inputs = feature_count + (shape == model::ShapeKind::unknown ? 0 : 1);
-  learning::Layer hidden(8, inputs + 1), last(4, 9);
+  learning::Layer hidden(8, inputs + 1), last(outputs, 9);
   for (learning::Layer* layer : {&hidden, &last})
     for (Eigen::Index row = 0; row < layer->rows(); ++row)
       for (Eigen::Index col = 0; col < layer->cols(); ++col) (*layer)(row, col) = random.normal();
@@ -41,15 +54,15 @@ inline MappingNetwork random_network(model::ShapeKind shape, std::uint64_t seed)
   return {shape,
           *learning::Network::create({hidden, last}),
           *learning::Scaling::create(low, high),
-          *learning::Scaling::create(Eigen::Vector4d::Zero(), Eigen::Vector4d(0.8, 2, 2, 2)),
+          *learning::Scaling::create(lower, upper),
           {}};
 }
 
-inline MappingModel random_model(std::uint64_t seed) {
-  return *MappingModel::create(barrett(), "random", "none",
-                               {random_network(model::ShapeKind::unknown, seed),
-                                random_network(model::ShapeKind::cylinder, seed + 1),
-                                random_network(model::ShapeKind::box, seed + 2)});
+inline MappingModel random_model(std::uint64_t seed, const model::HandModel& hand = barrett()) {
+  return *MappingModel::create(hand, "random", "none",
+                               {random_network(model::ShapeKind::unknown, seed, hand),
+                                random_network(model::ShapeKind::cylinder, seed + 1, hand),
+                                random_network(model::ShapeKind::box, seed + 2, hand)});
 }
 
 }  // namespace prehend::mapping
