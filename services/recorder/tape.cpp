@@ -1,7 +1,7 @@
 #include "tape.hpp"
 
 #include <algorithm>
-#include <deque>
+#include <prehend/recording_layout/standing.hpp>
 
 namespace prehend::recorder {
 
@@ -55,6 +55,7 @@ Expected<Tape> Tape::open(const std::vector<std::filesystem::path>& files, const
     tape.end_ = any ? std::max(tape.end_, last) : last;
     any = true;
   }
+  tape.recording_start_ = tape.start_;
   tape.seek(tape.start_);
   std::optional<Time> first;
   for (const auto& file : tape.files_)
@@ -117,7 +118,7 @@ std::optional<Played> Tape::next() {
 }
 
 std::vector<Played> Tape::standing(Time time) {
-  std::map<std::tuple<std::string, dds::Guid, dds::Guid>, std::deque<Played>> alive;
+  recording::Standing standing;
   for (const auto& file : files_) {
     mcap::Selection selection;
     selection.end = static_cast<std::uint64_t>(std::max<std::int64_t>(1, to_ns(time))) - 1;
@@ -132,22 +133,12 @@ std::vector<Played> Tape::standing(Time time) {
       if (!*message) break;
       const auto found = file->streams.find((*message)->message.channel_id);
       if (found == file->streams.end()) continue;
-      const recording::Stream& stream = found->second;
-      auto& kept = alive[{stream.topic.name, stream.writer, stream.instance}];
-      if (stream.kind != Kind::data) {
-        kept.clear();
-        continue;
-      }
-      kept.push_back(played(stream, (*message)->message));
-      const int depth = stream.topic.qos.writer_depth;
-      if (depth > 0 && kept.size() > static_cast<std::size_t>(depth)) kept.pop_front();
+      standing.take(found->second, (*message)->message);
     }
   }
   std::vector<Played> all;
-  for (auto& [key, kept] : alive)
-    for (Played& one : kept) all.push_back(std::move(one));
-  std::stable_sort(all.begin(), all.end(),
-                   [](const Played& a, const Played& b) { return a.log_time < b.log_time; });
+  for (const auto& sample : standing.samples())
+    all.push_back(played(*sample.stream, sample.message()));
   return all;
 }
 

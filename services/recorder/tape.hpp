@@ -30,8 +30,9 @@ class Tape {
   /// Fails when a file is no recording or holds none of the wanted topics.
   static Expected<Tape> open(const std::vector<std::filesystem::path>& files, const Wanted& wanted);
 
-  Time start() const { return start_; }  // of the first wanted message
-  Time end() const { return end_; }      // of the last
+  Time recording_start() const { return recording_start_; }  // of the first message of any topic
+  Time start() const { return start_; }                      // of the first wanted message
+  Time end() const { return end_; }                          // of the last
   std::vector<const recording::Stream*> streams() const;
   const mcap::Reader& file(std::size_t index) const { return files_[index]->reader; }
 
@@ -57,7 +58,7 @@ class Tape {
   void advance(File& file);
 
   std::vector<std::unique_ptr<File>> files_;
-  Time start_{}, end_{};
+  Time recording_start_{}, start_{}, end_{};
   std::vector<Error> damage_;
 };
 

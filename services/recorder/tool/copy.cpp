@@ -4,6 +4,7 @@
 #include <charconv>
 #include <map>
 #include <optional>
+#include <prehend/recording_layout/standing.hpp>
 #include <set>
 #include <tuple>
 
@@ -98,6 +99,45 @@ Expected<void> copy_side_records(std::vector<Reader>& sources, Writer& writer, C
   return writer.write(sum);
 }
 
+/// What of one source stands when the part begins, under the ids of the new file.
+Expected<void> copy_standing(Reader& source, std::size_t index, Numbering& numbering,
+                             Writer& writer, const CopyOptions& options, CopyResult& result) {
+  const Contents& contents = source.contents();
+  std::map<std::uint16_t, recording::Stream> streams;
+  for (const auto& [id, channel] : contents.channels) {
+    if (options.selection.wanted && !options.selection.wanted(channel)) continue;
+    const auto schema = contents.schemas.find(channel.schema_id);
+    auto stream =
+        recording::to_stream(channel, schema == contents.schemas.end() ? "" : schema->second.name);
+    if (stream && stream->topic.qos.transient_local) streams.emplace(id, std::move(*stream));
+  }
+  recording::Standing standing;
+  auto cursor =
+      source.messages({.end = options.selection.start - 1, .wanted = [&](const Channel& channel) {
+                         return streams.contains(channel.id);
+                       }});
+  while (true) {
+    const auto next = cursor.next();
+    if (!next) {
+      result.damage.push_back(next.error());
+      continue;
+    }
+    if (!*next) break;
+    const auto& [channel, message] = **next;
+    standing.take(streams.at(channel->id), message);
+  }
+  for (const auto& sample : standing.samples()) {
+    Message message = sample.message();
+    const auto id = numbering.channel(index, contents.channels.at(message.channel_id), contents);
+    if (!id) return tl::unexpected(id.error());
+    message.channel_id = *id;
+    message.log_time = options.selection.start;
+    if (auto done = writer.write(message); !done) return done;
+    ++result.messages;
+  }
+  return {};
+}
+
 Expected<void> copy_messages(std::vector<Reader>& sources, Writer& writer,
                              const CopyOptions& options, CopyResult& result) {
   std::uint64_t total = 0;
@@ -119,6 +159,9 @@ Expected<void> copy_messages(std::vector<Reader>& sources, Writer& writer,
     advance(i);
   }
   Numbering numbering(writer);
+  for (std::size_t i = 0; i < sources.size() && options.selection.start > 0; ++i)
+    if (auto done = copy_standing(sources[i], i, numbering, writer, options, result); !done)
+      return done;
   while (true) {
     std::optional<std::size_t> first;
     for (std::size_t i = 0; i < heads.size(); ++i)

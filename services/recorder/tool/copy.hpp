@@ -24,6 +24,8 @@ struct CopyResult {
 
 /// Writes one recording with the messages of several in order of log time, their schemas and
 /// channels (those that are the same once), attachments and metadata; counts of losses are summed.
+/// A part that begins later begins with what a late reader would then be given on transient local
+/// topics, as the parts of a split recording do: at the log time at which it begins.
 /// The file appears under its name when it is whole. Fails when it cannot be written, or would
 /// replace one of the sources.
 Expected<CopyResult> copy(std::vector<mcap::Reader>& sources, const std::filesystem::path& to,

@@ -1,0 +1,13 @@
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <prehend/base/error.hpp>
+#include <prehend/mcap/reader.hpp>
+
+namespace prehend::recorder {
+
+/// What is in a recording, as `prehend recording info --json` prints it: duration, losses, topics
+/// with their types and counts, what is damaged. Strings of a damaged file may be no UTF-8.
+Expected<nlohmann::ordered_json> summary(mcap::Reader& reader);
+
+}  // namespace prehend::recorder
