@@ -1,20 +1,24 @@
 #include "player.hpp"
 
 #include <fmt/format.h>
+#include <fnmatch.h>
 #include <sys/prctl.h>
 
 #include <algorithm>
 #include <cmath>
 #include <prehend/base/log.hpp>
+#include <prehend/types/stamps.hpp>
 #include <sstream>
-
-#include "stamps.hpp"
 
 namespace prehend::recorder {
 namespace {
 
 constexpr std::size_t most_lateness = 1'000'000;
 constexpr double slowest = 1e-3, fastest = 1e3;
+// Who starts later than this does not hurry to catch up.
+constexpr Duration latest_start = std::chrono::milliseconds(100);
+// A stamp further away, in played time, is none of this recording.
+constexpr double furthest_s = 1e9;
 
 Time system_now() {
   return std::chrono::time_point_cast<Duration>(std::chrono::system_clock::now());
@@ -35,6 +39,12 @@ Expected<std::unique_ptr<Player>> Player::create(Tape tape, dds::Participant& pa
     if (const auto other = made->options_.remap.find(topic.name);
         other != made->options_.remap.end())
       topic.name = other->second;
+    for (const auto& [pattern, text] : made->options_.qos) {
+      if (::fnmatch(pattern.c_str(), stream->topic.name.c_str(), 0) != 0) continue;
+      const auto qos = recording::qos_of(text, stream->topic.qos);
+      if (!qos) return tl::unexpected(qos.error());
+      topic.qos = *qos;
+    }
     auto writer = dds::RawWriter::create(participant, topic);
     if (!writer) return tl::unexpected(writer.error());
     made->writers_.emplace(key, std::move(*writer));
@@ -48,7 +58,7 @@ Player::Player(Tape tape, const types::Library& types, PlayerOptions options)
     : tape_(std::move(tape)),
       types_(types),
       options_(std::move(options)),
-      from_(std::max(options_.from.value_or(tape_.start()), tape_.start())),
+      from_(options_.from.value_or(tape_.start())),
       to_(std::min(options_.to.value_or(tape_.end()), tape_.end())),
       transport_(from_) {
   transport_.set_rate(clock(), options_.rate);
@@ -65,10 +75,11 @@ void Player::fetch() {
 
 void Player::go_to(Time position) {
   position = std::clamp(position, from_, to_);
+  transport_.seek(clock(), position);
+  to_system_ = system_now().time_since_epoch() - clock().time_since_epoch();
   if (position > tape_.start())
     for (const Played& played : tape_.standing(position)) publish(played);
   tape_.seek(position);
-  transport_.seek(clock(), position);
   fetch();
 }
 
@@ -84,10 +95,11 @@ void Player::publish(const Played& played) {
   bool written = false;
   if (options_.stamps_now) {
     dds::RawSample sample = played.sample;
-    const Duration shift = system_now() - played.log_time;
-    sample.sent += shift;
+    sample.sent = moved(sample.sent, played.log_time);
     if (const types::Structure* type = types_.find(stream.topic.type))
-      shift_stamps(*type, shift, sample.payload);
+      types::move_stamps(
+          *type, [&](std::int64_t stamp) { return to_ns(moved(from_ns(stamp), played.log_time)); },
+          sample.payload);
     written = write(stream, std::move(sample));
   } else {
     written = writers_.find({stream.topic.name, stream.writer})
@@ -96,22 +108,35 @@ void Player::publish(const Played& played) {
   ++(written ? figures_.published : figures_.refused);
 }
 
-void Player::play(const std::stop_token& stop) {
+Time Player::moved(Time recorded, Time log_time) const {
+  const double away = 1e-9 * (static_cast<double>(to_ns(recorded)) -  //
+                              static_cast<double>(to_ns(log_time)));
+  if (std::abs(away) > furthest_s * std::min(1.0, transport_.rate())) return recorded;
+  return transport_.when(recorded) + to_system_;
+}
+
+void Player::play(const std::stop_token& stop, Time start) {
   ::prctl(PR_SET_TIMERSLACK, 1000);  // ns; the usual 50 µs would show in every message
   std::unique_lock lock(mutex_);
-  if (next_) transport_.seek(clock(), next_->log_time);
-  if (!options_.paused) transport_.run(clock());
+  to_system_ = system_now().time_since_epoch() - clock().time_since_epoch();
+  Time begin = start - to_system_;
+  news_.wait_until(lock, stop, Clock::now() + (begin - clock()), [] { return false; });
+  // Not when this thread woke up: several players keep together.
+  if (clock() > begin + latest_start) begin = clock();
+  transport_.seek(begin, transport_.position(begin));
+  begun_ = true;
+  if (!options_.paused) transport_.run(begin);
   while (!stop.stop_requested()) {
     if (!next_ && transport_.runs()) {
       if (!options_.loop) break;
-      ++figures_.loops;
+      ++figures_.rounds;
       go_to(from_);
       continue;
     }
     if (burst_ > 0 && next_) {
       --burst_;
-      publish(*next_);
       transport_.seek(clock(), next_->log_time);
+      publish(*next_);
       fetch();
       continue;
     }
@@ -151,14 +176,17 @@ Expected<std::string> Player::obey(const std::string& order) {
   const std::scoped_lock lock(mutex_);
   const auto answer = [&]() -> Expected<std::string> {
     if (verb == "start" || verb == "resume") {
-      if (!transport_.runs()) transport_.run(clock());
+      options_.paused = false;
+      if (begun_ && !transport_.runs()) transport_.run(clock());
       return "playing";
     }
     if (verb == "pause") {
+      options_.paused = true;
       if (transport_.runs()) transport_.pause(clock());
       return "paused";
     }
     if (verb == "step" || (verb == "burst" && has_number && number >= 1)) {
+      options_.paused = true;
       if (transport_.runs()) transport_.pause(clock());
       burst_ = verb == "step" ? 1 : static_cast<std::uint64_t>(std::min(number, 1e12));
       return verb == "step" ? "stepped" : fmt::format("burst of {}", burst_);
@@ -175,18 +203,27 @@ Expected<std::string> Player::obey(const std::string& order) {
       options_.loop = rest == "on";
       return order;
     }
+    if (verb == "state") return state();
     return fail("unknown order '" + order + "'", "replayer",
-                "start, pause, resume, step, burst N, seek S, rate R, loop on|off or stop");
+                "start, pause, resume, step, burst N, seek S, rate R, loop on|off, state or stop");
   }();
   ++orders_;
   news_.notify_all();
   return answer;
 }
 
+std::string Player::state() const {
+  return fmt::format("{} at {:.3f} of {:.3f} s, rate {}, {} messages played",
+                     options_.paused ? "paused" : "playing",
+                     to_seconds(std::min(transport_.position(clock()), to_) - from_),
+                     to_seconds(to_ - from_), transport_.rate(), figures_.published);
+}
+
 Player::Figures Player::figures() {
   const std::scoped_lock lock(mutex_);
   Figures figures = figures_;
-  figures.runs = transport_.runs();
+  figures.runs = !options_.paused;
+  figures.loops = options_.loop;
   figures.rate = transport_.rate();
   figures.position = to_seconds(std::min(transport_.position(clock()), to_) - from_);
   figures.length = to_seconds(to_ - from_);

@@ -22,9 +22,14 @@ struct PlayerOptions {
   bool loop = false;
   double rate = 1;
   bool paused = false;  // at first
-  /// Time stamps, inside and beside the messages, are moved so that log time is now.
+  /// Time stamps, inside and beside the messages, are moved as log time is: each to when the tape
+  /// is there. So stamps that were equal stay equal, as long as it is not paused, sought or given
+  /// another rate in between.
   bool stamps_now = false;
   std::map<std::string, std::string> remap;  // topic: what it is called here
+  /// Pattern of topics: what their writers offer otherwise than recorded, as in a recording
+  /// («best_effort keep_last=1»); the last one that matches counts.
+  std::vector<std::pair<std::string, std::string>> qos;
 };
 
 /// Plays a tape to topics, each recorded writer by a writer of its own with its QoS.
@@ -35,17 +40,18 @@ class Player {
                                                   const types::Library& types,
                                                   PlayerOptions options);
 
-  /// Plays until the end of the range or until it is stopped; for a thread of its own.
-  void play(const std::stop_token& stop);
+  /// Plays from `start` on (at once when that is past) until the end of the range or until it is
+  /// stopped; for a thread of its own.
+  void play(const std::stop_token& stop, Time start);
 
-  /// start, resume, pause, step, burst N, seek S (from the start), rate R, loop on|off. Safe from
-  /// every thread.
+  /// start, resume, pause, step, burst N, seek S (from the start), rate R, loop on|off, state. Safe
+  /// from every thread.
   Expected<std::string> obey(const std::string& order);
 
   struct Figures {
-    bool runs = false, ended = false;
+    bool runs = false, loops = false, ended = false;
     double position = 0, length = 0, rate = 1;  // s, s
-    std::uint64_t published = 0, refused = 0, loops = 0;
+    std::uint64_t published = 0, refused = 0, rounds = 0;
     double late_p50_us = 0, late_p99_us = 0, late_max_us = 0;
   };
   Figures figures();
@@ -63,6 +69,8 @@ class Player {
   void go_to(Time position);
   void fetch();
   void publish(const Played& played);
+  Time moved(Time recorded, Time log_time) const;
+  std::string state() const;
 
   Tape tape_;
   const types::Library& types_;
@@ -73,6 +81,8 @@ class Player {
   std::mutex mutex_;  // guards what follows
   std::condition_variable_any news_;
   Transport transport_;
+  bool begun_ = false;
+  Duration to_system_{};  // from the clock of play() to that of the system
   std::optional<Played> next_;
   std::uint64_t burst_ = 0, orders_ = 0;
   Figures figures_;

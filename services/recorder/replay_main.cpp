@@ -24,7 +24,7 @@ namespace {
 
 struct Arguments {
   service::LabArguments lab;
-  std::vector<std::string> files, remap;
+  std::vector<std::string> files, remap, qos;
   TopicFilter topics;
   std::string rig, start_at, stamps = "kept", ease_in;
   double rate = 1, from = 0, to = 0, delay = 1, origin = 0;
@@ -42,6 +42,12 @@ struct Arguments {
     app.add_option("--remap", remap, "FROM=TO: play a topic under another name; repeatable")
         ->type_size(1)
         ->allow_extra_args(false);
+    app.add_option(
+           "--qos", qos,
+           "TOPIC=QOS: offer another QoS than recorded, as 'hand/*=best_effort keep_last=1'; "
+           "repeatable")
+        ->type_size(1)
+        ->allow_extra_args(false);
     app.add_option("--rig", rig, "the rig to play to, instead of lab.rig");
     app.add_option("--rate", rate, "times the original speed")->check(CLI::Range(1e-3, 1e3));
     app.add_option("--from", from, "s from the start of the recording")
@@ -51,6 +57,7 @@ struct Arguments {
     app.add_flag("--paused", paused, "wait for the order to start");
     app.add_option("--stamps", stamps,
                    "kept: as recorded; now: moved so that what was recorded happens now")
+        ->capture_default_str()
         ->check(CLI::IsMember({"kept", "now"}));
     app.add_option("--delay", delay, "s for readers to be found before it begins")
         ->check(CLI::Range(0.0, 3600.0));
@@ -86,7 +93,7 @@ Time system_now() {
 /// Moves a robot hand to where a recording's first command has it, then lets the player begin.
 class Easing {
  public:
-  /// Finds the first command for the hand; leaves the tape at its start.
+  /// Finds the next command for the hand on the tape.
   static Expected<Easing> create(Tape& tape, const std::string& hand) {
     while (auto played = tape.next()) {
       if (played->stream->topic.name != dds::robot_command.name ||
@@ -196,7 +203,7 @@ class Replay {
     if (key == 's') say("step");
     if (key == 'b') say("burst 10");
     if (key == 'q') say("stop");
-    if (key == 'l') say(std::exchange(loops_, !loops_) ? "loop off" : "loop on");
+    if (key == 'l') say(figures.loops ? "loop off" : "loop on");
     if (key == Keyboard::up) say(fmt::format("rate {}", figures.rate * 1.25));
     if (key == Keyboard::down) say(fmt::format("rate {}", figures.rate / 1.25));
     if (key == Keyboard::right) say(fmt::format("seek {}", figures.position + 5));
@@ -209,9 +216,8 @@ class Replay {
     if (!thread_.joinable()) {
       if (now < start_ - std::chrono::milliseconds(20)) return;
       // The last stretch is waited for more exactly than ticks come.
-      thread_ = std::jthread([this](const std::stop_token& stop) {
-        std::this_thread::sleep_until(start_);
-        player_.play(stop);
+      thread_ = std::jthread([this, start = start_](const std::stop_token& stop) {
+        player_.play(stop, start);
         shell_.stop();
       });
     }
@@ -246,25 +252,36 @@ class Replay {
   ProgressLine progress_;
   Keyboard keyboard_;
   OperatorLink operator_;
-  bool loops_ = false;
   std::uint64_t counted_ = 0;
   std::jthread thread_;
 };
 
+/// What stands before the first «=» and what behind it; nothing when one of them is missing.
+std::optional<std::pair<std::string, std::string>> split(const std::string& text) {
+  const std::size_t equals = text.find('=');
+  if (equals == std::string::npos || equals == 0 || equals + 1 == text.size()) return std::nullopt;
+  return std::pair(text.substr(0, equals), text.substr(equals + 1));
+}
+
 Expected<PlayerOptions> player_options(const Arguments& arguments, const Tape& tape) {
   PlayerOptions options;
-  if (arguments.from > 0) options.from = tape.start() + seconds(arguments.from);
-  if (arguments.to > 0) options.to = tape.start() + seconds(arguments.to);
+  if (arguments.from > 0) options.from = tape.recording_start() + seconds(arguments.from);
+  if (arguments.to > 0) options.to = tape.recording_start() + seconds(arguments.to);
   if (arguments.origin > 0) options.from = Time(seconds(arguments.origin));
   options.loop = arguments.loop;
   options.rate = arguments.rate;
   options.paused = arguments.paused;
   options.stamps_now = arguments.stamps == "now";
   for (const std::string& text : arguments.remap) {
-    const std::size_t equals = text.find('=');
-    if (equals == std::string::npos || equals == 0 || equals + 1 == text.size())
-      return fail("must be FROM=TO", "--remap " + text);
-    options.remap[text.substr(0, equals)] = text.substr(equals + 1);
+    const auto parts = split(text);
+    if (!parts) return fail("must be FROM=TO", "--remap " + text);
+    options.remap.insert(*parts);
+  }
+  for (const std::string& text : arguments.qos) {
+    const auto parts = split(text);
+    if (!parts) return fail("must be TOPIC=QOS", "--qos " + text);
+    if (const auto qos = recording::qos_of(parts->second); !qos) return tl::unexpected(qos.error());
+    options.qos.push_back(*parts);
   }
   return options;
 }
@@ -284,6 +301,7 @@ int replay(const Arguments& arguments) {
   if (!options) return service::complain(options.error(), service::exit_wrong_use);
   std::optional<Easing> easing;
   if (!arguments.ease_in.empty()) {
+    if (options->from) tape->seek(*options->from);
     auto made = Easing::create(*tape, arguments.ease_in);
     if (!made) return service::complain(made.error(), service::exit_broken);
     easing.emplace(std::move(*made));
@@ -306,7 +324,7 @@ int replay(const Arguments& arguments) {
                                 .rig = shell->config().text("lab.rig")});
   if (!participant) return service::complain(participant.error(), service::exit_broken);
   auto player = Player::create(std::move(*tape), *participant, *types, *options);
-  if (!player) return service::complain(player.error(), service::exit_broken);
+  if (!player) return service::complain(player.error(), service::exit_wrong_use);
 
   const Time start = start_at.value_or(system_now() + seconds(arguments.delay));
   Replay work(*shell, **player, std::move(easing), start, arguments);
@@ -318,7 +336,7 @@ int replay(const Arguments& arguments) {
   if (arguments.json)
     std::cout << nlohmann::ordered_json{{"published", figures.published},
                                         {"refused", figures.refused},
-                                        {"loops", figures.loops},
+                                        {"loops", figures.rounds},
                                         {"damage", (*player)->tape().damage().size()},
                                         {"late_us",
                                          {{"p50", figures.late_p50_us},
@@ -336,7 +354,7 @@ int run(const std::vector<std::string>& texts) {
       "s,\n"
       "up and down change the rate, l loops, q stops. By topic: operator/command, target "
       "replayer,\n"
-      "argument start, pause, resume, step, burst N, seek S, rate R, loop on|off or stop.",
+      "argument start, pause, resume, step, burst N, seek S, rate R, loop on|off, state or stop.",
       "prehend replay"};
   Arguments arguments;
   arguments.add_to(app);

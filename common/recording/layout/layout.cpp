@@ -44,8 +44,8 @@ std::string to_text(const dds::TopicQos& qos) {
   return text;
 }
 
-Expected<dds::TopicQos> qos_of(std::string_view text) {
-  dds::TopicQos qos{.name = {}, .writer_depth = 0};
+Expected<dds::TopicQos> qos_of(std::string_view text, const dds::TopicQos& otherwise) {
+  dds::TopicQos qos = otherwise;
   std::istringstream words{std::string(text)};
   for (std::string word; words >> word;) {
     const std::size_t equals = word.find('=');
@@ -69,8 +69,8 @@ Expected<dds::TopicQos> qos_of(std::string_view text) {
       qos.deadline = std::chrono::milliseconds(number);
     else if (name == "lifespan_ms")
       qos.lifespan = std::chrono::milliseconds(number);
-    else if (name == "exclusive")
-      qos.exclusive = true;
+    else if (name == "exclusive" || name == "shared")
+      qos.exclusive = name == "exclusive";
     else
       return fail("is not known", "qos " + word, "was it recorded by a later version?");
   }

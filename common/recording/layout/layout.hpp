@@ -36,7 +36,10 @@ Expected<Stream> to_stream(const mcap::Channel& channel, std::string_view schema
 
 /// «reliable transient_local keep_last=1 deadline_ms=100 lifespan_ms=200 exclusive»
 std::string to_text(const dds::TopicQos& qos);
-Expected<dds::TopicQos> qos_of(std::string_view text);
+/// What the text does not say is as in `otherwise`. «shared» undoes «exclusive», and a deadline or
+/// lifespan of 0 an other one.
+Expected<dds::TopicQos> qos_of(std::string_view text,
+                               const dds::TopicQos& otherwise = {.name = {}, .writer_depth = 0});
 
 std::string to_hex(const dds::Guid& guid);
 

@@ -3,19 +3,16 @@
 #include <algorithm>
 #include <cstring>
 
-namespace prehend::recorder {
+namespace prehend::types {
 namespace {
-
-using types::Kind;
-using types::Type;
 
 /// Walks through a message (XCDR1, little-endian) and notes where its stamps are.
 class Walk {
  public:
   explicit Walk(const std::vector<std::uint8_t>& message) : message_(message) {}
 
-  bool structure(const types::Structure& type) {
-    for (const types::Field& field : type.fields) {
+  bool structure(const Structure& type) {
+    for (const Field& field : type.fields) {
       std::uint32_t count = 1;
       if (field.type.many == Type::Many::array) count = field.type.count;
       if (field.type.many == Type::Many::sequence) count = length();
@@ -84,18 +81,18 @@ class Walk {
 
 }  // namespace
 
-bool shift_stamps(const types::Structure& type, Duration shift,
-                  std::vector<std::uint8_t>& message) {
+bool move_stamps(const Structure& type, const std::function<std::int64_t(std::int64_t)>& moved,
+                 std::vector<std::uint8_t>& message) {
   if (message.size() < 4 || message[1] != 1) return false;  // CDR_LE is all that our writers make
   Walk walk(message);
   if (!walk.structure(type)) return false;
   for (const std::size_t at : walk.stamps()) {
     std::int64_t stamp = 0;
     std::memcpy(&stamp, message.data() + at, 8);
-    if (stamp != 0) stamp += shift.count();
+    if (stamp != 0) stamp = moved(stamp);
     std::memcpy(message.data() + at, &stamp, 8);
   }
   return true;
 }
 
-}  // namespace prehend::recorder
+}  // namespace prehend::types

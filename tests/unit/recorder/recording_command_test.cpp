@@ -1,0 +1,366 @@
+// `prehend recording` as a user calls it: exit codes, JSON alone on standard output, first
+// differences that can be read, and the examples of services/recorder/README.md line by line.
+//
+// The recordings: detections of two objects (transient local, the last one of each stands),
+// commands for a hand (volatile), ten of each, every 100 ms; the second object is gone at 0.55 s.
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <cstdlib>
+#include <nlohmann/json.hpp>
+#include <prehend/recorder/describe.hpp>
+#include <prehend/recorder/recording_file.hpp>
+#include <prehend/recorder/tape.hpp>
+#include <sstream>
+
+#include "scratch.hpp"
+
+namespace prehend::recorder {
+namespace {
+
+using Json = nlohmann::json;
+using dds::RawSample;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+constexpr std::int64_t begin_ns = 1'700'000'000'000'000'000;
+
+struct Answer {
+  int code = -1;
+  std::string output, complaint;
+};
+
+struct Changes {
+  double weight = 0;             // added to the seventh command
+  bool without_seventh = false;  // it is missing
+  std::int64_t later_ns = 0;     // everything was received and sent later
+};
+
+class RecordingCommand : public ::testing::Test {
+ protected:
+  /// Runs shell text in the test's folder, with the programs of this build.
+  Answer run(const std::string& text) {
+    const auto out = scratch_ / "out", err = scratch_ / "err";
+    const std::string command = "cd " + (scratch_ / "").string() +
+                                " && PATH=" PREHEND_BIN ":$PATH && (" + text + "\n) >" +
+                                out.string() + " 2>" + err.string();
+    const int status = std::system(command.c_str());
+    const auto read = [](const std::filesystem::path& path) {
+      const auto bytes = testing::file_bytes(path);
+      return std::string(bytes.begin(), bytes.end());
+    };
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read(out), read(err)};
+  }
+
+  void make(const std::string& name, const Changes& changes = {}) {
+    const Heading heading{{{"lab.rig", "lab"}}, "a = 1\n", describe_types("ros2msg").value()};
+    auto file = RecordingFile::create(scratch_ / name, heading, mcap::Compression::zstd).value();
+    const Source detections{{"object/detection", "prehend::v1::ObjectDetection", true,
+                             *dds::find_topic("object/detection")},
+                            "lab"};
+    const Source commands{
+        {"robot/command", "prehend::v1::HandCommand", true, *dds::find_topic("robot/command")},
+        "lab"};
+    const auto write = [&](const Source& source, RawSample::Kind kind, std::uint8_t instance,
+                           std::uint64_t number, int ms, std::vector<std::uint8_t> payload) {
+      RawSample sample;
+      sample.kind = kind;
+      sample.payload = std::move(payload);
+      sample.instance[15] = instance;
+      sample.writer[0] = 7;
+      sample.sequence = number;
+      sample.sent = from_ns(begin_ns + ms * 1'000'000ll + changes.later_ns);
+      ASSERT_TRUE(file.write(source, sample, sample.sent));
+    };
+    for (int i = 0; i < 10; ++i) {
+      const std::uint64_t number = static_cast<std::uint64_t>(i) + 1;
+      const std::uint8_t track = static_cast<std::uint8_t>(1 + i % 2);
+      v1::ObjectDetection detection;
+      detection.track(track);
+      detection.name("Cup, \"large\"");
+      detection.stamp_ns(begin_ns + i * 100'000'000ll);
+      detection.sequence_number(number);
+      if (i < 6 || track == 1)
+        write(detections, RawSample::Kind::data, track, number, 100 * i,
+              dds::encode(dds::object_detection, detection));
+      if (i == 5) write(detections, RawSample::Kind::disposed, 2, number + 1, 550, {});
+      v1::HandCommand command;
+      command.hand("hand");
+      command.origin_ns(begin_ns + i * 100'000'000ll);
+      command.dof({0.1 * i, -1});
+      command.weight(0.5);
+      if (i == 6) command.weight(0.5 + changes.weight);
+      if (i == 6 && changes.without_seventh) continue;
+      write(commands, RawSample::Kind::data, 1, number, 100 * i + 20,
+            dds::encode(dds::robot_command, command));
+    }
+    ASSERT_TRUE(file.write_losses({{"robot/command", 3}}));
+    ASSERT_TRUE(file.close());
+  }
+  /// Cut off, as of a recorder that was killed.
+  void make_killed(const std::string& name) {
+    make(name);
+    auto bytes = testing::file_bytes(scratch_ / name);
+    bytes.resize(bytes.size() * 2 / 3);
+    testing::write_bytes(scratch_ / name, bytes);
+  }
+  std::vector<Played> content(const std::string& name) {
+    tapes_.push_back(
+        Tape::open({scratch_ / name}, [](const std::string&) { return true; }).value());
+    std::vector<Played> all;
+    while (auto one = tapes_.back().next()) all.push_back(std::move(*one));
+    return all;
+  }
+
+  const testing::Scratch scratch_;
+  std::vector<Tape> tapes_;
+};
+
+TEST_F(RecordingCommand, InfoTellsWhatIsThere) {
+  make("a.mcap");
+  const Answer answer = run("prehend recording info a.mcap --json");
+  ASSERT_EQ(answer.code, 0) << answer.complaint;
+  const Json document = Json::parse(answer.output);
+  EXPECT_NEAR(document["duration_s"], 0.92, 1e-9);
+  EXPECT_EQ(document["lost"], 3);
+  EXPECT_EQ(document["closed"], true);
+  ASSERT_EQ(document["topics"].size(), 2u);
+  EXPECT_EQ(document["topics"][0]["name"], "object/detection");
+  EXPECT_EQ(document["topics"][0]["type"], "prehend::v1::ObjectDetection");
+  EXPECT_EQ(document["topics"][0]["count"], 8);
+  EXPECT_EQ(document["topics"][0]["ends"], 1);
+  EXPECT_EQ(document["topics"][1]["count"], 10);
+  EXPECT_EQ(document["attachments"], Json({"scene.toml"}));
+  const Answer text = run("prehend recording info a.mcap");
+  EXPECT_THAT(text.output, HasSubstr("19 messages in 0.920 s, 3 lost"));
+  make_killed("b.mcap");
+  const Answer killed = run("prehend recording info b.mcap --json");
+  EXPECT_EQ(killed.code, 0);
+  EXPECT_EQ(Json::parse(killed.output)["closed"], false);
+  EXPECT_THAT(killed.complaint, HasSubstr("recover"));
+}
+
+// A part must say what is where, although it was said before the part began.
+TEST_F(RecordingCommand, CutBeginsWithWhatStands) {
+  make("a.mcap");
+  ASSERT_EQ(run("prehend recording cut a.mcap --from 0.45 --until 0.7 -o b.mcap").code, 0);
+  const auto told = [&](const std::string& name) {
+    std::vector<std::string> lines;
+    for (const Played& one : content(name))
+      lines.push_back(fmt::format("{} {} {}{}", one.stream->topic.name, one.sample.sequence,
+                                  (to_ns(one.log_time) - begin_ns) / 1'000'000,
+                                  one.sample.kind == RawSample::Kind::data ? "" : " gone"));
+    return lines;
+  };
+  // As in a recorder's parts: at the log time of the beginning.
+  EXPECT_THAT(told("b.mcap"), ElementsAre("object/detection 4 450", "object/detection 5 450",
+                                          "object/detection 6 500", "robot/command 6 520",
+                                          "object/detection 7 550 gone", "object/detection 7 600",
+                                          "robot/command 7 620"));
+  EXPECT_EQ(to_ns(content("b.mcap")[0].sample.sent), begin_ns + 300'000'000);
+  // Who is gone by then does not stand, and other topics only if they are wanted.
+  ASSERT_EQ(run("prehend recording cut a.mcap --from 0.75 --topic 'object/*' -o c.mcap").code, 0);
+  EXPECT_THAT(told("c.mcap"), ElementsAre("object/detection 7 750", "object/detection 9 800"));
+  ASSERT_EQ(run("prehend recording cut a.mcap --from 0.75 --topic 'robot/*' -o d.mcap").code, 0);
+  EXPECT_THAT(told("d.mcap"), ElementsAre("robot/command 9 820", "robot/command 10 920"));
+  for (const char* name : {"b.mcap", "c.mcap", "d.mcap"})
+    EXPECT_EQ(run(std::string("prehend recording verify ") + name).code, 0);
+}
+
+TEST_F(RecordingCommand, CutAndMergeTellTheirDamageAndNeverReplaceTheirSource) {
+  make("a.mcap");
+  make_killed("b.mcap");
+  const Answer merged = run("prehend recording merge b.mcap a.mcap -o all.mcap --json");
+  EXPECT_EQ(merged.code, 1);
+  const Json document = Json::parse(merged.output);
+  EXPECT_EQ(document["file"], "all.mcap");
+  EXPECT_FALSE(document["damage"].empty());
+  Time last{};
+  for (const Played& one : content("all.mcap")) {
+    EXPECT_GE(one.log_time, last);
+    last = one.log_time;
+  }
+  EXPECT_GT(content("all.mcap").size(), content("a.mcap").size());
+  EXPECT_EQ(run("prehend recording cut a.mcap --from 0.1 -o a.mcap").code, 3);
+  EXPECT_EQ(run("prehend recording verify a.mcap").code, 0);
+  EXPECT_EQ(run("prehend recording cut a.mcap --from x -o c.mcap").code, 2);
+  EXPECT_EQ(run("prehend recording merge missing.mcap -o c.mcap").code, 3);
+}
+
+TEST_F(RecordingCommand, VerifyAndRecover) {
+  make("a.mcap");
+  const Answer sound = run("prehend recording verify a.mcap --json");
+  EXPECT_EQ(sound.code, 0);
+  EXPECT_EQ(Json::parse(sound.output), (Json{{"sound", true}, {"findings", Json::array()}}));
+  auto bytes = testing::file_bytes(scratch_ / "a.mcap");
+  bytes[bytes.size() / 2] ^= 16;
+  testing::write_bytes(scratch_ / "b.mcap", bytes);
+  const Answer damaged = run("prehend recording verify b.mcap --json");
+  EXPECT_EQ(damaged.code, 1);
+  EXPECT_THAT(Json::parse(damaged.output)["findings"][0]["where"].get<std::string>(),
+              HasSubstr("b.mcap at byte"));
+  make_killed("c.mcap");
+  EXPECT_EQ(run("prehend recording verify c.mcap").code, 1);
+  ASSERT_EQ(run("prehend recording recover c.mcap -o d.mcap").code, 0);
+  EXPECT_EQ(run("prehend recording verify d.mcap").code, 0);
+  EXPECT_EQ(content("d.mcap").size(), content("c.mcap").size());
+}
+
+TEST_F(RecordingCommand, ForeignEmptyAndFutureFilesAreRefusedWithAReason) {
+  make("a.mcap");
+  auto future = testing::file_bytes(scratch_ / "a.mcap");
+  future[5] = '1';  // the version in the first bytes
+  testing::write_bytes(scratch_ / "future.mcap", future);
+  testing::write_bytes(scratch_ / "foreign.mcap", std::string("\x89PNG\r\n and so on, for long"));
+  testing::write_bytes(scratch_ / "empty.mcap", std::string());
+  std::filesystem::create_directory(scratch_ / "folder.mcap");
+  for (const char* command : {"info", "verify", "export", "cut -o x.mcap", "merge -o x.mcap",
+                              "recover -o x.mcap", "diff a.mcap", "records"})
+    for (const auto& [file, reason] :
+         {std::pair("future.mcap", "another major version"),
+          std::pair("foreign.mcap", "not an MCAP"), std::pair("empty.mcap", "too short"),
+          std::pair("folder.mcap", ""), std::pair("missing.mcap", "")}) {
+      const Answer answer = run(fmt::format("prehend recording {} {}", command, file));
+      EXPECT_TRUE(answer.code == 1 || answer.code == 3) << command << file << answer.code;
+      EXPECT_THAT(answer.complaint, HasSubstr(file)) << command;
+      if (std::string(command) != "records") {
+        EXPECT_THAT(answer.complaint, HasSubstr(reason)) << command;
+        EXPECT_EQ(answer.output, "") << command;
+      }
+      EXPECT_FALSE(std::filesystem::exists(scratch_ / "x.mcap")) << command << file;
+    }
+}
+
+TEST_F(RecordingCommand, ExportsTablesAndLines) {
+  make("a.mcap");
+  const Answer table = run("prehend recording export a.mcap --topic robot/command");
+  ASSERT_EQ(table.code, 0) << table.complaint;
+  std::istringstream lines(table.output);
+  std::string heading, first, line;
+  std::getline(lines, heading);
+  std::getline(lines, first);
+  EXPECT_THAT(heading, HasSubstr("log_time_ns,publish_time_ns,sequence,hand,sequence_number,"));
+  EXPECT_THAT(heading, HasSubstr("X_WB.position.x,X_WB.position.y,"));
+  EXPECT_THAT(first, HasSubstr("1700000000020000000,1700000000020000000,1,hand,"));
+  EXPECT_THAT(first, HasSubstr(",\"[0.0,-1.0]\","));
+  EXPECT_EQ(std::count(table.output.begin(), table.output.end(), '\n'), 11);
+
+  const Answer json = run("prehend recording export a.mcap --format jsonl --topic 'object/*'");
+  ASSERT_EQ(json.code, 0);
+  std::istringstream documents(json.output);
+  int count = 0;
+  for (; std::getline(documents, line); ++count) {
+    const Json document = Json::parse(line);
+    EXPECT_EQ(document["topic"], "object/detection");
+    EXPECT_EQ(document["message"]["name"], "Cup, \"large\"");
+    EXPECT_EQ(document["message"]["track"], 1 + (document["sequence"].get<int>() - 1) % 2);
+  }
+  EXPECT_EQ(count, 8);
+
+  EXPECT_EQ(run("prehend recording export a.mcap").code, 2);  // two topics, one table
+  EXPECT_EQ(run("prehend recording export a.mcap --topic nobody").code, 1);
+  ASSERT_EQ(run("prehend recording export a.mcap -o tables").code, 0);
+  EXPECT_EQ(run("cat tables/robot-command.csv").output, table.output);
+  // Quoted as CSV wants it.
+  EXPECT_THAT(run("cat tables/object-detection.csv").output, HasSubstr("\"Cup, \"\"large\"\"\""));
+}
+
+TEST_F(RecordingCommand, DiffNamesTheFirstDifferences) {
+  make("a.mcap");
+  make("same.mcap");
+  make("other.mcap", {.weight = 0.25});
+  const Answer same = run("prehend recording diff a.mcap same.mcap --json");
+  EXPECT_EQ(same.code, 0) << same.output;
+  EXPECT_EQ(Json::parse(same.output)["verdict"], "same");
+  const Answer text = run("prehend recording diff a.mcap other.mcap");
+  EXPECT_EQ(text.code, 1);
+  EXPECT_THAT(text.output, HasSubstr("robot/command                  10 compared, 1 different\n"
+                                     "    origin 1700000000.600000 s, hand \"hand\": weight: "
+                                     "expected 0.5, got 0.75 (tolerance 1e-06)\n"));
+  const Json document = Json::parse(run("prehend recording diff a.mcap other.mcap --json").output);
+  EXPECT_EQ(document["verdict"], "different");
+  EXPECT_EQ(document["topics"][0]["different"], 0);
+  EXPECT_EQ(document["topics"][1]["different"], 1);
+  EXPECT_THAT(document["topics"][1]["first_difference"].get<std::string>(), HasSubstr("weight"));
+  EXPECT_EQ(run("prehend recording diff a.mcap other.mcap --topic 'object/*'").code, 0);
+}
+
+TEST_F(RecordingCommand, DiffTakesAnotherTable) {
+  make("a.mcap");
+  make("other.mcap", {.weight = 0.25});
+  testing::write_bytes(scratch_ / "wide.toml", std::string("[HandCommand]\nweight = 0.3\n"));
+  testing::write_bytes(scratch_ / "wrong.toml", std::string("[HandCommand]\nweight = -1\n"));
+  const std::string diff = "prehend recording diff a.mcap other.mcap --tolerances ";
+  EXPECT_EQ(run(diff + "wide.toml").code, 0);
+  EXPECT_THAT(run(diff + "wrong.toml").complaint, HasSubstr("wrong.toml"));
+  EXPECT_EQ(run(diff + "wrong.toml").code, 3);
+}
+
+// Another day, and one sample was lost: only that one is missing, whatever the times of arrival.
+TEST_F(RecordingCommand, DiffAlignsByOrigin) {
+  make("a.mcap");
+  make("other.mcap", {.without_seventh = true, .later_ns = 12'345'678'901});
+  const Answer answer = run("prehend recording diff a.mcap other.mcap");
+  EXPECT_EQ(answer.code, 1);
+  EXPECT_THAT(answer.output,
+              HasSubstr("9 compared, 1 different, 1 missing\n    origin 1700000000.600000 s"));
+  EXPECT_THAT(answer.output, HasSubstr("9 compared, 0 different"));
+  EXPECT_THAT(run("prehend recording diff other.mcap a.mcap").output,
+              HasSubstr("1 more than expected"));
+}
+
+TEST_F(RecordingCommand, RecordsAreWrittenBackByteForByte) {
+  make("a.mcap");
+  ASSERT_EQ(run("prehend recording records a.mcap > a.json").code, 0);
+  // The specification's reference writer compresses nothing: so the second round is the same bytes.
+  ASSERT_EQ(run("prehend recording write a.json -o b.mcap").code, 0);
+  ASSERT_EQ(run("prehend recording records b.mcap > b.json").code, 0);
+  ASSERT_EQ(run("prehend recording write - -o c.mcap < b.json").code, 0);
+  EXPECT_EQ(testing::file_bytes(scratch_ / "b.mcap"), testing::file_bytes(scratch_ / "c.mcap"));
+  EXPECT_EQ(run("prehend recording diff a.mcap b.mcap").code, 0);
+  EXPECT_EQ(run("echo '{}' | prehend recording write -o d.mcap").code, 1);
+  // The file is closed on its first record that is wrong: deep documents used to end the program.
+  const std::string deep(100'000, '['), shut(100'000, ']');
+  testing::write_bytes(scratch_ / "deep.json",
+                       std::string("{\"records\": [{\"type\": \"Header\", \"fields\": "
+                                   "[[\"library\", \"\"], [\"profile\", \"\"]]}, {\"type\": "
+                                   "\"Message\", \"fields\": [[\"channel_id\", ") +
+                           deep + shut + "]]}]}");
+  const Answer answer = run("prehend recording write deep.json -o d.mcap");
+  EXPECT_EQ(answer.code, 1);
+  EXPECT_THAT(answer.complaint, HasSubstr("too many lists inside each other"));
+}
+
+TEST_F(RecordingCommand, TheExamplesOfTheReadmeRun) {
+  make("demo.mcap");
+  make("other.mcap");
+  make_killed("killed.mcap");
+  const auto page = testing::file_bytes(PREHEND_SOURCE "/services/recorder/README.md");
+  const std::string text(page.begin(), page.end());
+  const std::string fence = "```sh\n";
+  const std::size_t begin = text.find(fence, text.find("## Recordings as files")) + fence.size();
+  std::string example = text.substr(begin, text.find("```", begin) - begin);
+  for (std::size_t at; (at = example.find("hand/")) != std::string::npos;)
+    example.replace(at, 5, "robot/");  // what is in these recordings
+  for (std::size_t at; (at = example.find("robot/posture")) != std::string::npos;)
+    example.replace(at, 13, "robot/command");
+  const Answer answer = run("set -e\n" + example);
+  EXPECT_EQ(answer.code, 0) << answer.output << answer.complaint;
+  EXPECT_THAT(answer.output, HasSubstr("whole.mcap"));
+  for (const char* name : {"posture.csv", "tables/robot-command.jsonl", "same.mcap"})
+    EXPECT_TRUE(std::filesystem::exists(scratch_ / name)) << name;
+}
+
+TEST_F(RecordingCommand, EverySubcommandHasHelp) {
+  for (const char* command :
+       {"info", "cut", "merge", "verify", "recover", "export", "diff", "records", "write"}) {
+    EXPECT_EQ(run(fmt::format("prehend recording {} --help", command)).code, 0) << command;
+    EXPECT_EQ(run(fmt::format("prehend recording {} --colour red", command)).code, 2) << command;
+  }
+  EXPECT_EQ(run("prehend recording").code, 2);
+}
+
+}  // namespace
+}  // namespace prehend::recorder
