@@ -49,8 +49,8 @@ void attempt(const Fuzzer& fuzzer, Shared& shared, std::string input) {
   alarm(0);
 }
 
-void search(const Fuzzer& fuzzer, Shared& shared, Clock::time_point end) {
-  for (; Clock::now() < end; ++shared.number) {
+void search(const Fuzzer& fuzzer, Shared& shared, Clock::time_point end, std::uint64_t least) {
+  for (; Clock::now() < end || shared.tried < least; ++shared.number) {
     alarm(longest_try);
     Random random(shared.number);
     const std::string& seed = fuzzer.seeds[random.index(fuzzer.seeds.size())];
@@ -126,7 +126,8 @@ int run(const Fuzzer& fuzzer, int argc, char** argv) {
       require(shared.accepted == shared.tried, "a good input is refused");
     }
     shared.tried = shared.accepted = 0;
-    search(fuzzer, shared, Clock::now() + std::chrono::seconds(seconds));
+    search(fuzzer, shared, Clock::now() + std::chrono::seconds(seconds),
+           std::getenv("PREHEND_LONG") ? fuzzer.least_long : 0);
     require(shared.accepted > 0, "no mutated input was accepted");
     require(shared.accepted < shared.tried, "no mutated input was refused");
   });

@@ -14,6 +14,8 @@ struct Fuzzer {
   std::function<std::string(Random&, std::string)> mutate;
   /// Reads the input and throws std::logic_error when what came out must not be. True: accepted.
   std::function<bool(const std::string&)> target;
+  /// So many inputs are tried in the long round, however long that takes.
+  std::uint64_t least_long = 0;
 };
 
 /// main() of a fuzzer: try k is made from Random(k), so that every run tries the same inputs, for

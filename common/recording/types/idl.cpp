@@ -76,6 +76,8 @@ class Tokens {
   Token token_;
 };
 
+constexpr int most_modules = 32;  // inside each other: a text must not decide how deep we recurse
+
 class Parser {
  public:
   Parser(std::string_view text, std::string origin, std::shared_ptr<const std::string> source,
@@ -165,6 +167,7 @@ class Parser {
     const auto called = name();
     if (!called) return tl::unexpected(called.error());
     if (auto done = expect("{"); !done) return done;
+    if (++depth_ > most_modules) return error("too many modules inside each other");
     const std::string outside = scope_;
     scope_ += *called + "::";
     while (!tokens_.take_if("}")) {
@@ -172,6 +175,7 @@ class Parser {
       if (auto done = definition(); !done) return done;
     }
     scope_ = outside;
+    --depth_;
     return {};
   }
 
@@ -179,7 +183,7 @@ class Parser {
     const auto called = name();
     if (!called) return tl::unexpected(called.error());
     if (auto done = expect("{"); !done) return done;
-    Structure result{scoped(*called), {}, source_};
+    Structure result{.name = scoped(*called), .source = source_};
     while (!tokens_.take_if("}")) {
       const auto notes = annotations();
       if (!notes) return tl::unexpected(notes.error());
@@ -278,6 +282,7 @@ class Parser {
 
   Expected<Type> sequence() {
     if (auto done = expect("<"); !done) return tl::unexpected(done.error());
+    if (tokens_.peek().text == "sequence") return error("a sequence of collections");
     auto element = type();
     if (!element) return element;
     if (element->many != Type::Many::one) return error("a sequence of collections");
@@ -339,6 +344,7 @@ class Parser {
   std::shared_ptr<const std::string> source_;
   Library& library_;
   std::string scope_;
+  int depth_ = 0;
   std::map<std::string, std::uint32_t> constants_;
   std::map<std::string, Type> aliases_;
 };

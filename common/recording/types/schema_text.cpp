@@ -150,12 +150,15 @@ class Ros2Parser {
     if (part == parts_.end()) return fail("type " + wanted + " is not in its schema");
     if (const Structure* known = library_.find(part->first)) return known;
     if (!open_.insert(part->first).second) return fail("type " + wanted + " contains itself");
-    Structure result{part->first, {}, nullptr};
+    if (++depth_ > Library::most_depth)
+      return fail("the type " + wanted + " lies too deep inside others");
+    Structure result{.name = part->first};
     for (const std::string& line : part->second) {
       auto field = this->field(line, wanted);
       if (!field) return fail(field.error().what, "field «" + line + "» of " + wanted);
       if (*field) result.fields.push_back(std::move(**field));
     }
+    --depth_;
     return library_.add(std::move(result));
   }
 
@@ -194,6 +197,7 @@ class Ros2Parser {
           inner.empty() || inner.starts_with("<=") ? Type::Many::sequence : Type::Many::array;
       if (inner.starts_with("<=")) inner.erase(0, 2);
       if (!inner.empty() && !read(inner, type.count)) return fail("an impossible size");
+      if (type.many == Type::Many::array && type.count == 0) return fail("an impossible size");
       type_name.erase(open);
     }
     if (const std::size_t bound = type_name.find("<="); bound != std::string::npos) {
@@ -233,6 +237,7 @@ class Ros2Parser {
   Library& library_;
   Parts parts_;
   std::set<std::string> open_;
+  int depth_ = 0;
 };
 
 }  // namespace

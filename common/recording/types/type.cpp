@@ -29,6 +29,11 @@ Expected<const Structure*> Library::add(Structure structure) {
   const std::string name = structure.name;
   if (structures_.contains(name) || enumerations_.contains(name))
     return fail("the type " + name + " is defined twice");
+  for (const Field& field : structure.fields)
+    if (field.type.structure)
+      structure.depth = std::max(structure.depth, field.type.structure->depth + 1);
+  if (structure.depth > most_depth)
+    return fail("the type " + name + " has too many structures inside each other");
   return (structures_[name] = std::make_unique<Structure>(std::move(structure))).get();
 }
 

@@ -61,6 +61,8 @@ struct Field {
 struct Structure {
   std::string name;  // scoped
   std::vector<Field> fields;
+  /// Structures inside each other, with this one; set by Library::add().
+  int depth = 1;
   /// The IDL that it was read from, one self-contained text with its comments; empty when it was
   /// not IDL.
   std::shared_ptr<const std::string> source;
@@ -72,6 +74,9 @@ struct Structure {
 /// there before, so there are no cycles.
 class Library {
  public:
+  /// Structures inside each other, at most: whoever walks through a type may recurse.
+  static constexpr int most_depth = 64;
+
   /// Nothing when it is not there.
   const Structure* find(std::string_view name) const;
   const Enumeration* find_enumeration(std::string_view name) const;
@@ -79,7 +84,7 @@ class Library {
     return structures_;
   }
 
-  /// Fails when the name is taken.
+  /// Fails when the name is taken or the type is too deep.
   Expected<const Structure*> add(Structure structure);
   Expected<const Enumeration*> add(Enumeration enumeration);
 

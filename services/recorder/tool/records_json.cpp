@@ -19,6 +19,9 @@ namespace {
 using namespace mcap;
 using Json = nlohmann::ordered_json;
 
+// Of a document; ours have 6. Json copies and prints itself as deep on the stack as it is.
+constexpr int most_depth = 16;
+
 Json value(std::uint64_t number) {
   return std::to_string(number);
 }
@@ -357,7 +360,13 @@ Expected<void> print_records(const std::filesystem::path& path, std::ostream& ou
 }
 
 Expected<void> write_records(std::string_view text, const std::filesystem::path& file) {
-  const Json document = Json::parse(text, nullptr, false);
+  bool too_deep = false;
+  const auto shallow = [&](int depth, Json::parse_event_t, Json&) {
+    too_deep = too_deep || depth > most_depth;
+    return !too_deep;
+  };
+  const Json document = Json::parse(text, shallow, false);
+  if (too_deep) return fail("too many lists inside each other");
   if (document.is_discarded()) return fail("no JSON");
   const auto records = document.find("records");
   if (!document.is_object() || records == document.end() || !records->is_array())

@@ -171,6 +171,36 @@ TEST(Idl, SaysWhatIsWrongAndInWhichLine) {
   EXPECT_THAT(refused("@"), HasSubstr("name"));
 }
 
+// Fuzzing found that depth of a text became depth of the stack.
+TEST(Idl, RefusesNestingWithoutEnd) {
+  const auto refused = [](const std::string& text) {
+    Library library;
+    const auto parsed = parse_idl(text, "a.idl", library);
+    return parsed ? std::string("parsed") : parsed.error().message();
+  };
+  std::string modules, sequences = "struct A { ", structures = "struct A0 { octet x; };\n";
+  for (int i = 0; i < 100'000; ++i) modules += "module a { ", sequences += "sequence<";
+  for (int i = 1; i < 20'000; ++i)
+    structures += "struct A" + std::to_string(i) + " { A" + std::to_string(i - 1) + " x; };\n";
+  EXPECT_THAT(refused(modules), HasSubstr("modules"));
+  EXPECT_THAT(refused(sequences), HasSubstr("collections"));
+  EXPECT_THAT(refused(structures), HasSubstr("A64 has too many structures"));
+}
+
+TEST(Ros2Msg, RefusesNestingWithoutEnd) {
+  std::string text = "a/A0 x\n";
+  for (int i = 0; i < 5'000; ++i)
+    text += "===\nMSG: a/A" + std::to_string(i) + "\na/A" + std::to_string(i + 1) + " x\n";
+  Library library;
+  EXPECT_FALSE(parse_ros2msg("a/msg/A", text, library));
+}
+
+// Arrays of nothing take no bytes: with them a short message could hold any number of structures.
+TEST(Ros2Msg, RefusesArraysOfNothing) {
+  Library library;
+  EXPECT_FALSE(parse_ros2msg("a/msg/A", "uint8[0] x\n", library));
+}
+
 TEST(Idl, ReadsWhatTheContractDoesNotUse) {
   Library library;
   ASSERT_TRUE(parse_idl(R"(

@@ -1,0 +1,56 @@
+#include "type_texts.hpp"
+
+#include <nlohmann/json.hpp>
+#include <prehend/types/idl.hpp>
+#include <prehend/types/value.hpp>
+
+#include "fuzz.hpp"
+#include "mutation.hpp"
+
+namespace prehend::fuzz {
+
+types::Library contract() {
+  return types::load_idl(std::string(PREHEND_SOURCE) + "/idl").value();
+}
+
+std::string mutate_type_text(Random& random, std::string text,
+                             const std::vector<std::string>& pieces) {
+  for (std::size_t i = 0, changes = 1 + random.index(3); i < changes; ++i)
+    switch (random.index(8)) {
+      case 0:
+        text = mutate_bytes(random, std::move(text));
+        break;
+      case 1:
+      case 2:
+        text = mutate_number(random, std::move(text));
+        break;
+      case 3: {
+        const std::string& piece = pieces[random.index(pieces.size())];
+        const std::size_t at = random.index(text.size() + 1);
+        const std::size_t times = random.index(10) == 0 ? 50'000 : 1 + random.index(3);
+        std::string many;
+        for (std::size_t k = 0; k < times; ++k) many += piece;
+        text.insert(at, many);
+        break;
+      }
+      default:
+        text = mutate_lines(random, std::move(text));
+    }
+  return text;
+}
+
+void decode_some(const types::Structure& type) {
+  for (const std::size_t length : {4, 5, 40, 2000})
+    for (const std::uint8_t byte : {0, 1}) {
+      std::vector<std::uint8_t> message(length, byte);
+      message[0] = 0;
+      const auto value = types::decode(type, message);
+      require(value || !value.error().what.empty(), "refused without a reason");
+      if (!value) continue;
+      for (const types::Field& field : type.fields)
+        require(value->find(field.name), "a field is missing");
+      (void)types::to_json(*value);
+    }
+}
+
+}  // namespace prehend::fuzz
