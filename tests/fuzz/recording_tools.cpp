@@ -123,8 +123,12 @@ bool use(const std::string& path, const recording::ToleranceTable& tolerances) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  // In memory where that can be had: each try writes three files.
+  const bool memory = ::access("/dev/shm", W_OK) == 0;
   const std::string path =
-      (std::filesystem::temp_directory_path() / ("fuzz-" + std::to_string(::getpid()))).string();
+      ((memory ? std::filesystem::path("/dev/shm") : std::filesystem::temp_directory_path()) /
+       ("fuzz-" + std::to_string(::getpid())))
+          .string();
   const types::Library contract = fuzz::contract();
   const auto tolerances =
       recording::ToleranceTable::load(PREHEND_SOURCE "/common/recording/compare/tolerances.toml")
