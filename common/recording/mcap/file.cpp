@@ -57,6 +57,11 @@ std::string File::at(std::uint64_t offset) const {
   return name_ + " at byte " + std::to_string(offset);
 }
 
+void File::expect(std::uint64_t offset, std::uint64_t count) const {
+  ::posix_fadvise(descriptor_, static_cast<off_t>(offset), static_cast<off_t>(count),
+                  POSIX_FADV_WILLNEED);
+}
+
 Expected<Bytes> File::read(std::uint64_t offset, std::uint64_t count) const {
   if (offset > size_ || count > size_ - offset)
     return fail("the file ends before the " + std::to_string(count) + " bytes that belong here",

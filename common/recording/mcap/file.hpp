@@ -27,6 +27,8 @@ class File {
   /// «file at byte N», for messages.
   std::string at(std::uint64_t offset) const;
 
+  /// Tells the system what will be read soon, so that it fetches many places at once.
+  void expect(std::uint64_t offset, std::uint64_t count) const;
   /// Exactly these bytes; fails when they are not all there.
   Expected<Bytes> read(std::uint64_t offset, std::uint64_t count) const;
   /// Behind what was written so far. On failure (a full disk) the file is cut back to where it was.

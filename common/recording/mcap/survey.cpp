@@ -144,6 +144,8 @@ Expected<void> Survey::check_regions() {
       return wrong;
     });
   };
+  for (const ChunkIndex& chunk : contents_.chunks)
+    file_.expect(chunk.chunk_start_offset, record_head);
   const auto of_chunk = [](const ChunkIndex& chunk) {
     return std::pair(chunk.chunk_start_offset, chunk.chunk_length);
   };
