@@ -110,7 +110,10 @@ Expected<Participant> Participant::create(const ParticipantOptions& options) {
   qos.transport().use_builtin_transports = false;
   auto udp = std::make_shared<eprosima::fastdds::rtps::UDPv4TransportDescriptor>();
   udp->sendBufferSize = 1 << 21;
-  udp->receiveBufferSize = 1 << 21;
+  // Who listens to the whole domain is a recorder: pictures that come while it has no processor
+  // wait in the socket (as far as net.core.rmem_max allows), for on best effort topics nothing else
+  // holds them.
+  udp->receiveBufferSize = options.listener ? 1 << 24 : 1 << 21;
   qos.transport().user_transports.push_back(udp);
   // A participant that is just starting may miss our answer to its greeting and then knows us only
   // by our next announcement; with the default of 3 s its first samples are lost.
@@ -161,16 +164,15 @@ Expected<fdds::DataWriter*> Participant::make_writer(const TopicQos& topic, fdds
 }
 
 Expected<fdds::DataReader*> Participant::make_reader(const TopicQos& topic, fdds::TypeSupport type,
-                                                     fdds::DataReaderListener* listener, bool raw) {
+                                                     fdds::DataReaderListener* listener, bool raw,
+                                                     bool ask_for_keys) {
   const auto handle = state_->topic(topic.name, type);
   if (!handle) return tl::unexpected(handle.error());
   fdds::DataReaderQos qos = state_->subscriber->get_default_datareader_qos();
   apply(qos, topic, topic.reader_depth, state_->options.lockstep);
   fdds::StatusMask mask = fdds::StatusMask::data_available();
-  if (raw) {
-    mask << fdds::StatusMask::subscription_matched();
-    qos.expects_inline_qos(true);  // without it instances have no key and merge
-  }
+  if (raw) mask << fdds::StatusMask::subscription_matched();
+  if (ask_for_keys) qos.expects_inline_qos(true);
   fdds::DataReader* reader = state_->subscriber->create_datareader(*handle, qos, listener, mask);
   if (!reader) return fail("reader cannot be created", std::string(topic.name));
   return reader;

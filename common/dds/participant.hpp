@@ -133,11 +133,12 @@ class Participant {
   static Expected<TopicQos> table_entry(std::string_view topic);
   Expected<eprosima::fastdds::dds::DataWriter*> make_writer(
       const TopicQos& topic, eprosima::fastdds::dds::TypeSupport type, bool raw = false);
-  /// raw: the reader asks for keys beside the samples and is told also of matches; the writer
-  /// unregisters an instance without disposing it.
+  /// raw: the reader is told also of matches; the writer unregisters an instance without disposing
+  /// it. ask_for_keys: writers shall send them beside the samples.
   Expected<eprosima::fastdds::dds::DataReader*> make_reader(
       const TopicQos& topic, eprosima::fastdds::dds::TypeSupport type,
-      eprosima::fastdds::dds::DataReaderListener* listener, bool raw = false);
+      eprosima::fastdds::dds::DataReaderListener* listener, bool raw = false,
+      bool ask_for_keys = false);
   eprosima::fastdds::dds::Subscriber* subscriber();
   std::unique_ptr<State> state_;
 };

@@ -56,7 +56,7 @@ class RawType : public fdds::TopicDataType {
   bool getKey(void* data, rtps::InstanceHandle_t* handle, bool) override {
     if (!m_isGetKeyDefined) return false;
     const auto& sample = *static_cast<const RawSample*>(data);
-    const auto found = key_ && !sample.payload.empty() ? key_(sample.payload) : std::nullopt;
+    const auto found = key_ && !sample.payload.empty() ? key_(sample.payload, false) : std::nullopt;
     const Guid& key = found ? *found : sample.instance;
     std::copy(key.begin(), key.end(), static_cast<rtps::octet*>(handle->value));
     return true;
@@ -99,7 +99,7 @@ void Discovery::on_publisher_discovery(fdds::DomainParticipant*,
 
 class RawReader::Listener : public fdds::DataReaderListener {
  public:
-  explicit Listener(Take take) : take_(std::move(take)) {}
+  Listener(Take take, KeyOf key) : take_(std::move(take)), key_(std::move(key)) {}
 
   void on_subscription_matched(fdds::DataReader*,
                                const fdds::SubscriptionMatchedStatus& status) override {
@@ -127,6 +127,8 @@ class RawReader::Listener : public fdds::DataReaderListener {
     }
     samples.pop_back();
     infos.pop_back();
+    if (key_)
+      for (std::size_t i = 0; i < samples.size(); ++i) find_key(samples[i], infos[i].valid_data);
     for (std::size_t i = 0; i < samples.size(); ++i) {
       samples[i].kind = kind_of(samples, infos, i);
       count(samples[i]);
@@ -164,6 +166,17 @@ class RawReader::Listener : public fdds::DataReaderListener {
     return Kind::unregistered;
   }
 
+  /// With the end of an instance a writer may send its key fields instead of their hash. Fast DDS
+  /// hands them on as if they were the hash, when they are short enough.
+  void find_key(RawSample& sample, bool data) {
+    if (data) {
+      instances_.insert(sample.instance);
+    } else if (!instances_.contains(sample.instance)) {
+      const auto key = key_(sample.instance, true);
+      if (key && instances_.contains(*key)) sample.instance = *key;
+    }
+  }
+
   void count(const RawSample& sample) {
     ++received;
     Seen& seen = writers_[sample.writer];
@@ -175,6 +188,8 @@ class RawReader::Listener : public fdds::DataReaderListener {
   }
 
   Take take_;
+  KeyOf key_;
+  std::set<Guid> instances_;  // that have been seen, where we find the keys
   std::mutex mutex_;
   std::map<Guid, Seen> writers_;
   std::set<std::pair<Guid, Guid>> disposed_;  // instance and writer, until its next change
@@ -192,14 +207,15 @@ RawReader::~RawReader() {
 Expected<std::unique_ptr<RawReader>> RawReader::create(Participant& participant,
                                                        const RawTopic& topic, Take take,
                                                        KeyOf key) {
-  auto listener = std::make_unique<Listener>(std::move(take));
+  auto listener = std::make_unique<Listener>(std::move(take), key);
   TopicQos qos = topic.qos;
   qos.name = topic.name;
   qos.reader_depth = 0;
   qos.deadline = {};  // nobody waits here
+  const bool ask_for_keys = topic.keyed && !key;
   auto made = participant.make_reader(
       qos, fdds::TypeSupport(new RawType(topic.type, topic.keyed, std::move(key))), listener.get(),
-      true);
+      true, ask_for_keys);
   if (!made) return tl::unexpected(made.error());
   return std::unique_ptr<RawReader>(
       new RawReader(std::move(listener), participant.subscriber(), *made));

@@ -38,8 +38,10 @@ struct RawSample {
   Time sent, received;                // clocks of the writer and of this machine
 };
 
-/// The instance that a payload belongs to, from its key fields; nothing when it cannot be told.
-using KeyOf = std::function<std::optional<Guid>(std::span<const std::uint8_t> payload)>;
+/// The instance that a message belongs to, from its key fields or, with key_only, from a payload
+/// that is nothing but those; nothing when it cannot be told.
+using KeyOf =
+    std::function<std::optional<Guid>(std::span<const std::uint8_t> payload, bool key_only)>;
 
 /// The message in a sample; false when it does not fit the topic's type.
 template <class P>
@@ -86,8 +88,8 @@ class RawReader {
  public:
   /// Called for every change in the thread that received it, one call at a time.
   using Take = std::function<void(RawSample&&)>;
-  /// `key`: for writers that send no keys beside their samples. Without it their instances are one,
-  /// whose key is zero.
+  /// Without `key`, writers are asked to send keys beside their samples. Fast DDS does; Cyclone DDS
+  /// does not send to readers that ask so.
   static Expected<std::unique_ptr<RawReader>> create(Participant& participant,
                                                      const RawTopic& topic, Take take,
                                                      KeyOf key = {});

@@ -34,8 +34,8 @@ Expected<std::function<dds::KeyOf(const std::string&)>> keys_of_types() {
   return [hashes](const std::string& type) -> dds::KeyOf {
     const auto found = hashes.find(type);
     if (found == hashes.end()) return {};
-    return [hash = found->second](std::span<const std::uint8_t> payload) {
-      return hash.of_message(payload);
+    return [hash = found->second](std::span<const std::uint8_t> payload, bool key_only) {
+      return key_only ? hash.of_key(payload) : hash.of_message(payload);
     };
   };
 }
