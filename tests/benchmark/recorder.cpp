@@ -103,7 +103,7 @@ std::vector<v1::HandPosture> postures() {
       tip.p_HF().y(value(0.05));
       tip.p_HF().z(value(0.02));
     }
-    for (int joint = 0; joint < 22; ++joint) posture.joint_angles().push_back(value(0.5));
+    for (int joint = 0; joint < 25; ++joint) posture.joint_angles().push_back(value(0.5));
   }
   return all;
 }
@@ -163,6 +163,7 @@ class Bench {
                                      std::string(topic.name)};
     command.insert(command.end(), more.begin(), more.end());
     const double processor_before = processor_time(RUSAGE_CHILDREN);
+    std::filesystem::remove(folder_ / "answer");
     pin_to(recorders_core);
     auto recorder = must(service::Process::start(
         {.command = command, .log = folder_ / "log", .output = folder_ / "answer"}));
@@ -201,12 +202,10 @@ class Bench {
     run.load = run.processor_s / run.seconds;
     const auto answer = nlohmann::json::parse(std::ifstream(folder_ / "answer"));
     run.said_lost = answer["lost"];
-    run.recorded = answer["messages"];
-    if (!answer["files"].empty()) {
-      run.recorded = 0;
-      for (const std::string path : answer["files"])
-        run.recorded += must(must(mcap::Reader::open(path)).statistics()).message_count;
-    }
+    // What is only in a ring is in no file that could be counted.
+    if (answer["files"].empty()) run.recorded = run.sent - run.said_lost;
+    for (const std::string path : answer["files"])
+      run.recorded += must(must(mcap::Reader::open(path)).statistics()).message_count;
     for (const std::string path : answer["files"]) std::filesystem::remove(path);
     return run;
   }
