@@ -1,5 +1,7 @@
 #include "conductor.hpp"
 
+#include <algorithm>
+
 namespace prehend::service {
 
 Expected<Conductor> Conductor::create(dds::Participant& participant,
@@ -28,7 +30,8 @@ std::map<std::string, std::uint64_t> Conductor::totals() const {
   return sum;
 }
 
-Expected<void> Conductor::step(Time now, std::chrono::milliseconds patience) {
+Expected<void> Conductor::step(Time now, std::chrono::milliseconds patience,
+                               const std::function<std::optional<Error>()>& dead) {
   v1::LabClock message;
   message.cycle(++cycle_);
   message.stamp_ns(to_ns(now));
@@ -47,9 +50,11 @@ Expected<void> Conductor::step(Time now, std::chrono::milliseconds patience) {
     if (left.count() <= 0)
       return fail("gave no answer in cycle " + std::to_string(cycle_), *missing.begin(),
                   "is it running, in lockstep, in this rig?");
-    const auto ns = std::chrono::duration_cast<std::chrono::nanoseconds>(left).count();
-    progress_.raw().wait_for_unread_message(
-        {static_cast<int32_t>(ns / 1'000'000'000), static_cast<uint32_t>(ns % 1'000'000'000)});
+    const Duration wait = std::min<Duration>(left, std::chrono::milliseconds(200));
+    const bool came =
+        progress_.raw().wait_for_unread_message({0, static_cast<uint32_t>(wait.count())});
+    if (!came && dead)
+      if (const auto error = dead()) return tl::unexpected(*error);
     for (const auto& sample : progress_.take()) {
       if (sample.info.gone || sample.data.cycle() != cycle_) continue;
       const std::string service = sample.data.service().c_str();

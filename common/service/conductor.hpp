@@ -2,7 +2,9 @@
 
 #include <chrono>
 #include <cstdint>
+#include <functional>
 #include <map>
+#include <optional>
 #include <prehend/base/time.hpp>
 #include <prehend/dds/participant.hpp>
 #include <set>
@@ -29,8 +31,10 @@ class Conductor {
   /// The caller has published `count` samples on the topic.
   void published(std::string_view topic, std::uint64_t count = 1);
 
-  /// One cycle at `now`. Fails when a service does not answer in `patience`, and names it.
-  Expected<void> step(Time now, std::chrono::milliseconds patience);
+  /// One cycle at `now`. Fails when a service does not answer in `patience`, and names it; sooner
+  /// when `dead`, asked several times a second, knows why one never will.
+  Expected<void> step(Time now, std::chrono::milliseconds patience,
+                      const std::function<std::optional<Error>()>& dead = nullptr);
   /// Cycles at `now` until one brings nothing new.
   Expected<void> settle(Time now, std::chrono::milliseconds patience);
   /// Samples published so far on each topic, by the caller and by the services, ends of instances

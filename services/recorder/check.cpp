@@ -39,6 +39,13 @@ const std::vector<Service>& services() {
   return table;
 }
 
+/// What nobody reads or writes (a recording holds more) makes no cycle.
+bool is_of_services(const std::string& topic) {
+  return std::any_of(services().begin(), services().end(), [&](const Service& service) {
+    return service.reads.contains(topic) || service.writes.contains(topic);
+  });
+}
+
 /// A topic of the table above that was not recorded.
 dds::RawTopic answer_topic(const std::string& name) {
   static const std::map<std::string, std::string> types{
@@ -51,6 +58,7 @@ dds::RawTopic answer_topic(const std::string& name) {
 
 constexpr Duration tick = std::chrono::milliseconds(10);
 constexpr std::chrono::milliseconds patience{30'000};
+constexpr Duration longest = std::chrono::hours(24);  // all that is fed is held in memory
 constexpr int most_cycles = 1000;  // at one time, before services are said not to come to rest
 
 std::int64_t ns_of(const Played& played) {
@@ -204,7 +212,8 @@ class Run {
     for (std::int64_t time = first; time <= last; time += tick.count()) times.insert(time);
     const bool alone = !options_.services.empty();
     for (const Played& one : played_)
-      if (alone || feeds(one.stream->topic.name)) times.insert(ns_of(one));
+      if (alone ? is_of_services(one.stream->topic.name) : feeds(one.stream->topic.name))
+        times.insert(ns_of(one));
     std::size_t next = 0;
     std::int64_t done = 0;
     for (const std::int64_t time : times) {
@@ -220,10 +229,9 @@ class Run {
           return fail("the services do not come to rest", "lockstep", "who goes on publishing?");
         done = std::max(done + 1, time + cycle);
         const auto before = conductor_->totals();
-        if (const auto stepped = conductor_->step(from_ns(done), patience); !stepped) {
-          if (const auto casualty = lab_->casualty()) return tl::unexpected(*casualty);
+        const auto dead = [&] { return lab_->casualty(); };
+        if (const auto stepped = conductor_->step(from_ns(done), patience, dead); !stepped)
           return stepped;
-        }
         const auto now = conductor_->totals();
         if (const auto stamped = stamp(now, from_ns(done + 1)); !stamped) return stamped;
         if (alone || now == before) break;
@@ -278,6 +286,9 @@ Expected<Checked> check(const CheckOptions& options, const types::Library& types
                         const std::function<void(double)>& progress) {
   auto tape = Tape::open({options.file}, [](const std::string&) { return true; });
   if (!tape) return tl::unexpected(tape.error());
+  if (tape->end() - tape->start() > longest)
+    return fail("is too long to be checked", options.file.string(),
+                "prehend recording cut takes a part");
   std::vector<Played> played;
   while (auto one = tape->next()) played.push_back(std::move(*one));
   if (!tape->damage().empty()) return tl::unexpected(tape->damage().front());
@@ -309,6 +320,9 @@ Expected<Checked> check(const CheckOptions& options, const types::Library& types
     for (const dds::RawSample& sample : samples)
       comparison.add(recording::Side::actual, compared(topic, type_of(topic), sample));
   result.report = comparison.finish();
+  // No sample on either side is no sameness.
+  if (result.report.topics.empty())
+    return fail("holds no answer of these services, and they gave none", options.file.string());
   return result;
 }
 

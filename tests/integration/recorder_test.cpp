@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <fstream>
 #include <map>
-#include <nlohmann/json.hpp>
 
 #include "recorder_rig.hpp"
 
@@ -135,60 +134,6 @@ TEST_F(Recorder, WrongUseAndBrokenRecordingsAreOneClearLine) {
       EXPECT_EQ(answer.exit_code, 3) << answer.log;
       EXPECT_NE(answer.log.find(name), std::string::npos) << answer.log;
     }
-}
-
-TEST_F(Recorder, SamplesAreAnsweredAsRecordedTimeAndAgain) {
-  const int runs = std::getenv("PREHEND_LONG") ? 20 : 2;
-  const std::string samples = std::string(PREHEND_SOURCE) + "/deploy/samples";
-  std::uintmax_t bytes = 0;
-  int count = 0;
-  for (const auto& entry : std::filesystem::directory_iterator(samples)) {
-    if (entry.path().extension() != ".mcap") continue;
-    bytes += entry.file_size();
-    ++count;
-    std::string first;
-    for (int i = 0; i < runs; ++i) {
-      const Answer answer = run("prehend",
-                                {"check", entry.path().string(), "--json", "--domain",
-                                 std::to_string(domain_), "--junit", file("junit.xml")},
-                                120);
-      ASSERT_EQ(answer.exit_code, 0) << answer.output << answer.log;
-      const auto document = nlohmann::json::parse(answer.output);
-      EXPECT_EQ(document["verdict"], "same");
-      if (i == 0) first = answer.output;
-      EXPECT_EQ(answer.output, first);
-    }
-    EXPECT_TRUE(std::filesystem::exists(file("junit.xml")));
-  }
-  EXPECT_GE(count, 2);
-  EXPECT_LT(bytes, 2'000'000u);
-}
-
-TEST_F(Recorder, ACheckSeesWhatHasChangedAndUpdateTakesItOver) {
-  const std::string sample = file("sample.mcap");
-  std::filesystem::copy_file(std::string(PREHEND_SOURCE) + "/deploy/samples/direct-grasp.mcap",
-                             sample);
-  // Another wearer: the fingertips are meant for a hand of another size.
-  const Strings changed{"check",
-                        sample,
-                        "--json",
-                        "--service",
-                        "glove",
-                        "--set",
-                        "glove.user=somebody else",
-                        "--domain",
-                        std::to_string(domain_)};
-  const Answer answer = run("prehend", changed, 60);
-  EXPECT_EQ(answer.exit_code, 1) << answer.output << answer.log;
-  const auto document = nlohmann::json::parse(answer.output);
-  EXPECT_EQ(document["verdict"], "different");
-  EXPECT_EQ(document["topics"][0]["name"], "hand/posture");
-  EXPECT_NE(document["topics"][0]["first_difference"].get<std::string>().find("user"),
-            std::string::npos);
-  Strings updating = changed;
-  updating.push_back("--update");
-  EXPECT_EQ(run("prehend", updating, 60).exit_code, 0);
-  EXPECT_EQ(run("prehend", changed, 60).exit_code, 0);
 }
 
 }  // namespace

@@ -42,7 +42,8 @@ std::string text_of(const Value& value) {
   if (const auto* number = std::get_if<double>(&value.content)) return fmt::format("{}", *number);
   if (const auto* bytes = std::get_if<Value::Bytes>(&value.content))
     return fmt::format("{} bytes", bytes->size());
-  return to_json(value).dump();
+  // Strings of a damaged recording may be no UTF-8.
+  return to_json(value).dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
 }
 
 /// Compares two values of one type and takes note of what differs.

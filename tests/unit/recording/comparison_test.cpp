@@ -161,6 +161,22 @@ TEST(Comparison, TheFirstDifferencesAreTheEarliest) {
   EXPECT_EQ(report.topics[0].first[0].expected, "1");
 }
 
+// Fuzzing found that a key of a damaged recording ended the program.
+TEST(Comparison, StringsThatAreNoTextAreToldAllTheSame) {
+  const types::Structure& type = *contract().find("prehend::v1::HandCommand");
+  Random random(2);
+  Comparison comparison(defaults());
+  Value value = random_value(type, random);
+  field(value, "hand").content = std::string("\x83 hand");
+  field(value, "object").content = std::string("a");
+  add(comparison, Side::expected, type, value);
+  field(value, "object").content = std::string("\xff");
+  add(comparison, Side::actual, type, value);
+  const Report report = comparison.finish();
+  EXPECT_EQ(report.topics[0].different, 1u);
+  EXPECT_THAT(report.topics[0].first[0].text(), HasSubstr(" hand"));
+}
+
 TEST(Comparison, EndsOfInstancesCount) {
   Comparison comparison(defaults());
   comparison.add(Side::expected, {"object/detection", nullptr, {}, "disposed 01"});
