@@ -5,10 +5,9 @@
 
 #include <algorithm>
 #include <prehend/base/paths.hpp>
+#include <prehend/base/progress.hpp>
+#include <prehend/base/workers.hpp>
 #include <prehend/model/catalogue.hpp>
-
-#include "progress.hpp"
-#include "workers.hpp"
 
 namespace prehend::simulation {
 namespace {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <map>
-#include <prehend/planning/workers.hpp>
+#include <prehend/base/workers.hpp>
 #include <stdexcept>
 
 namespace prehend::simulation {

@@ -2,11 +2,11 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
-#include <prehend/planning/workers.hpp>
+#include <prehend/base/workers.hpp>
 #include <stdexcept>
 #include <vector>
 
-namespace prehend::simulation {
+namespace prehend {
 namespace {
 
 TEST(ShareWork, DoesEachPieceOnceAndTellsTheLast) {
@@ -37,4 +37,4 @@ TEST(ShareWork, ThrowsOnWhatTheWorkThrows) {
 }
 
 }  // namespace
-}  // namespace prehend::simulation
+}  // namespace prehend

@@ -3,10 +3,11 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <prehend/base/log.hpp>
 #include <utility>
 
-namespace prehend::simulation {
+#include "log.hpp"
+
+namespace prehend {
 namespace {
 
 constexpr std::size_t width = 30;  // characters of the bar
@@ -31,4 +32,4 @@ void Progress::show(std::size_t done, std::size_t all) {
   log::info("{}: {} of {}", what_, done, all);
 }
 
-}  // namespace prehend::simulation
+}  // namespace prehend

@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <string>
 
-namespace prehend::simulation {
+namespace prehend {
 
 /// How far long work has come, on standard error: a bar that overwrites itself on a terminal, a
 /// plain line each quarter elsewhere.
@@ -19,4 +19,4 @@ class Progress {
   std::size_t shown_ = 0;  // quarters, or done + 1 on a terminal
 };
 
-}  // namespace prehend::simulation
+}  // namespace prehend

@@ -7,7 +7,7 @@
 #include <thread>
 #include <vector>
 
-namespace prehend::simulation {
+namespace prehend {
 namespace {
 
 /// What the threads share.
@@ -63,4 +63,4 @@ void share_work(std::size_t count, unsigned threads, const std::function<void(st
   if (pool.error) std::rethrow_exception(pool.error);
 }
 
-}  // namespace prehend::simulation
+}  // namespace prehend

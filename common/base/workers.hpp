@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <functional>
 
-namespace prehend::simulation {
+namespace prehend {
 
 /// Calls work(0) .. work(count-1), each once, in `threads` threads (0: as many as the machine has
 /// cores), and done(n) in the calling thread when n are done, now and then and after the last. An
@@ -11,4 +11,4 @@ namespace prehend::simulation {
 void share_work(std::size_t count, unsigned threads, const std::function<void(std::size_t)>& work,
                 const std::function<void(std::size_t)>& done);
 
-}  // namespace prehend::simulation
+}  // namespace prehend
