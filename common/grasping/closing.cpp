@@ -53,6 +53,12 @@ class Rest {
   double since_ = 0;  // s
 };
 
+/// Which way a DoF closes the hand, 0 if it rests.
+int closing_of(const model::HandModel& hand, const ClosingOptions& options, Eigen::Index i) {
+  const auto k = static_cast<std::size_t>(i);
+  return k < options.resting.size() && options.resting[k] ? 0 : hand.dofs()[k].closing;
+}
+
 /// Commands every closing DoF ahead of its joint until all have stopped. False if they never do.
 bool close_until_still(World& world, const ClosingOptions& options) {
   const model::HandModel& hand = world.hand();
@@ -64,10 +70,11 @@ bool close_until_still(World& world, const ClosingOptions& options) {
     const VectorXd now = world.hand_motion().dof;
     for (Eigen::Index i = 0; i < command.size(); ++i) {
       const model::HandDof& dof = hand.dofs()[static_cast<std::size_t>(i)];
-      if (dof.closing == 0) continue;
-      const double next = command[i] + dof.closing * options.speed * radian_of(dof) * dt;
-      const double most = now[i] + dof.closing * lead * dof.squeeze;
-      command[i] = dof.closing > 0 ? std::min(next, most) : std::max(next, most);
+      const int closing = closing_of(hand, options, i);
+      if (closing == 0) continue;
+      const double next = command[i] + closing * options.speed * radian_of(dof) * dt;
+      const double most = now[i] + closing * lead * dof.squeeze;
+      command[i] = closing > 0 ? std::min(next, most) : std::max(next, most);
     }
     world.command(X_WB, hand.clamp(command));
     world.step();
@@ -91,7 +98,7 @@ HoldResult squeeze_and_hold(World& world, const VectorXd& contact, const Closing
   VectorXd squeezed = contact;
   for (Eigen::Index i = 0; i < squeezed.size(); ++i) {
     const model::HandDof& dof = hand.dofs()[static_cast<std::size_t>(i)];
-    squeezed[i] += options.squeeze * dof.squeeze * dof.closing;
+    squeezed[i] += options.squeeze * dof.squeeze * closing_of(hand, options, i);
   }
   world.command(world.commanded_base(), hand.clamp(squeezed));
   const double dt = world.time_step();

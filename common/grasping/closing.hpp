@@ -22,6 +22,8 @@ struct ClosingOptions {
   double speed = 1.0;    // rad/s, of the closing command (see radian_of for what slides)
   double longest = 5.0;  // s, until the fingers must have stopped
   bool volume = true;    // of the wrench space too, which is dear
+  /// Of each DoF: does not close but keeps its preshape. Empty: all close that can.
+  std::vector<bool> resting;
   /// Afterwards: gravity on, commanded `squeeze` past contact, and this test. None: no test.
   std::optional<HoldOptions> hold_test;
   /// Which way gravity pulls in the hold test, in B; the lift goes the other way. Unit.
