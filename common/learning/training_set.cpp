@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <prehend/messages/training_set.pb.h>
 
+#include <prehend/proto/pose_numbers.hpp>
 #include <prehend/proto/sealed_file.hpp>
 #include <set>
 
@@ -31,7 +32,8 @@ Expected<void> check(const TrainingSet& set) {
           where);
     if (pair.features.size() == 0 || pair.features.size() != set.pairs.front().features.size())
       return fail(fmt::format("{} features", pair.features.size()), where);
-    if (!pair.features.allFinite() || !pair.dof.allFinite() || !pair.size.allFinite())
+    if (!pair.features.allFinite() || !pair.dof.allFinite() || !pair.size.allFinite() ||
+        !is_finite(pair.X_OG))
       return fail("a number is not finite", where);
     postures.insert(pair.posture);
   }
@@ -56,6 +58,8 @@ std::string serialise(const TrainingSet& set) {
     to.set_shape(pair.shape);
     to.mutable_size()->Add(pair.size.begin(), pair.size.end());
     to.set_source(pair.source);
+    const auto X_OG = proto::pose_numbers(pair.X_OG);
+    to.mutable_grasp_frame()->Add(X_OG.begin(), X_OG.end());
   }
   return message.SerializeAsString();
 }
@@ -69,9 +73,11 @@ Expected<TrainingSet> parse_training_set(const std::string& bytes) {
                   {}};
   for (const messages::TrainingPair& from : message.pairs()) {
     if (from.size_size() != 3) return fail("an object's size is not three numbers");
+    auto X_OG = proto::pose_from_numbers({from.grasp_frame().begin(), from.grasp_frame().end()});
+    if (!X_OG) return tl::unexpected(X_OG.error());
     set.pairs.push_back({to_vector(from.features()), to_vector(from.dof()), from.user(),
                          from.take(), from.posture(), from.object(), from.shape(),
-                         to_vector(from.size()), from.source()});
+                         to_vector(from.size()), from.source(), *X_OG});
   }
   if (auto ok = check(set); !ok) return tl::unexpected(ok.error());
   return set;

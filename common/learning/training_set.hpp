@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <filesystem>
 #include <prehend/base/error.hpp>
+#include <prehend/base/pose.hpp>
 #include <string>
 #include <vector>
 
@@ -19,6 +20,7 @@ struct TrainingPair {
   std::string shape;                               // of the object; empty: none
   Eigen::Vector3d size = Eigen::Vector3d::Zero();  // m, meaning by shape
   std::string source;                              // synthetic, teach, recording
+  Pose X_OG = Pose::Identity();                    // grasp frame on the object that the hand was at
 };
 
 struct TrainingSet {

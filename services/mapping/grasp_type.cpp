@@ -1,5 +1,7 @@
 #include "grasp_type.hpp"
 
+#include <utility>
+
 namespace prehend::mapping {
 
 namespace {
@@ -10,7 +12,26 @@ constexpr double least_closed = 0.6;
 constexpr double from_above = -0.7071;
 /// How much less the little finger bends than the index in a precision grasp.
 constexpr double little_apart = 0.25;
+
+constexpr std::array<std::pair<GraspType, std::string_view>, 4> names{{
+    {GraspType::none, "none"},
+    {GraspType::power_wrap, "power wrap"},
+    {GraspType::circular_sphere, "circular sphere"},
+    {GraspType::precision, "precision"},
+}};
 }  // namespace
+
+std::string_view to_string(GraspType type) {
+  for (const auto& [value, name] : names)
+    if (value == type) return name;
+  return "unknown";
+}
+
+std::optional<GraspType> grasp_type_from_string(std::string_view name) {
+  for (const auto& [value, text] : names)
+    if (text == name) return value;
+  return std::nullopt;
+}
 
 GraspType grasp_type(const Features& features, double closed, const Pose& X_WG,
                      model::ShapeKind shape) {

@@ -167,7 +167,7 @@ std::optional<Mapping::Candidate> Mapping::candidate(const Track& track, const P
   const auto X_OG =
       model::nearest_grasp(detection.shape, detection.X_WO.inverse() * X_WG, hand_.reach());
   if (!X_OG) return std::nullopt;
-  Candidate found{detection, trust(track), 0, detection.X_WO * *X_OG};
+  Candidate found{detection, trust(track), 0, detection.X_WO * *X_OG, *X_OG};
   found.distance = (found.X_WG.translation() - X_WG.translation()).norm();
   const double angle = angle_between(found.X_WG.linear(), X_WG.linear());
   if (found.distance > (engaged ? options_.leave : options_.enter) ||
@@ -185,7 +185,7 @@ std::optional<Mapping::Candidate> Mapping::choose(const Pose& X_WG, Time now) {
   std::optional<Candidate> nearest, kept;
   for (const auto& [number, track] : tracks_) {
     if (!model_.knows(track.detection.shape.kind)) continue;
-    const bool engaged = engaged_ && engaged_->track == number;
+    const bool engaged = engaged_ && engaged_->detection.track == number;
     auto found = candidate(track, X_WG, engaged);
     if (!found) continue;
     if (engaged) kept = found;
@@ -297,7 +297,7 @@ Expected<Command> Mapping::on_posture(const Posture& posture, Time now) {
   if (arbitration_.phase() == Phase::direct)
     engaged_.reset();
   else if (seen && before != Phase::gripping)
-    engaged_ = seen->detection;
+    engaged_ = seen;
 
   update_trust(seen, elapsed);
 
@@ -309,10 +309,11 @@ Expected<Command> Mapping::on_posture(const Posture& posture, Time now) {
   command_.weight = weight();
   command_.object.clear();
   if (engaged_ && command_.weight > 0) {
-    command_.object = engaged_->name;
+    command_.object = engaged_->detection.name;
     if (options_.intelligent) {
       // choose() lets through only shapes that have a network.
-      const Answer known = *model_.intelligent(*features, engaged_->shape);
+      const Answer known =
+          *model_.intelligent(*features, engaged_->detection.shape, engaged_->X_OG);
       dof += command_.weight * (known.dof - dof);
       command_.extrapolating = known.extrapolating || (joints.extrapolating && command_.weight < 1);
     }
@@ -321,7 +322,7 @@ Expected<Command> Mapping::on_posture(const Posture& posture, Time now) {
   dof = hand_.clamp(dof);
   command_.grasp_type =
       mapping::grasp_type(*features, mean_closing(dof), X_WG,
-                          engaged_ ? engaged_->shape.kind : model::ShapeKind::unknown);
+                          engaged_ ? engaged_->detection.shape.kind : model::ShapeKind::unknown);
 
   const Pose X_WB = corrected(X_WG, seen, elapsed) * hand_.X_BG().inverse();
   move_toward(grip_.squeeze(dof), X_WB, options_.intelligent ? command_.weight : 0, elapsed);

@@ -131,6 +131,7 @@ class Mapping {
     double trust = 1;     // most that the intelligent answer may count
     double distance = 0;  // m, to its nearest grasp
     Pose X_WG;            // that grasp
+    Pose X_OG;            // the same on the object
   };
   Mapping(const model::HandModel& hand, const MappingModel& model, const MappingOptions& options);
   Expected<Eigen::VectorXd> without_object(const Posture& posture, const Answer& joints,
@@ -153,7 +154,7 @@ class Mapping {
   Arbitration arbitration_;
   Grip grip_;
   std::map<std::uint32_t, Track> tracks_;
-  std::optional<Detection> engaged_;         // the object that the weight is for
+  std::optional<Candidate> engaged_;         // the object that the weight is for
   double trust_ = 0;                         // in the engaged object; moves like the weight
   Pose full_correction_ = Pose::Identity();  // X_GG', for weight 1, as last seen
   Pose correction_ = Pose::Identity();       // X_GG' in force

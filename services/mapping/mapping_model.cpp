@@ -98,15 +98,25 @@ Expected<void> check_hand(const messages::MappingModel& message, const model::Ha
 
 }  // namespace
 
-Expected<MappingModel> MappingModel::create(const model::HandModel& hand, std::string scheme,
-                                            std::string training_set_digest,
+Expected<MappingModel> MappingModel::create(const model::HandModel& hand, ModelTraits traits,
                                             std::vector<MappingNetwork> networks) {
+  const auto dofs = static_cast<Eigen::Index>(hand.dofs().size());
+  if (traits.lower.size() != dofs || traits.upper.size() != dofs)
+    return fail("wrong number of limits", traits.scheme);
+  for (Eigen::Index i = 0; i < dofs; ++i) {
+    const model::HandDof& dof = hand.dofs()[static_cast<std::size_t>(i)];
+    // Written so that not-a-number fails.
+    if (!(traits.lower[i] >= dof.lower - same_limit && traits.upper[i] <= dof.upper + same_limit &&
+          traits.lower[i] <= traits.upper[i]))
+      return fail("limits that are not the hand's", dof.name);
+  }
   std::set<model::ShapeKind> shapes;
   for (const MappingNetwork& network : networks) {
     const bool direct = network.shape == model::ShapeKind::unknown;
     const std::string name = direct ? "direct" : std::string(to_string(network.shape));
     if (!shapes.insert(network.shape).second) return fail("two networks", name);
-    if (network.network.inputs() != feature_count + (direct ? 0 : 1) ||
+    const int sizes = direct ? 0 : size_count(traits.size_input, network.shape);
+    if (network.network.inputs() != feature_count + sizes ||
         network.input.minimum().size() != network.network.inputs())
       return fail("wrong number of inputs", name);
     if (network.network.outputs() != static_cast<int>(hand.dofs().size()) ||
@@ -117,8 +127,7 @@ Expected<MappingModel> MappingModel::create(const model::HandModel& hand, std::s
   std::stable_sort(networks.begin(), networks.end(),
                    [](const auto& a, const auto& b) { return a.shape < b.shape; });
   MappingModel made;
-  made.scheme_ = std::move(scheme);
-  made.digest_ = std::move(training_set_digest);
+  made.traits_ = std::move(traits);
   made.networks_ = std::move(networks);
   return made;
 }
@@ -138,7 +147,12 @@ Expected<MappingModel> MappingModel::load(const std::filesystem::path& file,
     if (!network) return refuse(network.error().message());
     networks.push_back(std::move(*network));
   }
-  auto made = create(hand, message.scheme(), message.training_set_digest(), std::move(networks));
+  const auto size_input = size_input_from_string(message.size_input());
+  if (!size_input) return refuse(fmt::format("unknown size input «{}»", message.size_input()));
+  ModelTraits traits{message.scheme(), message.training_set_digest(), *size_input,
+                     Eigen::VectorXd::Map(message.lower().data(), message.lower_size()),
+                     Eigen::VectorXd::Map(message.upper().data(), message.upper_size())};
+  auto made = create(hand, std::move(traits), std::move(networks));
   if (!made) return refuse(made.error().message());
   return made;
 }
@@ -153,8 +167,11 @@ Expected<void> MappingModel::save(const std::filesystem::path& file,
     to.set_lower(dof.lower);
     to.set_upper(dof.upper);
   }
-  message.set_scheme(scheme_);
-  message.set_training_set_digest(digest_);
+  message.set_scheme(traits_.scheme);
+  message.set_training_set_digest(traits_.training_set_digest);
+  message.set_size_input(std::string(to_string(traits_.size_input)));
+  message.mutable_lower()->Add(traits_.lower.begin(), traits_.lower.end());
+  message.mutable_upper()->Add(traits_.upper.begin(), traits_.upper.end());
   for (const MappingNetwork& network : networks_) {
     messages::MappingNetwork& to = *message.add_networks();
     if (network.shape != model::ShapeKind::unknown)
@@ -174,17 +191,22 @@ Expected<void> MappingModel::save(const std::filesystem::path& file,
   return proto::write_sealed(file, kind, message.SerializeAsString());
 }
 
-Answer MappingModel::direct(const Features& features) const {
-  return answer(networks_.front(), features);
+Answer MappingModel::limited(Answer answer) const {
+  answer.dof = answer.dof.cwiseMax(traits_.lower).cwiseMin(traits_.upper);
+  return answer;
 }
 
-std::optional<Answer> MappingModel::intelligent(const Features& features,
-                                                const model::Shape& shape) const {
+Answer MappingModel::direct(const Features& features) const {
+  return limited(answer(networks_.front(), features));
+}
+
+std::optional<Answer> MappingModel::intelligent(const Features& features, const model::Shape& shape,
+                                                const Pose& X_OG) const {
   for (const MappingNetwork& network : networks_)
     if (network.shape == shape.kind && shape.kind != model::ShapeKind::unknown) {
-      Eigen::VectorXd input(feature_count + 1);
-      input << features, characteristic_size(shape);
-      return answer(network, input);
+      Eigen::VectorXd input(feature_count + size_count(traits_.size_input, shape.kind));
+      input << features, size_numbers(traits_.size_input, shape, X_OG);
+      return limited(answer(network, input));
     }
   return std::nullopt;
 }

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "features.hpp"
+#include "size_input.hpp"
 
 namespace prehend::mapping {
 
@@ -27,20 +28,27 @@ struct MappingNetwork {
   ModelErrors errors;
 };
 
+/// What belongs to all networks of a model.
+struct ModelTraits {
+  std::string scheme, training_set_digest;
+  SizeInput size_input = SizeInput::characteristic;
+  /// Of each DoF, rad or m: what the scheme keeps to within the hand's limits. Answers do, too.
+  Eigen::VectorXd lower, upper;
+};
+
 /// A robot posture, and whether the question lay outside what was trained.
 struct Answer {
-  Eigen::VectorXd dof;  // rad
+  Eigen::VectorXd dof;  // rad or m
   bool extrapolating = false;
 };
 
 /// Trained networks for one hand: direct, from nine features, and intelligent, one a shape, from
-/// the same and the object's characteristic_size. Files are sealed (kind «mapping-model») and
-/// checked.
+/// the same and the object's size. Files are sealed (kind «mapping-model») and checked.
 class MappingModel {
  public:
-  /// From trained parts. Refuses a missing or doubled network and sizes that do not fit the hand.
-  static Expected<MappingModel> create(const model::HandModel& hand, std::string scheme,
-                                       std::string training_set_digest,
+  /// From trained parts. Refuses a missing or doubled network, sizes that do not fit the hand, and
+  /// limits that are not within its own.
+  static Expected<MappingModel> create(const model::HandModel& hand, ModelTraits traits,
                                        std::vector<MappingNetwork> networks);
   /// Refuses a file that is damaged, is not a mapping model, or was trained for another hand or for
   /// another version of this one (other DoF or limits).
@@ -48,20 +56,22 @@ class MappingModel {
                                      const model::HandModel& hand);
   Expected<void> save(const std::filesystem::path& file, const model::HandModel& hand) const;
 
-  const std::string& scheme() const { return scheme_; }
-  const std::string& training_set_digest() const { return digest_; }
+  const ModelTraits& traits() const { return traits_; }
   const std::vector<MappingNetwork>& networks() const { return networks_; }  // [0] is direct
 
   /// Inputs outside the trained range are taken as its nearest end, with a tenth of the range more
   /// at each side, and the answer says so. Sizes are not stretched: the nearest trained one counts.
   Answer direct(const Features& features) const;
+  /// X_OG: the grasp frame that the hand is at or reaches for, as model::nearest_grasp gives it.
   /// nullopt: no network knows this shape.
-  std::optional<Answer> intelligent(const Features& features, const model::Shape& shape) const;
+  std::optional<Answer> intelligent(const Features& features, const model::Shape& shape,
+                                    const Pose& X_OG) const;
   bool knows(model::ShapeKind shape) const;
 
  private:
   MappingModel() = default;
-  std::string scheme_, digest_;
+  Answer limited(Answer answer) const;
+  ModelTraits traits_;
   std::vector<MappingNetwork> networks_;
 };
 

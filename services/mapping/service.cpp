@@ -176,8 +176,8 @@ Expected<int> run(service::Shell& shell) {
   if (!mapping) return tl::unexpected(mapping.error());
 
   const Service service(shell, *hand, std::move(*mapping));
-  log::info("{}, {}, fingers by {}{}", hand->name(), model->scheme(), to_string(options.fingers),
-            options.intelligent ? "" : ", whatever the object");
+  log::info("{}, {}, fingers by {}{}", hand->name(), model->traits().scheme,
+            to_string(options.fingers), options.intelligent ? "" : ", whatever the object");
   shell.status().running();
   return shell.run();
 }

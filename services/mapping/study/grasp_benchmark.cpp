@@ -171,7 +171,7 @@ Expected<std::vector<TrialResult>> run_grasp_benchmark(
       TrialResult result;
       result.hand = parts.hand.name();
       result.object = grasp.object;
-      result.grasp_type = grasp.type;
+      result.grasp_type = to_string(grasp.type);
       result.user = take->user;
       result.take = static_cast<int>(number);
       result.mode = mode;

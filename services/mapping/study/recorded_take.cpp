@@ -30,7 +30,7 @@ double smooth(double share) {
 std::optional<RecordedTake> record_take(const RobotGrasp& grasp, std::uint64_t seed,
                                         const TakeOptions& options) {
   Demonstrator person(fmt::format("test person {}", seed), seed, options.demonstrator);
-  const auto reached = person.reach(grasp.shape, grasp.X_OG);
+  const auto reached = person.reach(grasp.shape, grasp.X_OG, grasp.type);
   if (!reached) return std::nullopt;
 
   RecordedTake take;

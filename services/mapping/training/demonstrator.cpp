@@ -1,6 +1,7 @@
 #include "demonstrator.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace prehend::mapping {
@@ -22,7 +23,15 @@ double drawn_scale(Random& random, double sigma) {
   return 1 + std::clamp(random.normal(sigma), -2 * sigma, 2 * sigma);
 }
 
+/// As far as index and little finger spread, rad, in HumanPosture's numbers.
+constexpr std::array<std::pair<int, double>, 2> spread_apart{{{0, 0.349}, {12, -0.524}}};
+
 }  // namespace
+
+std::array<bool, model::finger_count> fingers_of(GraspType type) {
+  const bool all = type != GraspType::precision;
+  return {true, true, true, all, all};
+}
 
 Demonstrator::Demonstrator(std::string user, std::uint64_t seed, const DemonstratorOptions& options)
     : user_(std::move(user)),
@@ -40,16 +49,20 @@ void Demonstrator::new_take() {
   for (Eigen::Vector3d& p : p_FS_) p = direction(random_) * random_.uniform(0, options_.mounting);
 }
 
-Fingertips Demonstrator::sense(const Closure& closure) {
-  const auto tips = hand_.fingertip_poses(model::HumanHand::posture(closure));
+Fingertips Demonstrator::sense(const Closure& closure, double splay) {
+  model::HumanPosture posture = model::HumanHand::posture(closure);
+  for (const auto& [joint, limit] : spread_apart)
+    posture[joint] += splay * (limit - posture[joint]);
+  const auto tips = hand_.fingertip_poses(posture);
   Fingertips sensed;
   for (std::size_t f = 0; f < tips.size(); ++f)
     sensed[f] = {true, X_HR_.inverse() * (tips[f] * p_FS_[f]) + random_.normal3(options_.noise)};
   return sensed;
 }
 
-Features Demonstrator::read(const Closure& closure) {
-  return *features(sense(closure), calibrated_scale_);  // its own fingertips are always usable
+Features Demonstrator::read(const Closure& closure, double splay) {
+  return *features(sense(closure, splay),
+                   calibrated_scale_);  // its own fingertips are always usable
 }
 
 Closure Demonstrator::repeat(const Closure& closure) {
@@ -58,22 +71,22 @@ Closure Demonstrator::repeat(const Closure& closure) {
   return repeated;
 }
 
-std::optional<Closure> Demonstrator::grasp(const model::Shape& shape, const Pose& X_OG) {
-  const auto grasp = reach(shape, X_OG);
-  return grasp ? std::optional(grasp->closure) : std::nullopt;
-}
-
-std::optional<HumanGrasp> Demonstrator::reach(const model::Shape& shape, const Pose& X_OG) {
+std::optional<HumanGrasp> Demonstrator::reach(const model::Shape& shape, const Pose& X_OG,
+                                              GraspType type) {
+  const auto taking = fingers_of(type);
   constexpr int attempts = 20;
+  constexpr double stays_open = 0.05;  // sigma of the closure of a finger that takes no part
   for (int attempt = 0; attempt < attempts; ++attempt) {
     const double d = options_.approach;
     const double x = random_.uniform(-d, d), y = random_.uniform(-d, d), z = random_.uniform(-d, d);
     const Pose error = make_pose({x, y, z}, turn(random_, options_.approach_turn));
     const Pose X_OG_reached = X_OG * error;
     const Pose X_HO = hand_.X_HG() * X_OG_reached.inverse();
-    const auto closure = hand_.close_on(shape, X_HO);
-    const bool free = std::all_of(closure.begin(), closure.end(), [](double c) { return c > 0; });
-    if (free) return HumanGrasp{closure, X_OG_reached};
+    Closure closure = hand_.close_on(shape, X_HO);
+    if (!std::all_of(closure.begin(), closure.end(), [](double c) { return c > 0; })) continue;
+    for (std::size_t f = 0; f < closure.size(); ++f)
+      if (!taking[f]) closure[f] = std::min(closure[f], std::abs(random_.normal(stays_open)));
+    return HumanGrasp{closure, X_OG_reached};
   }
   return std::nullopt;
 }

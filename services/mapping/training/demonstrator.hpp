@@ -6,6 +6,7 @@
 #include <prehend/base/pose.hpp>
 #include <prehend/base/random.hpp>
 #include <prehend/mapping/features.hpp>
+#include <prehend/mapping/grasp_type.hpp>
 #include <prehend/model/human_hand.hpp>
 #include <prehend/model/shape.hpp>
 #include <string>
@@ -17,7 +18,7 @@ struct DemonstratorOptions {
   double scale_sigma = 0.07;      // of hand sizes; adults, drawn within two sigma
   double scale_error = 0.02;      // sigma of the calibrated scale's relative error
   double mounting = 0.005;        // m, each sensor sits up to so far from its place
-  double mounting_turn = 0.026;   // rad, and the one on the back of the hand so crookedly
+  double mounting_turn = 0.1745;  // rad, and the one on the back of the hand so crookedly
   double noise = 0.001;           // m, sigma a coordinate, after the glove's filter
   double posture_sigma = 0.03;    // of each finger's closure when a posture is repeated
   double approach = 0.01;         // m, each coordinate of where the hand takes an object
@@ -32,6 +33,9 @@ struct HumanGrasp {
   Closure closure;
   Pose X_OG;  // where its grasp frame was
 };
+
+/// Which fingers take part in a grasp: in a precision grasp ring and little finger stay out of it.
+std::array<bool, model::finger_count> fingers_of(GraspType type);
 
 /// A synthetic person with four sensors on the hand, repeating postures and grasps as people do:
 /// never twice the same. Everything follows from the seed.
@@ -51,14 +55,15 @@ class Demonstrator {
   const Pose& X_HR() const { return X_HR_; }
 
   /// What the glove says of fingers closed so far: fingertips, and the features made of them.
-  Fingertips sense(const Closure& closure);
-  Features read(const Closure& closure);
+  /// splay: index and little finger spread apart, from 0, as in the open hand, to 1, as far as they
+  /// go.
+  Fingertips sense(const Closure& closure, double splay = 0);
+  Features read(const Closure& closure, double splay = 0);
   /// A posture repeated as people do: never exactly.
   Closure repeat(const Closure& closure);
   /// How far the fingers close on an object until they touch it, with the grasp frame near X_OG.
   /// None when no attempt came to a place where the open hand does not already touch.
-  std::optional<HumanGrasp> reach(const model::Shape& shape, const Pose& X_OG);
-  std::optional<Closure> grasp(const model::Shape& shape, const Pose& X_OG);
+  std::optional<HumanGrasp> reach(const model::Shape& shape, const Pose& X_OG, GraspType type);
 
  private:
   std::string user_;

@@ -1,13 +1,14 @@
 // prehend-train: makes the mapping model of a hand.
-#include <unistd.h>
-
 #include <CLI/CLI.hpp>
 #include <chrono>
-#include <cstdio>
+#include <filesystem>
 #include <iostream>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <prehend/base/log.hpp>
 #include <prehend/base/paths.hpp>
+#include <prehend/base/progress.hpp>
+#include <prehend/base/workers.hpp>
 
 #include "trainer.hpp"
 
@@ -16,27 +17,17 @@ namespace {
 using namespace prehend;
 using namespace prehend::mapping;
 
-/// On a terminal a bar that fills, else a line when a step is done. On standard error.
-class ProgressShown {
+/// A step of training, shown in thousandths.
+class Shown {
  public:
   void operator()(std::string_view step, double share) {
-    if (step == done_) return;
-    if (share >= 1) done_ = step;
-    if (terminal_) {
-      constexpr int width = 30;
-      const int filled = static_cast<int>(share * width);
-      std::fprintf(stderr, "\r%-18.*s [%.*s%*s] %3.0f %%", static_cast<int>(step.size()),
-                   step.data(), filled, "##############################", width - filled, "",
-                   100 * share);
-      if (share >= 1) std::fputc('\n', stderr);
-    } else if (share >= 1) {
-      log::info("{}: done", step);
-    }
+    if (step != step_) progress_.emplace(step_ = step);
+    progress_->show(static_cast<std::size_t>(1000 * share), 1000);
   }
 
  private:
-  std::string done_;  // the last step that was finished
-  bool terminal_ = isatty(STDERR_FILENO) == 1;
+  std::string step_;
+  std::optional<prehend::Progress> progress_;
 };
 
 int refuse(const Error& error) {
@@ -44,19 +35,74 @@ int refuse(const Error& error) {
   return 3;
 }
 
+/// A name is a file of that name in the folder of schemes.
+std::filesystem::path scheme_path(const std::string& scheme, const std::filesystem::path& share) {
+  if (scheme.find('/') != std::string::npos || scheme.ends_with(".toml")) return scheme;
+  return share / "schemes" / (scheme + ".toml");
+}
+
+/// From the file if it is there; otherwise the hand is closed and the file written.
+Expected<std::vector<RobotGrasp>> grasps_of(const model::HandModel& hand, const Scheme& scheme,
+                                            const std::filesystem::path& catalogue_file,
+                                            const std::filesystem::path& file, bool again) {
+  if (!again && std::filesystem::exists(file)) return load_robot_grasps(file, hand);
+  const auto catalogue = model::Catalogue::load(catalogue_file);
+  if (!catalogue) return tl::unexpected(catalogue.error());
+  prehend::Progress progress("closing the hand");
+  auto grasps = close_on_catalogue(
+      hand, scheme, *catalogue,
+      [&](std::size_t count, const auto& work) {
+        share_work(count, 0, work, [&](std::size_t done) { progress.show(done, count); });
+      },
+      [](const Error& error) { log::warning("{}", error.message()); });
+  if (grasps.empty()) return fail("the hand can grasp nothing of it", catalogue_file.string());
+  if (auto saved = save_robot_grasps(file, hand, grasps); !saved)
+    return tl::unexpected(saved.error());
+  return grasps;
+}
+
+nlohmann::json describe(const RobotGrasp& grasp) {
+  return {{"object", grasp.object},
+          {"type", to_string(grasp.type)},
+          {"dof", std::vector<double>(grasp.dof.begin(), grasp.dof.end())},
+          {"epsilon", grasp.epsilon},
+          {"held", grasp.held}};
+}
+
+nlohmann::json describe(const MappingModel& model, const MappingNetwork& network,
+                        const learning::TrainingSet& test) {
+  const bool direct = network.shape == model::ShapeKind::unknown;
+  nlohmann::json entry{{"network", direct ? "direct" : model::to_string(network.shape)},
+                       {"training_error", network.errors.training},
+                       {"validation_error", network.errors.validation},
+                       {"test_error", network.errors.test}};
+  if (direct) return entry;
+  const Comparison all = compare(model, test, network.shape, false);
+  const Comparison grasps = compare(model, test, network.shape, true);
+  entry["test_error_of_direct"] = all.direct;
+  entry["grasp_test_error"] = grasps.intelligent;
+  entry["grasp_test_error_of_direct"] = grasps.direct;
+  return entry;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
   log::set_name("train");
   const auto share = share_directory();
-  std::string hand_name = "barrett", scheme_file, catalogue_file, out, set_file;
+  std::string hand_name = "barrett", scheme_name, catalogue_file, grasps_file, out, set_file;
   SetOptions people;
   TrainerOptions trainer;
-  bool json = false;
+  bool json = false, close_again = false, close_only = false;
   CLI::App app{"Trains the mapping from human hands to a robot hand"};
   app.add_option("--hand", hand_name, "kind of robot hand")->capture_default_str();
-  app.add_option("--scheme", scheme_file, "posture pairs; default: schemes/HAND.toml");
+  app.add_option("--scheme", scheme_name,
+                 "posture pairs: a name in schemes/ or a file; default: HAND");
   app.add_option("--catalogue", catalogue_file, "objects to grasp; default: the lab's");
+  app.add_option("--grasps", grasps_file,
+                 "the robot's grasps: read, or made if missing; default: trained/HAND.grasps");
+  app.add_flag("--close", close_again, "close the hand again, though the file is there");
+  app.add_flag("--close-only", close_only, "train nothing");
   app.add_option("--out", out, "model to write; default: trained/HAND.mapping");
   app.add_option("--training-set", set_file, "also write the training set there");
   app.add_option("--users", people.users, "synthetic people to learn from")
@@ -65,10 +111,21 @@ int main(int argc, char** argv) {
   app.add_option("--takes", people.takes, "takes of each")
       ->check(CLI::Range(1, 100))
       ->capture_default_str();
+  app.add_option("--postures", people.postures, "basic postures: 4, 7, 10 or 13")
+      ->check(CLI::IsMember({4, 7, 10, 13}))
+      ->capture_default_str();
   app.add_option("--seed", people.seed, "of people and first weights")->capture_default_str();
   app.add_option("--hidden", trainer.network.hidden, "neurons in the hidden layer")
       ->check(CLI::Range(1, 200))
       ->capture_default_str();
+  app.add_option_function<std::string>(
+      "--size",
+      [&](const std::string& name) {
+        const auto input = size_input_from_string(name);
+        if (!input) throw CLI::ValidationError("--size", "characteristic, dimensions, seen");
+        trainer.size_input = *input;
+      },
+      "what intelligent networks are told of the object; default: seen");
   app.add_option_function<std::string>(
       "--method",
       [&](const std::string& name) {
@@ -84,64 +141,51 @@ int main(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : 2;
   }
-  if (scheme_file.empty()) scheme_file = share / "schemes" / (hand_name + ".toml");
+  if (scheme_name.empty()) scheme_name = hand_name;
   if (catalogue_file.empty()) catalogue_file = share / "models" / "objects" / "catalogue.toml";
+  if (grasps_file.empty()) grasps_file = share / "trained" / (hand_name + ".grasps");
   if (out.empty()) out = share / "trained" / (hand_name + ".mapping");
 
   const auto begin = std::chrono::steady_clock::now();
+  const auto since_begin = [&] {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  };
   const auto hand = model::HandModel::load(share / "models" / "hands" / hand_name);
   if (!hand) return refuse(hand.error());
-  const auto scheme = Scheme::load(scheme_file, *hand);
+  const auto scheme = Scheme::load(scheme_path(scheme_name, share), *hand);
   if (!scheme) return refuse(scheme.error());
-  const auto catalogue = model::Catalogue::load(catalogue_file);
-  if (!catalogue) return refuse(catalogue.error());
+  const auto grasps =
+      grasps_of(*hand, *scheme, catalogue_file, grasps_file, close_again || close_only);
+  if (!grasps) return refuse(grasps.error());
 
-  ProgressShown shown;
-  const auto grasps = close_on_catalogue(*hand, *scheme, *catalogue, std::ref(shown),
-                                         [](const Error& e) { log::warning("{}", e.message()); });
-  if (grasps.empty()) return refuse({"the hand can grasp nothing of it", catalogue_file, ""});
-  Sets sets;
-  trainer.network.seed = static_cast<std::uint32_t>(people.seed);
-  SetOptions others = people;
-  others.users = 3;
-  sets.training = demonstrate(*hand, *scheme, grasps, people);
-  others.seed = people.seed + 1;
-  sets.validation = demonstrate(*hand, *scheme, grasps, others);
-  others.seed = people.seed + 2;
-  sets.test = demonstrate(*hand, *scheme, grasps, others);
-  if (!set_file.empty())
-    if (auto saved = learning::save(set_file, sets.training); !saved) return refuse(saved.error());
-  const auto model = train_mapping(*hand, sets, trainer, std::ref(shown));
-  if (!model) return refuse(model.error());
-  if (auto saved = model->save(out, *hand); !saved) return refuse(saved.error());
-
-  const double took =
-      std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  nlohmann::json document{{"hand", hand_name},
-                          {"scheme", scheme->name},
-                          {"model", out},
-                          {"pairs", sets.training.pairs.size()},
-                          {"training_set", model->training_set_digest()},
-                          {"seconds", took}};
-  for (const RobotGrasp& grasp : grasps)
-    document["grasps"].push_back({{"object", grasp.object},
-                                  {"type", grasp.type},
-                                  {"dof", std::vector<double>(grasp.dof.begin(), grasp.dof.end())},
-                                  {"epsilon", grasp.epsilon},
-                                  {"held", grasp.held}});
-  for (const MappingNetwork& network : model->networks()) {
-    const bool direct = network.shape == model::ShapeKind::unknown;
-    nlohmann::json entry{{"network", direct ? "direct" : model::to_string(network.shape)},
-                         {"training_error", network.errors.training},
-                         {"validation_error", network.errors.validation},
-                         {"test_error", network.errors.test}};
-    if (!direct) {
-      const Comparison c = compare(*model, sets.test, network.shape, true);
-      entry["grasp_test_error"] = c.intelligent;
-      entry["grasp_test_error_of_direct"] = c.direct;
-    }
-    document["networks"].push_back(entry);
+  nlohmann::json document{{"hand", hand_name}, {"scheme", scheme->name}};
+  for (const RobotGrasp& grasp : *grasps) document["grasps"].push_back(describe(grasp));
+  if (!close_only) {
+    Sets sets;
+    trainer.network.seed = static_cast<std::uint32_t>(people.seed);
+    SetOptions others = people;
+    others.users = 3;
+    sets.training = demonstrate(*hand, *scheme, *grasps, people);
+    others.seed = people.seed + 1;
+    sets.validation = demonstrate(*hand, *scheme, *grasps, others);
+    others.seed = people.seed + 2;
+    sets.test = demonstrate(*hand, *scheme, *grasps, others);
+    if (!set_file.empty())
+      if (auto saved = learning::save(set_file, sets.training); !saved)
+        return refuse(saved.error());
+    Shown shown;
+    const double before = since_begin();
+    const auto model = train_mapping(*hand, *scheme, sets, trainer, std::ref(shown));
+    if (!model) return refuse(model.error());
+    document["training_seconds"] = since_begin() - before;
+    if (auto saved = model->save(out, *hand); !saved) return refuse(saved.error());
+    document["model"] = out;
+    document["pairs"] = sets.training.pairs.size();
+    document["training_set"] = model->traits().training_set_digest;
+    for (const MappingNetwork& network : model->networks())
+      document["networks"].push_back(describe(*model, network, sets.test));
   }
+  document["seconds"] = since_begin();
   if (json) {
     std::cout << document.dump(2) << '\n';
     return 0;
@@ -150,10 +194,13 @@ int main(int argc, char** argv) {
     log::info("{} {}: epsilon {:.3f}, {}", grasp["object"].get<std::string>(),
               grasp["type"].get<std::string>(), grasp["epsilon"].get<double>(),
               grasp["held"].get<bool>() ? "held" : "not held");
-  for (const auto& network : document["networks"])
-    log::info("{}: error {:.4f} rad² trained, {:.4f} on other people",
-              network["network"].get<std::string>(), network["training_error"].get<double>(),
-              network["test_error"].get<double>());
-  log::info("{} pairs, {:.1f} s, {}", sets.training.pairs.size(), took, out);
+  if (!close_only) {
+    for (const auto& network : document["networks"])
+      log::info("{}: error {:.4f} rad² trained, {:.4f} on other people",
+                network["network"].get<std::string>(), network["training_error"].get<double>(),
+                network["test_error"].get<double>());
+    log::info("{} pairs, {}", document["pairs"].get<std::size_t>(), out);
+  }
+  log::info("{:.1f} s", document["seconds"].get<double>());
   return 0;
 }

@@ -1,6 +1,10 @@
 #pragma once
 
+#include <filesystem>
+#include <functional>
 #include <prehend/base/error.hpp>
+#include <prehend/grasping/planner.hpp>
+#include <prehend/mapping/grasp_type.hpp>
 #include <prehend/model/catalogue.hpp>
 #include <prehend/model/hand_model.hpp>
 #include <string>
@@ -13,21 +17,47 @@ namespace prehend::mapping {
 /// A robot hand closed on an object.
 struct RobotGrasp {
   std::string object;
-  std::string type;  // power wrap, circular sphere, precision
+  GraspType type = GraspType::none;
   model::Shape shape;
-  Pose X_OG;            // grasp frame that was closed from
-  Eigen::VectorXd dof;  // rad: where the fingers were stopped
+  Pose X_OG = Pose::Identity();  // grasp frame that was closed from
+  Eigen::VectorXd preshape;      // DoF values before closing, rad or m
+  Eigen::VectorXd dof;           // where the fingers were stopped
+  Eigen::VectorXd closing;       // of each DoF: +1, -1, which way it closed, 0 if it rested
   double epsilon = -1;
-  bool held = false;  // after being lifted
+  bool held = false;  // after being lifted and shaken
 };
+
+/// The grasp with its closing fingers so far past contact: rad, or what stands for it where a jaw
+/// slides; at most the hand's limits.
+Eigen::VectorXd past_contact(const model::HandModel& hand, const RobotGrasp& grasp, double angle);
 
 /// Places a hand's grasp frame everywhere where the object can be grasped in another way: from
 /// above and from the side, across each pair of faces.
 std::vector<Pose> approaches(const model::Shape& shape, const model::Reach& reach);
 
-/// Closes the hand in Bullet from every preshape of the scheme, and keeps the one that holds when
-/// it is lifted, with the largest epsilon. Fails when the fingers find no two contacts from any.
+/// The types that a hand makes from there: power wrap from the side; circular sphere, with all
+/// fingers, and precision, with the fingertips of some, from above.
+std::vector<GraspType> types_from(const Pose& X_OG);
+
+/// Closes the hand in Bullet from every preshape of the scheme for this type, and keeps the one
+/// that holds when it is lifted and shaken, with the largest epsilon. Fails when the fingers find
+/// no two contacts from any without reaching into the table.
 Expected<RobotGrasp> robot_grasp(const model::HandModel& hand, const Scheme& scheme,
-                                 const model::CatalogueObject& object, const Pose& X_OG);
+                                 const model::CatalogueObject& object, const Pose& X_OG,
+                                 GraspType type);
+
+/// The same on every object of the catalogue, from every approach, with every type. What the hand
+/// cannot grasp is left out, and `report` is told why. The same however the work is divided.
+std::vector<RobotGrasp> close_on_catalogue(const model::HandModel& hand, const Scheme& scheme,
+                                           const model::Catalogue& catalogue,
+                                           const grasping::ForEach& for_each,
+                                           const std::function<void(const Error&)>& report);
+
+/// As a sealed file of kind «robot-grasps», so that nobody needs to close the hand again. Loading
+/// refuses what is damaged or was made for another hand.
+Expected<void> save_robot_grasps(const std::filesystem::path& file, const model::HandModel& hand,
+                                 const std::vector<RobotGrasp>& grasps);
+Expected<std::vector<RobotGrasp>> load_robot_grasps(const std::filesystem::path& file,
+                                                    const model::HandModel& hand);
 
 }  // namespace prehend::mapping

@@ -6,35 +6,45 @@
 #include <optional>
 #include <prehend/proto/sealed_file.hpp>
 #include <set>
+#include <utility>
 
 namespace prehend::mapping {
 
 namespace {
 
-/// A grasp's posture with the fingers so far past contact.
-Eigen::VectorXd past_contact(const model::HandModel& hand, const Eigen::VectorXd& dof,
-                             double angle) {
-  Eigen::VectorXd result = dof;
-  for (std::size_t i = 0; i < hand.dofs().size(); ++i)
-    result[static_cast<Eigen::Index>(i)] += angle * hand.dofs()[i].closing;
-  return hand.clamp(result);
+/// What a network of this shape is told beside the features; nothing if the shape is unknown.
+Eigen::VectorXd told(const learning::TrainingPair& pair, model::ShapeKind shape, SizeInput input) {
+  if (shape == model::ShapeKind::unknown) return {};
+  return size_numbers(input, {shape, pair.size}, pair.X_OG);
 }
 
 /// Columns of inputs and outputs, unscaled. unknown: all pairs, nine inputs; else that shape's
-/// pairs with its size.
-learning::Samples columns(const learning::TrainingSet& set, model::ShapeKind shape) {
-  const bool sized = shape != model::ShapeKind::unknown;
-  std::vector<const learning::TrainingPair*> used;
+/// pairs with the object's size. Pairs shown without an object belong to each of that shape.
+learning::Samples columns(const learning::TrainingSet& set, model::ShapeKind shape,
+                          SizeInput input) {
+  const auto less = [](const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
+    return std::lexicographical_compare(a.begin(), a.end(), b.begin(), b.end());
+  };
+  std::set<Eigen::VectorXd, decltype(less)> objects(less);
   for (const learning::TrainingPair& pair : set.pairs)
-    if (!sized || pair.shape == model::to_string(shape)) used.push_back(&pair);
+    if (pair.shape == model::to_string(shape)) objects.insert(told(pair, shape, input));
+  if (shape == model::ShapeKind::unknown) objects.insert(Eigen::VectorXd());
+
+  std::vector<std::pair<const learning::TrainingPair*, Eigen::VectorXd>> used;
+  for (const learning::TrainingPair& pair : set.pairs) {
+    if (shape == model::ShapeKind::unknown || pair.shape == model::to_string(shape))
+      used.emplace_back(&pair, told(pair, shape, input));
+    else if (pair.shape.empty())
+      for (const Eigen::VectorXd& object : objects) used.emplace_back(&pair, object);
+  }
   const auto count = static_cast<Eigen::Index>(used.size());
-  learning::Samples samples{Eigen::MatrixXd(feature_count + (sized ? 1 : 0), count),
+  const Eigen::Index sizes = shape == model::ShapeKind::unknown ? 0 : size_count(input, shape);
+  learning::Samples samples{Eigen::MatrixXd(feature_count + sizes, count),
                             Eigen::MatrixXd(set.dof_names.size(), count)};
   for (Eigen::Index k = 0; k < count; ++k) {
-    const learning::TrainingPair& pair = *used[static_cast<std::size_t>(k)];
-    samples.inputs.col(k).head<feature_count>() = pair.features;
-    if (sized) samples.inputs(feature_count, k) = model::characteristic_size({shape, pair.size});
-    samples.outputs.col(k) = pair.dof;
+    const auto& [pair, object] = used[static_cast<std::size_t>(k)];
+    samples.inputs.col(k) << pair->features, object;
+    samples.outputs.col(k) = pair->dof;
   }
   return samples;
 }
@@ -69,9 +79,9 @@ constexpr double output_margin = 0.1;
 Expected<MappingNetwork> train_network(const Sets& sets, model::ShapeKind shape,
                                        const TrainerOptions& options,
                                        const std::function<void(double)>& progress) {
-  const learning::Samples training = columns(sets.training, shape);
-  const learning::Samples validation = columns(sets.validation, shape);
-  auto input = learning::Scaling::fit(training.inputs, learning::ScalingKind::each_feature);
+  const learning::Samples training = columns(sets.training, shape, options.size_input);
+  const learning::Samples validation = columns(sets.validation, shape, options.size_input);
+  auto input = learning::Scaling::fit(training.inputs, options.scaling);
   if (!input) return tl::unexpected(input.error());
   auto output =
       learning::Scaling::fit(training.outputs, learning::ScalingKind::each_feature, output_margin);
@@ -89,32 +99,11 @@ Expected<MappingNetwork> train_network(const Sets& sets, model::ShapeKind shape,
   }
   MappingNetwork made{shape, std::move(best->network), std::move(*input), std::move(*output), {}};
   made.errors = {error(made, training), error(made, validation),
-                 error(made, columns(sets.test, shape))};
+                 error(made, columns(sets.test, shape, options.size_input))};
   return made;
 }
 
 }  // namespace
-
-std::vector<RobotGrasp> close_on_catalogue(const model::HandModel& hand, const Scheme& scheme,
-                                           const model::Catalogue& catalogue,
-                                           const Progress& progress,
-                                           const std::function<void(const Error&)>& report) {
-  std::vector<RobotGrasp> grasps;
-  double done = 0;
-  for (const model::CatalogueObject& object : catalogue.objects()) {
-    const auto ways = approaches(object.shape, hand.reach());
-    if (ways.empty()) report({"does not fit into the hand", object.name, "left out"});
-    for (const Pose& X_OG : ways) {
-      auto grasp = robot_grasp(hand, scheme, object, X_OG);
-      if (grasp)
-        grasps.push_back(std::move(*grasp));
-      else
-        report({grasp.error().message(), object.name, "this approach is left out"});
-    }
-    progress("closing the hand", ++done / static_cast<double>(catalogue.objects().size()));
-  }
-  return grasps;
-}
 
 learning::TrainingSet demonstrate(const model::HandModel& hand, const Scheme& scheme,
                                   const std::vector<RobotGrasp>& grasps,
@@ -124,7 +113,9 @@ learning::TrainingSet demonstrate(const model::HandModel& hand, const Scheme& sc
   set.scheme = scheme.name;
   for (const model::HandDof& dof : hand.dofs()) set.dof_names.push_back(dof.name);
 
-  const SchemePosture& open = scheme.postures.front();
+  const std::vector<SchemePosture> postures = scheme.posture_set(options.postures);
+  const SchemePosture& open = scheme.open;
+  std::size_t turn = 0;  // of the basic postures
   for (int person = 0; person < options.users; ++person) {
     // Seeds of people must not meet those of other sets' people.
     const std::uint64_t seed = options.seed * 1000003 + static_cast<std::uint64_t>(person);
@@ -137,10 +128,10 @@ learning::TrainingSet demonstrate(const model::HandModel& hand, const Scheme& sc
       pair.user = demonstrator.user();
       pair.take = static_cast<unsigned>(take);
       pair.source = "synthetic";
-      const auto show = [&](const std::string& name, const Closure& human,
+      const auto show = [&](std::string_view name, const Closure& human, double splay,
                             const Eigen::VectorXd& robot, double complete) {
         pair.posture = name;
-        pair.features = demonstrator.read(human);
+        pair.features = demonstrator.read(human, splay);
         pair.dof = robot;
         set.pairs.push_back(pair);
         for (int i = 0; i < options.on_the_way; ++i) {
@@ -148,32 +139,34 @@ learning::TrainingSet demonstrate(const model::HandModel& hand, const Scheme& sc
           Closure part{};
           for (std::size_t f = 0; f < part.size(); ++f)
             part[f] = open.human[f] + complete * share * (human[f] - open.human[f]);
-          pair.posture = on_the_way_to + name;
-          pair.features = demonstrator.read(part);
+          pair.posture = on_the_way_to + std::string(name);
+          pair.features = demonstrator.read(part, open.splay + share * (splay - open.splay));
           pair.dof = open.robot + share * (robot - open.robot);
           set.pairs.push_back(pair);
         }
       };
-      std::set<std::string> posed;
       for (const RobotGrasp& grasp : grasps) {
         pair.object = grasp.object;
         pair.shape = model::to_string(grasp.shape.kind);
         pair.size = grasp.shape.size;
-        if (posed.insert(grasp.object).second)
-          for (const SchemePosture& posture : scheme.postures)
-            show(posture.name, demonstrator.repeat(posture.human), posture.robot, 1.0);
+        pair.X_OG = grasp.X_OG;
+        for (int i = 0; i < options.beside; ++i) {
+          const SchemePosture& posture = postures[turn++ % postures.size()];
+          show(posture.name, demonstrator.repeat(posture.human), posture.splay, posture.robot, 1.0);
+        }
         // None: this person's hand does not fit around it.
-        if (const auto closure = demonstrator.grasp(grasp.shape, grasp.X_OG))
-          show(grasp.type, *closure, past_contact(hand, grasp.dof, options.past_contact),
-               options.complete);
+        if (const auto human = demonstrator.reach(grasp.shape, grasp.X_OG, grasp.type))
+          show(to_string(grasp.type), human->closure, open.splay,
+               past_contact(hand, grasp, options.past_contact), options.complete);
       }
     }
   }
   return set;
 }
 
-Expected<MappingModel> train_mapping(const model::HandModel& hand, const Sets& sets,
-                                     const TrainerOptions& options, const Progress& progress) {
+Expected<MappingModel> train_mapping(const model::HandModel& hand, const Scheme& scheme,
+                                     const Sets& sets, const TrainerOptions& options,
+                                     const Progress& progress) {
   for (const learning::TrainingSet* set : {&sets.training, &sets.validation, &sets.test}) {
     if (auto ok = learning::check(*set); !ok) return tl::unexpected(ok.error());
     if (set->hand != hand.name())
@@ -197,22 +190,19 @@ Expected<MappingModel> train_mapping(const model::HandModel& hand, const Sets& s
     if (!network) return tl::unexpected(network.error());
     networks.push_back(std::move(*network));
   }
-  return MappingModel::create(hand, sets.training.scheme,
-                              proto::digest(learning::serialise(sets.training)),
-                              std::move(networks));
+  ModelTraits traits{scheme.name, proto::digest(learning::serialise(sets.training)),
+                     options.size_input, scheme.lower, scheme.upper};
+  return MappingModel::create(hand, std::move(traits), std::move(networks));
 }
 
 Comparison compare(const MappingModel& model, const learning::TrainingSet& set,
                    model::ShapeKind shape, bool grasps_only) {
-  static constexpr std::array grasp_names{"power wrap", "circular sphere", "precision"};
   Comparison result;
   for (const learning::TrainingPair& pair : set.pairs) {
     if (pair.shape != model::to_string(shape)) continue;
-    if (grasps_only &&
-        std::find(grasp_names.begin(), grasp_names.end(), pair.posture) == grasp_names.end())
-      continue;
+    if (grasps_only && !grasp_type_from_string(pair.posture)) continue;
     const Features features = pair.features;
-    const auto known = model.intelligent(features, {shape, pair.size});
+    const auto known = model.intelligent(features, {shape, pair.size}, pair.X_OG);
     if (!known) continue;
     result.direct += (model.direct(features).dof - pair.dof).squaredNorm();
     result.intelligent += (known->dof - pair.dof).squaredNorm();

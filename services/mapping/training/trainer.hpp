@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <functional>
 #include <prehend/base/error.hpp>
+#include <prehend/learning/scaling.hpp>
 #include <prehend/learning/training.hpp>
 #include <prehend/learning/training_set.hpp>
 #include <prehend/mapping/mapping_model.hpp>
@@ -21,8 +22,10 @@ namespace prehend::mapping {
 using Progress = std::function<void(std::string_view step, double share)>;
 
 struct SetOptions {
-  int users = 10;      // of synthetic people
-  int takes = 2;       // each puts the glove on so often
+  int users = 20;      // of synthetic people
+  int takes = 1;       // each puts the glove on so often
+  int postures = 7;    // basic ones: 4, 7, 10 or 13 (see Scheme::posture_set)
+  int beside = 1;      // basic postures that are shown with each grasp; they take turns
   int on_the_way = 1;  // pairs between the open hand and each posture shown
   /// Share of a person's closing on an object at which the robot hand is closed. Takes differ in
   /// how far the fingers bend around the same object; the robot must grip in all of them.
@@ -34,23 +37,18 @@ struct SetOptions {
   DemonstratorOptions demonstrator;
 };
 
-/// Closes the robot hand on every object of the catalogue, from every approach. Objects and
-/// approaches that it cannot grasp are left out; `report` is told of each.
-std::vector<RobotGrasp> close_on_catalogue(const model::HandModel& hand, const Scheme& scheme,
-                                           const model::Catalogue& catalogue,
-                                           const Progress& progress,
-                                           const std::function<void(const Error&)>& report);
-
-/// What synthetic people show: in each take the scheme's postures and every grasp, once for each
-/// object (postures have nothing to do with an object, but its network must know them). Between the
-/// open hand (the scheme's first posture) and each of them lie pairs in proportion: a network that
-/// knows the ends alone jumps somewhere between them.
+/// What synthetic people show: in each take every grasp, and with it some of the scheme's postures
+/// (which have nothing to do with the object, but its network must know them).
+/// Between the open hand (the scheme's first posture) and each of them lie pairs in proportion: a
+/// network that knows the ends alone jumps somewhere between them.
 learning::TrainingSet demonstrate(const model::HandModel& hand, const Scheme& scheme,
                                   const std::vector<RobotGrasp>& grasps, const SetOptions& options);
 
 struct TrainerOptions {
   learning::TrainingOptions network{.hidden = 12, .epochs = 1200, .patience = 150};
   int restarts = 3;  // first weights that are tried; the best by validation error is kept
+  SizeInput size_input = SizeInput::seen;
+  learning::ScalingKind scaling = learning::ScalingKind::each_feature;  // of the inputs
 };
 
 /// A set for each purpose; their users are disjoint.
@@ -60,8 +58,9 @@ struct Sets {
 
 /// Trains direct mapping on all pairs without shape and size, and intelligent mapping for each
 /// shape among them on that shape's pairs with its size.
-Expected<MappingModel> train_mapping(const model::HandModel& hand, const Sets& sets,
-                                     const TrainerOptions& options, const Progress& progress);
+Expected<MappingModel> train_mapping(const model::HandModel& hand, const Scheme& scheme,
+                                     const Sets& sets, const TrainerOptions& options,
+                                     const Progress& progress);
 
 /// eq. 5.1 of a model on the pairs of one shape, rad²: of its direct and of its intelligent
 /// answers. Grasps only, or postures as well.

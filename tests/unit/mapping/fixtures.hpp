@@ -58,8 +58,20 @@ inline MappingNetwork random_network(model::ShapeKind shape, std::uint64_t seed,
           {}};
 }
 
+/// Traits of a model that keeps to the hand's own limits.
+inline ModelTraits plain_traits(const model::HandModel& hand) {
+  const auto dofs = static_cast<Eigen::Index>(hand.dofs().size());
+  ModelTraits traits{"random", "none", SizeInput::characteristic, Eigen::VectorXd(dofs),
+                     Eigen::VectorXd(dofs)};
+  for (Eigen::Index i = 0; i < dofs; ++i) {
+    traits.lower[i] = hand.dofs()[static_cast<std::size_t>(i)].lower;
+    traits.upper[i] = hand.dofs()[static_cast<std::size_t>(i)].upper;
+  }
+  return traits;
+}
+
 inline MappingModel random_model(std::uint64_t seed, const model::HandModel& hand = barrett()) {
-  return *MappingModel::create(hand, "random", "none",
+  return *MappingModel::create(hand, plain_traits(hand),
                                {random_network(model::ShapeKind::unknown, seed, hand),
                                 random_network(model::ShapeKind::cylinder, seed + 1, hand),
                                 random_network(model::ShapeKind::box, seed + 2, hand)});

@@ -127,7 +127,8 @@ TEST_F(MappingTest, KnowsTheObjectInReachAndCorrectsThePlacement) {
   EXPECT_LT(((last->X_WB * barrett().X_BG()).translation() - expected.translation()).norm(), 1e-6);
   EXPECT_LT(angle_between((last->X_WB * barrett().X_BG()).linear(), expected.linear()), 1e-6);
   const Features f = *features(tips({0.4, 0.4, 0.4, 0.4, 0.4}), 1);
-  EXPECT_TRUE(last->dof.isApprox(barrett().clamp(model_.intelligent(f, talc)->dof), 1e-9));
+  EXPECT_TRUE(last->dof.isApprox(
+      barrett().clamp(model_.intelligent(f, talc, Pose::Identity())->dof), 1e-9));
 }
 
 TEST_F(MappingTest, CorrectsNoMoreThanThreeCentimetresAndTwentyDegrees) {
@@ -367,7 +368,8 @@ TEST_F(MappingTest, PlacementAndFingersCanBeImprovedApart) {
       const double moved = (last->X_WB.translation() - base_at(X_WG).translation()).norm();
       EXPECT_NEAR(moved, place ? 0.02 : 0, 1e-6);
       const Features f = *features(tips({0.4, 0.4, 0.4, 0.4, 0.4}), 1);
-      const Answer expected = intelligent ? *model_.intelligent(f, talc) : model_.direct(f);
+      const Answer expected =
+          intelligent ? *model_.intelligent(f, talc, Pose::Identity()) : model_.direct(f);
       EXPECT_TRUE(last->dof.isApprox(barrett().clamp(expected.dof), 1e-9));
     }
 }

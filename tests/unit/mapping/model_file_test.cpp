@@ -57,9 +57,11 @@ TEST_F(ModelFile, ComesBackBitForBit) {
     for (double& value : f) value = random.uniform(-0.3, 0.3);
     EXPECT_EQ(loaded->direct(f).dof, saved.direct(f).dof);
     const model::Shape box{model::ShapeKind::box, {0.04, 0.12, 0.2}};
-    EXPECT_EQ(loaded->intelligent(f, box)->dof, saved.intelligent(f, box)->dof);
+    EXPECT_EQ(loaded->intelligent(f, box, Pose::Identity())->dof,
+              saved.intelligent(f, box, Pose::Identity())->dof);
   }
-  EXPECT_FALSE(loaded->intelligent(Features::Zero(), {model::ShapeKind::sphere, {1, 1, 1}}));
+  EXPECT_FALSE(loaded->intelligent(Features::Zero(), {model::ShapeKind::sphere, {1, 1, 1}},
+                                   Pose::Identity()));
 }
 
 TEST_F(ModelFile, NoMutationLoads) {
@@ -121,6 +123,14 @@ TEST_F(ModelFile, WithPartsMissingIsRefused) {
   EXPECT_THAT(refusal(), testing::HasSubstr("not finite"));
   rewrite([](auto& message) { message.mutable_networks(0)->mutable_layers(0)->set_outputs(0); });
   EXPECT_THAT(refusal(), testing::HasSubstr("do not fill"));
+  rewrite([](auto& message) { message.set_size_input("weight"); });
+  EXPECT_THAT(refusal(), testing::HasSubstr("unknown size input «weight»"));
+  rewrite([](auto& message) { message.set_size_input("dimensions"); });
+  EXPECT_THAT(refusal(), testing::HasSubstr("wrong number of inputs"));
+  rewrite([](auto& message) { message.clear_lower(); });
+  EXPECT_THAT(refusal(), testing::HasSubstr("wrong number of limits"));
+  rewrite([](auto& message) { message.set_upper(2, 9); });
+  EXPECT_THAT(refusal(), testing::HasSubstr("limits that are not the hand's"));
 }
 
 TEST_F(ModelFile, OfAnotherKindOrAbsentIsRefused) {
@@ -144,7 +154,7 @@ TEST(MappingModel, SaysWhenItIsAskedOutsideOfWhatItKnows) {
   // The nearest trained size answers for one outside.
   f.setZero();
   const auto of_radius = [&](double r) {
-    return *model.intelligent(f, {model::ShapeKind::cylinder, {r, r, 0.1}});
+    return *model.intelligent(f, {model::ShapeKind::cylinder, {r, r, 0.1}}, Pose::Identity());
   };
   EXPECT_FALSE(of_radius(0.08).extrapolating);
   EXPECT_TRUE(of_radius(0.09).extrapolating);

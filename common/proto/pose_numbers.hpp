@@ -1,0 +1,15 @@
+#pragma once
+
+#include <array>
+#include <prehend/base/pose.hpp>
+#include <vector>
+
+namespace prehend::proto {
+
+/// A pose as it lies in our files: the rows of the 3 by 4 matrix (R | p), p in m. Unlike a
+/// quaternion it comes back bit for bit.
+std::array<double, 12> pose_numbers(const Pose& X);
+/// Refuses another count, what is not finite and what is no rotation.
+Expected<Pose> pose_from_numbers(const std::vector<double>& numbers);
+
+}  // namespace prehend::proto
