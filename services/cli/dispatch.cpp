@@ -19,6 +19,7 @@ const std::vector<Tool>& tools() {
       {"glove", "prehend-glove-tool", "decode a serial capture, emulate a tracker"},
       {"objects", "prehend-objects", "train, detect and evaluate object models"},
       {"train", "prehend-train", "train a mapping model for a robot hand"},
+      {"study", "prehend-study", "repeat the thesis's experiments and the grasp benchmark"},
       {"hand", "prehend-hand", "is this URDF a usable hand; make it one"},
       {"grasp", "prehend-grasp", "plan grasps, export them, quality of given contacts"},
   };

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "grasp_benchmark.hpp"
+#include "statistics.hpp"
+
+namespace prehend::mapping {
+
+/// What came of all takes of one hand with one mode.
+struct ModeSummary {
+  std::string hand;
+  BenchmarkedMode mode;
+  Interval held;                  // share of all takes
+  Interval held_of_demonstrated;  // of those whose demonstrated robot grasp itself survives
+  /// Of the same takes and those: share held minus that of direct mapping with the same placement;
+  /// count 0 without such takes.
+  Interval above_direct;
+  Interval joint_error;      // rad²
+  Interval fingertip_error;  // m
+  Interval epsilon;          // of the contacts; −1 without force closure
+  Interval penetration;      // m
+};
+
+/// One a hand and mode, in the order in which they come.
+std::vector<ModeSummary> summarise(const std::vector<TrialResult>& trials);
+
+/// A line a take and mode.
+std::string to_csv(const std::vector<TrialResult>& trials);
+
+/// Rows of cells, the first one is the header: for Markdown and HTML alike.
+std::vector<std::vector<std::string>> to_rows(const std::vector<ModeSummary>& summaries);
+
+}  // namespace prehend::mapping

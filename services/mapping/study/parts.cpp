@@ -1,0 +1,47 @@
+#include "parts.hpp"
+
+#include <prehend/base/paths.hpp>
+#include <tuple>
+
+namespace prehend::mapping {
+
+Expected<Parts> load_parts(const std::vector<std::string>& hands, bool with_models) {
+  const auto share = share_directory();
+  auto catalogue = model::Catalogue::load(share / "models" / "objects" / "catalogue.toml");
+  if (!catalogue) return tl::unexpected(catalogue.error());
+  Parts parts{std::move(*catalogue), {}};
+  for (const std::string& name : hands) {
+    auto hand = model::HandModel::load(model::hand_directory(name));
+    if (!hand) return tl::unexpected(hand.error());
+    auto scheme = Scheme::load(share / "schemes" / (name + ".toml"), *hand);
+    if (!scheme) return tl::unexpected(scheme.error());
+    auto grasps = load_robot_grasps(share / "trained" / (name + ".grasps"), *hand);
+    if (!grasps) return tl::unexpected(grasps.error());
+    std::optional<MappingModel> model;
+    if (with_models) {
+      auto loaded = MappingModel::load(share / "trained" / (name + ".mapping"), *hand);
+      if (!loaded) return tl::unexpected(loaded.error());
+      model = std::move(*loaded);
+    }
+    parts.hands.emplace(name, StudiedHand{std::move(*hand), std::move(*scheme), std::move(*grasps),
+                                          std::move(model)});
+  }
+  return parts;
+}
+
+std::vector<const RobotGrasp*> grasps_of(const Parts& parts, const std::string& hand,
+                                         model::ShapeKind shape, GraspType type) {
+  std::vector<const RobotGrasp*> found;
+  for (const model::CatalogueObject& object : parts.catalogue.objects()) {
+    if (object.shape.kind != shape) continue;
+    const RobotGrasp* best = nullptr;
+    for (const RobotGrasp& grasp : parts.hand(hand).grasps)
+      if (grasp.object == object.name && grasp.type == type &&
+          (!best || std::tie(grasp.held, grasp.epsilon) > std::tie(best->held, best->epsilon)))
+        best = &grasp;
+    if (best) found.push_back(best);
+  }
+  return found;
+}
+
+}  // namespace prehend::mapping

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <map>
+#include <optional>
+#include <prehend/base/error.hpp>
+#include <prehend/mapping/mapping_model.hpp>
+#include <prehend/model/catalogue.hpp>
+#include <prehend/model/hand_model.hpp>
+#include <prehend/training/robot_grasps.hpp>
+#include <prehend/training/scheme.hpp>
+#include <string>
+#include <vector>
+
+namespace prehend::mapping {
+
+/// A hand with its scheme, how it grasps the catalogue, and its trained mapping if that is needed.
+struct StudiedHand {
+  model::HandModel hand;
+  Scheme scheme;
+  std::vector<RobotGrasp> grasps;
+  std::optional<MappingModel> model;
+};
+
+/// All that experiments are made with. They only read it, from several threads.
+struct Parts {
+  model::Catalogue catalogue;
+  std::map<std::string, StudiedHand> hands;
+
+  const StudiedHand& hand(const std::string& name) const { return hands.at(name); }
+};
+
+/// Loads hands, schemes, and grasps as the build has closed them; `with_models`, also the trained
+/// mappings.
+Expected<Parts> load_parts(const std::vector<std::string>& hands, bool with_models);
+
+/// The hand's best grasp of this type on each object of that shape that it can grasp so, in the
+/// catalogue's order: held before not held, then by epsilon.
+std::vector<const RobotGrasp*> grasps_of(const Parts& parts, const std::string& hand,
+                                         model::ShapeKind shape, GraspType type);
+
+}  // namespace prehend::mapping

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <prehend/grasping/planner.hpp>
+#include <string>
+#include <vector>
+
+#include "experiment.hpp"
+#include "grasp_benchmark.hpp"
+
+namespace prehend::mapping {
+
+struct StudyOptions {
+  bool quick = false;
+  std::uint64_t seed = 1;
+};
+
+/// An experiment with what it came to.
+struct Studied {
+  const Experiment* experiment = nullptr;
+  Table table;
+  Outcome outcome;
+};
+
+/// Repeats all experiments and judges them. Repetitions are the pieces of work that `for_each`
+/// divides; the result is the same however it does.
+std::vector<Studied> study(const Parts& parts, const std::vector<Experiment>& experiments,
+                           const StudyOptions& options, const grasping::ForEach& for_each);
+
+/// The hands that the grasp benchmark is made with.
+inline constexpr std::array benchmark_hands{"barrett", "dlr", "robonaut"};
+
+/// The grasp benchmark of these hands, with and without placement: quick, direct and intelligent
+/// mapping in 24 takes each; full, also Cartesian and retargeting where the hand allows them, and
+/// 270 takes.
+Expected<std::vector<TrialResult>> benchmark(const Parts& parts, const StudyOptions& options,
+                                             const grasping::ForEach& for_each,
+                                             const std::function<void(double)>& progress);
+
+/// The hands that these need.
+std::vector<std::string> hands_of(const std::vector<Experiment>& experiments);
+
+}  // namespace prehend::mapping

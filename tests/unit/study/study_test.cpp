@@ -1,0 +1,102 @@
+// The study as a user calls it: a JSON document that keeps its contract, files that say the same,
+// and the same answer however the work is divided. What is found is not judged here: it is what the
+// study is for.
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <sstream>
+
+namespace {
+
+using Json = nlohmann::json;
+
+struct Answer {
+  int code = -1;
+  std::string out;
+};
+
+Answer run(const std::string& arguments) {
+  Answer answer;
+  FILE* pipe = popen((std::string(PREHEND_STUDY) + " " + arguments + " 2>/dev/null").c_str(), "r");
+  if (!pipe) return answer;
+  char buffer[4096];
+  while (const auto count = std::fread(buffer, 1, sizeof buffer, pipe))
+    answer.out.append(buffer, count);
+  answer.code = WEXITSTATUS(pclose(pipe));
+  return answer;
+}
+
+std::filesystem::path scratch() {
+  return std::filesystem::path(testing::TempDir()) / ("study" + std::to_string(getpid()));
+}
+
+std::string text_of(const std::filesystem::path& file) {
+  std::ostringstream text;
+  text << std::ifstream(file, std::ios::binary).rdbuf();
+  return text.str();
+}
+
+TEST(Study, PrintsItsFindingsAndWritesItsFiles) {
+  const auto folder = scratch();
+  const Answer answer = run("--quick --json --only 5.18,6.2 --out " + folder.string());
+  ASSERT_EQ(answer.code, 0);
+  const Json document = Json::parse(answer.out);
+  EXPECT_TRUE(document.at("grasp_benchmark").empty());
+  std::map<std::string, int> findings;
+  for (const Json& finding : document.at("findings")) {
+    ++findings[finding.at("figure")];
+    for (const char* key : {"claim", "measured", "reason"})
+      EXPECT_FALSE(finding.at(key).get<std::string>().empty()) << finding;
+    EXPECT_EQ(finding.at("reproduced").get<bool>(), finding.at("verdict") == "reproduced");
+    EXPECT_TRUE(std::set<std::string>({"reproduced", "not reproduced", "undecided"})
+                    .contains(finding.at("verdict")));
+  }
+  EXPECT_EQ(findings, (std::map<std::string, int>{{"5.18", 3}, {"6.2", 1}}));
+
+  const std::string html = text_of(folder / "report.html");
+  for (const Json& finding : document.at("findings"))
+    EXPECT_NE(html.find(finding.at("claim").get<std::string>()), std::string::npos);
+  for (const std::string figure : {"5.18", "6.2"}) {
+    EXPECT_EQ(text_of(folder / (figure + ".png")).substr(1, 3), "PNG");
+    // The mean and interval of every point, in this order.
+    std::istringstream csv(text_of(folder / (figure + ".csv")));
+    std::string line;
+    std::getline(csv, line);
+    EXPECT_EQ(line, "series,x,mean,ci95_low,ci95_high,count");
+    int points = 0;
+    for (; std::getline(csv, line); ++points) {
+      double mean = 0, low = 0, high = 0;
+      ASSERT_EQ(std::sscanf(line.c_str(), "%*[^,],%*[^,],%lf,%lf,%lf", &mean, &low, &high), 3);
+      EXPECT_LE(low, mean);
+      EXPECT_LE(mean, high);
+    }
+    EXPECT_GT(points, 1);
+    const std::string all = text_of(folder / (figure + "-repetitions.csv"));
+    EXPECT_EQ(std::count(all.begin(), all.end(), '\n'), 101);
+  }
+  std::filesystem::remove_all(folder);
+}
+
+TEST(Study, IsTheSameForASeedHoweverTheWorkIsDivided) {
+  const auto findings = [](const std::string& arguments) {
+    return Json::parse(run("--quick --json --only 6.2 " + arguments).out).at("findings");
+  };
+  const Json one = findings("--threads 1");
+  EXPECT_EQ(one, findings("--threads 3"));
+  EXPECT_NE(one, findings("--seed 2"));
+}
+
+TEST(Study, RefusesWrongUse) {
+  EXPECT_EQ(run("--only 7.1").code, 2);
+  EXPECT_EQ(run("--threads many").code, 2);
+  EXPECT_EQ(run("--quick --only 6.2 --out /proc/nowhere").code, 3);
+  EXPECT_EQ(run("--help").code, 0);
+}
+
+}  // namespace
