@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <prehend/grasping/blocking.hpp>
 
 namespace prehend::simulation {
 namespace {
@@ -54,6 +55,9 @@ Verdict judge(Closure& closure) {
     verdict.quality = std::move(*quality);
   for (const analysis::Contact& contact : closure.contacts)
     verdict.penetration = std::max(verdict.penetration, contact.depth);
+  const model::HandModel& hand = closure.world->hand();
+  if (const auto blocking = grasping::find_blocking(hand, closure.world->hand_motion().joint))
+    verdict.blocking = grasping::to_string(*blocking, hand);
   verdict.hold = grasping::hold_test(*closure.world, closure.body);
   return verdict;
 }

@@ -8,6 +8,7 @@
 #include <prehend/base/error.hpp>
 #include <prehend/grasping/hold_test.hpp>
 #include <prehend/grasping/world.hpp>
+#include <string>
 #include <vector>
 
 #include "command.hpp"
@@ -31,6 +32,8 @@ struct Verdict {
   analysis::Quality quality;
   double penetration = 0;  // m, deepest contact
   grasping::HoldResult hold;
+  /// Which fingers keep each other from opening, and in which order they open; empty: none.
+  std::string blocking;
 };
 
 /// Quality of the contacts, and whether the object is held when it is lifted. Uses up the world;

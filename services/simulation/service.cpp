@@ -203,6 +203,9 @@ void Service::publish_report(const Closure& closure, const Verdict& verdict) {
   reports_.publish(report);
   log::info("{}: {} contacts, epsilon {:.4f}, {}", closure.object.name, closure.contacts.size(),
             verdict.quality.epsilon, verdict.hold.held ? "held" : verdict.hold.reason);
+  if (verdict.blocking.empty()) return;
+  shell_.status().count("fingers_blocked");
+  log::warning("fingers keep each other from opening: {}", verdict.blocking);
 }
 
 }  // namespace prehend::simulation

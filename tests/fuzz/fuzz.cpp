@@ -26,9 +26,10 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr std::size_t most_bytes = 1 << 20;  // of an input
-constexpr unsigned longest_try = 20;         // s
-constexpr int failure = 9;                   // exit code of a child that saw one
+constexpr std::size_t most_bytes = 1 << 20;   // of an input
+constexpr unsigned longest_try = 20;          // s
+constexpr std::uint64_t enough_tries = 1000;  // to see one accepted and one refused
+constexpr int failure = 9;                    // exit code of a child that saw one
 
 /// Where child and parent both see what is being tried, so that the parent can tell it when the
 /// child is dead.
@@ -49,8 +50,14 @@ void attempt(const Fuzzer& fuzzer, Shared& shared, std::string input) {
   alarm(0);
 }
 
+/// Until the time is over and `least` were tried; on a machine so busy that few were tried until
+/// then, until there was one of each kind.
 void search(const Fuzzer& fuzzer, Shared& shared, Clock::time_point end, std::uint64_t least) {
-  for (; Clock::now() < end || shared.tried < least; ++shared.number) {
+  const auto too_few = [&] {
+    return shared.tried < least || ((shared.accepted == 0 || shared.accepted == shared.tried) &&
+                                    shared.tried < enough_tries);
+  };
+  for (; Clock::now() < end || too_few(); ++shared.number) {
     alarm(longest_try);
     Random random(shared.number);
     const std::string& seed = fuzzer.seeds[random.index(fuzzer.seeds.size())];

@@ -6,6 +6,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <prehend/base/log.hpp>
+#include <prehend/grasping/blocking.hpp>
 
 #include "export.hpp"
 #include "grasp_file.hpp"
@@ -27,11 +28,19 @@ int wrong(const Error& error) {
   return 2;
 }
 
-void print(const grasping::Plan& plan) {
+/// Which fingers of the closed hand keep each other from opening; empty: none.
+std::string blocking_of(const model::HandModel& hand, const grasping::PlannedGrasp& grasp) {
+  const auto found = grasping::find_blocking(hand, grasp.joints);
+  return found ? grasping::to_string(*found, hand) : std::string();
+}
+
+void print(const model::HandModel& hand, const grasping::Plan& plan) {
   for (std::size_t i = 0; i < plan.grasps.size(); ++i) {
     const grasping::PlannedGrasp& grasp = plan.grasps[i];
     fmt::print("{:3}  epsilon {:.4f}  {:2} contacts  {}\n", i, grasp.quality.epsilon,
                grasp.contacts.size(), describe(grasp.hold));
+    if (const std::string blocking = blocking_of(hand, grasp); !blocking.empty())
+      fmt::print("     {}\n", blocking);
   }
   fmt::print("{} of {} candidates closed with force closure\n", plan.closed,
              plan.options.candidates);
@@ -58,11 +67,13 @@ int plan(const PlanArguments& arguments) {
     nlohmann::ordered_json document = summary_json(*planned);
     document["seconds"] = seconds;
     document["grasps"] = nlohmann::ordered_json::array();
-    for (const auto& grasp : planned->grasps)
+    for (const auto& grasp : planned->grasps) {
       document["grasps"].push_back(to_json(*planned, grasp));
+      document["grasps"].back()["blocking"] = blocking_of(*hand, grasp);
+    }
     std::cout << document.dump(2) << "\n";
   } else {
-    print(*planned);
+    print(*hand, *planned);
     fmt::print("{:.1f} s\n", seconds);
   }
   return planned->held() ? 0 : 1;

@@ -24,6 +24,7 @@ struct TableArguments {
   std::vector<std::string> hands, objects;
   std::string save;
   grasping::PlanOptions options;
+  int most = 0;  // candidates, up to which a pair of which none held is planned again
   unsigned threads = 0;
   bool json = false, markdown = false, resume = false;
 };
@@ -86,12 +87,29 @@ void print(const std::vector<model::HandModel>& hands, const std::vector<Row>& r
   for (std::size_t i = 0; i < notes.size(); ++i) fmt::print("{}. {}\n", i + 1, notes[i]);
 }
 
+/// Most pairs need few candidates: one of which none held is planned again with four times as many.
+bool goes_on(const grasping::Plan& plan, const TableArguments& arguments) {
+  return !plan.held() && 4 * plan.options.candidates <= arguments.most;
+}
+
+Expected<grasping::Plan> plan_pair(const model::HandModel& hand, const grasping::Body& object,
+                                   const TableArguments& arguments) {
+  grasping::PlanOptions options = arguments.options;
+  while (true) {
+    auto plan = plan_with_progress(hand, object, options, arguments.threads);
+    if (!plan || !goes_on(*plan, arguments)) return plan;
+    options.candidates *= 4;
+  }
+}
+
 /// The plan that an earlier run has left in the file, if it was made with these options.
 std::optional<grasping::Plan> left_by_earlier_run(const std::filesystem::path& file,
-                                                  const grasping::PlanOptions& options) {
+                                                  const TableArguments& arguments) {
   auto plan = load_plan(file);
-  if (!plan || plan->options.seed != options.seed || plan->options.candidates != options.candidates)
-    return std::nullopt;
+  if (!plan || plan->options.seed != arguments.options.seed) return std::nullopt;
+  int candidates = arguments.options.candidates;
+  while (candidates < plan->options.candidates) candidates *= 4;
+  if (candidates != plan->options.candidates || goes_on(*plan, arguments)) return std::nullopt;
   return std::move(*plan);
 }
 
@@ -121,11 +139,11 @@ int table(const TableArguments& arguments) {
       const auto file = std::filesystem::path(arguments.save) /
                         fmt::format("{} {}.grasps", hand.name(), object.name);
       if (arguments.resume)
-        if (auto earlier = left_by_earlier_run(file, arguments.options)) {
+        if (auto earlier = left_by_earlier_run(file, arguments)) {
           row.plans.push_back(std::move(*earlier));
           continue;
         }
-      auto plan = plan_with_progress(hand, object, arguments.options, arguments.threads);
+      auto plan = plan_pair(hand, object, arguments);
       if (!plan) return refuse(plan.error());
       if (!arguments.save.empty()) {
         if (const auto saved = save(file, *plan); !saved) {
@@ -166,6 +184,12 @@ void add_table(CLI::App& app, int& exit_code) {
   command->add_option("--objects", arguments->objects, "names; else the whole catalogue");
   command->add_option("--candidates", arguments->options.candidates, "of each pair")
       ->capture_default_str()
+      ->check(CLI::Range(1, 1'000'000));
+  command
+      ->add_option(
+          "--most", arguments->most,
+          "candidates; a pair of which none held is planned again with four times as many,\n"
+          "up to this")
       ->check(CLI::Range(1, 1'000'000));
   command->add_option("--seed", arguments->options.seed, "of the sampling")->capture_default_str();
   command->add_option("--threads", arguments->threads, "0: one a core; the answer is the same")

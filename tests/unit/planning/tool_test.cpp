@@ -49,6 +49,7 @@ TEST(GraspTool, WrongUseIsTwoAndSaysWhy) {
            {"export", "FILE"},
            {"picture /nowhere/at.all -o x.png", "at.all"},
            {"table --objects Nothing", "Talc"},
+           {"table --most 0", "--most"},
            {"table --resume", "--save"}}) {
     const Answer answer = run(arguments);
     EXPECT_EQ(answer.code, 2) << arguments;
@@ -65,6 +66,8 @@ TEST(GraspTool, WhatIsPlannedIsExportedDrawnAndJudgedAlike) {
   const Json plan = Json::parse(planned.output);
   EXPECT_EQ(plan["candidates"], 8);
   ASSERT_FALSE(plan["grasps"].empty());
+  // Three fingers that close on a cylinder meet nothing of each other when they open.
+  EXPECT_EQ(plan["grasps"][0]["blocking"], "");
 
   const Answer exported = run("export --index 0 " + file);
   ASSERT_EQ(exported.code, 0);
@@ -83,6 +86,28 @@ TEST(GraspTool, WhatIsPlannedIsExportedDrawnAndJudgedAlike) {
   EXPECT_EQ(run("picture -o /nowhere/at/all.png --width 64 --height 64 " + file).code, 3);
   for (const auto& made : {std::filesystem::path(file), grasp, picture})
     std::filesystem::remove(made);
+}
+
+// What does not fit (Pringles are wider than the Rutgers hand) is tried again with four times as
+// many candidates; resumed, the same answer is read from the file.
+TEST(GraspTool, ATableTriesLongerWhereNothingHeld) {
+  const auto folder = scratch("plans");
+  std::filesystem::create_directory(folder);
+  const std::string asked =
+      "table --hands rutgers --objects Pringles --candidates 1 --most 5 "
+      "--json --save " +
+      folder.string();
+  const Answer made = run(asked);
+  ASSERT_EQ(made.code, 0) << made.complaint;
+  const Json cell = Json::parse(made.output)["grasps"][0];
+  EXPECT_EQ(cell["held"], false);
+  EXPECT_NE(cell["reason"].get<std::string>().find("wider"), std::string::npos);
+  EXPECT_NE(made.complaint.find("4 of 4"), std::string::npos) << made.complaint;
+  const Answer resumed = run(asked + " --resume");
+  EXPECT_EQ(resumed.code, 0);
+  EXPECT_EQ(resumed.complaint.find("closing"), std::string::npos) << resumed.complaint;
+  EXPECT_EQ(Json::parse(resumed.output)["grasps"][0], cell);
+  std::filesystem::remove_all(folder);
 }
 
 }  // namespace
