@@ -86,7 +86,8 @@ Mapping::Mapping(const model::HandModel& hand, const MappingModel& model,
       model_(model),
       options_(options),
       arbitration_(options.ramp),
-      grip_(hand, options.grip) {}
+      grip_(hand, options.grip),
+      arrival_(hand) {}
 
 Expected<void> Mapping::on_detection(const Detection& detection) {
   if (!is_valid(detection.shape)) return fail("detection without a shape");
@@ -206,16 +207,63 @@ void Mapping::update_trust(const std::optional<Candidate>& seen, Duration elapse
   trust_ += std::clamp(seen->trust - trust_, -change, change);
 }
 
+/// As near to the grasp as may be corrected: turned first and moved sideways, so that the fingers
+/// go past the object on both sides. The way along the approach is the operator's, until no more of
+/// it is left than can be corrected.
+Pose Mapping::toward(const Pose& X_WG, const Pose& X_WG_grasp) const {
+  const double most = options_.correct_distance;
+  Eigen::Vector3d off = X_WG_grasp.inverse() * X_WG.translation();
+  const double beside = off.head<2>().norm(), before = std::abs(off.z());
+  const double sideways = std::min(beside, most);
+  const double left = std::sqrt(most * most - sideways * sideways);
+  const double along = before <= left ? before : std::max(0.0, 2 * left - before);
+  if (beside > 0) off.head<2>() *= 1 - sideways / beside;
+  if (before > 0) off.z() *= 1 - along / before;
+  const Pose moved = make_pose(X_WG_grasp * off, X_WG_grasp.linear());
+  return limit_step(X_WG, moved, most, options_.correct_angle);
+}
+
+/// How far the grasp frame `X_WG` must move along its y, in which fingers close, m, so that a
+/// finger that has come near the object does not push it while those on the other side are still on
+/// their way: then the hand yields instead of the object.
+double Mapping::yielding(const Pose& X_WG) const {
+  const Pose X_OG = engaged_->detection.X_WO.inverse() * X_WG;
+  const auto distances = [&](double y) -> Eigen::ArrayXd {
+    const Pose X_OG_moved = X_OG * Eigen::Translation3d(0, y, 0);
+    return arrival_.distances(command_.dof, engaged_->detection.shape,
+                              hand_.X_BG() * X_OG_moved.inverse());
+  };
+  constexpr double step = 0.002;  // m
+  const Eigen::ArrayXd less = distances(-step), more = distances(step);
+  constexpr double far = 1;  // m
+  double rising = far, falling = far;
+  for (Eigen::Index f = 0; f < less.size(); ++f) {
+    // Fingers that are not beside the object do not push it sideways.
+    const double slope = (more[f] - less[f]) / (2 * step);
+    double& nearest = slope > 0 ? rising : falling;
+    if (std::abs(slope) > 0.5) nearest = std::min(nearest, 0.5 * (more[f] + less[f]));
+  }
+  const double room = options_.yield;
+  if (falling < room && rising > room) return -std::min(room - falling, rising - room);
+  if (rising < room && falling > room) return std::min(room - rising, falling - room);
+  return 0;
+}
+
 /// The hand's grasp frame with its placement corrected toward the object's nearest grasp.
 Pose Mapping::corrected(const Pose& X_WG, const std::optional<Candidate>& seen, Duration elapsed) {
   const double t = to_seconds(elapsed);
   // In a grip, the object moves with the hand: what was corrected stays.
   if (arbitration_.phase() != Phase::gripping) {
-    if (arbitration_.phase() == Phase::direct || !options_.place)
+    if (arbitration_.phase() == Phase::direct || !options_.place) {
       full_correction_ = Pose::Identity();
-    else if (seen && arbitration_.phase() != Phase::leaving)
-      full_correction_ = X_WG.inverse() * limit_step(X_WG, seen->X_WG, options_.correct_distance,
-                                                     options_.correct_angle);
+      yielded_ = 0;
+    } else if (seen && arbitration_.phase() != Phase::leaving) {
+      const auto aside = [&] { return seen->X_WG * Eigen::Translation3d(0, yielded_, 0); };
+      if (options_.intelligent && engaged_)
+        yielded_ = std::clamp(yielded_ + yielding(aside()), -options_.correct_distance,
+                              options_.correct_distance);
+      full_correction_ = X_WG.inverse() * toward(X_WG, aside());
+    }
     const Pose wanted = interpolate(Pose::Identity(), full_correction_, weight());
     correction_ = limit_step(correction_, wanted, options_.correct_speed * t,
                              options_.correct_turn_speed * t);
@@ -245,13 +293,11 @@ void Mapping::move_toward(const Eigen::VectorXd& dof, const Pose& X_WB, double t
   const auto closes = [&](Eigen::Index i) {
     return hand_.dofs()[static_cast<std::size_t>(i)].closing * change[i] > 0;
   };
-  const auto unit = [&](Eigen::Index i) {
-    return radian_of(hand_.dofs()[static_cast<std::size_t>(i)]);
-  };
   const auto speed = [&](Eigen::Index i) {
-    const double most = hand_.dofs()[static_cast<std::size_t>(i)].max_velocity;
+    const model::HandDof& limits = hand_.dofs()[static_cast<std::size_t>(i)];
+    const double most = limits.max_velocity;
     if (!closes(i)) return most;
-    return most + together * (std::min(most, options_.closing_speed * unit(i)) - most);
+    return most + together * (std::min(most, options_.closing_speed * radian_of(limits)) - most);
   };
   double slowest = 1;
   for (Eigen::Index i = 0; i < change.size(); ++i)

@@ -13,6 +13,7 @@
 #include <string_view>
 
 #include "arbitration.hpp"
+#include "arrival.hpp"
 #include "features.hpp"
 #include "grasp_type.hpp"
 #include "grip.hpp"
@@ -70,7 +71,7 @@ struct MappingOptions {
   FingerMode fingers = FingerMode::joints;
   bool intelligent = true;                      // let detections improve the fingers
   bool place = true;                            // let detections correct the placement
-  double enter = 0.15, leave = 0.20;            // m, from G to the nearest grasp of an object
+  double enter = 0.20, leave = 0.25;            // m, from G to the nearest grasp of an object
   double enter_angle = 0.8, leave_angle = 1.1;  // rad, the same
   double prefer = 0.03;  // m, by which another object must be nearer to take over
   double least_probability = 0.6;
@@ -88,6 +89,7 @@ struct MappingOptions {
   double correct_speed = 0.15;                           // m/s, at which the correction may change
   double correct_turn_speed = 1.5;                       // rad/s
   double closing_speed = 1.0;    // rad/s, of fingers that close on a known object
+  double yield = 0.006;          // m, from the object, where a finger makes the hand yield
   double base_speed = 1.0;       // m/s, of the hand's base
   double base_turn_speed = 3.0;  // rad/s
   Duration longest_step = std::chrono::milliseconds(100);  // motion of one command, at most
@@ -144,6 +146,8 @@ class Mapping {
   double mean_closing(const Eigen::VectorXd& dof) const;
   void update_trust(const std::optional<Candidate>& seen, Duration elapsed);
   double weight() const { return std::min(arbitration_.weight(), trust_); }
+  double yielding(const Pose& X_WG) const;
+  Pose toward(const Pose& X_WG, const Pose& X_WG_grasp) const;
   void move_toward(const Eigen::VectorXd& dof, const Pose& X_WB, double together, Duration elapsed);
 
   const model::HandModel& hand_;
@@ -153,9 +157,11 @@ class Mapping {
   double precision_ = 0;  // of the combined mode: share of the fingertips' answer
   Arbitration arbitration_;
   Grip grip_;
+  Arrival arrival_;
   std::map<std::uint32_t, Track> tracks_;
   std::optional<Candidate> engaged_;         // the object that the weight is for
   double trust_ = 0;                         // in the engaged object; moves like the weight
+  double yielded_ = 0;                       // m, along y of the object's grasp: see yielding()
   Pose full_correction_ = Pose::Identity();  // X_GG', for weight 1, as last seen
   Pose correction_ = Pose::Identity();       // X_GG' in force
   std::optional<RobotState> state_;

@@ -52,7 +52,9 @@ class Trial {
   void run(TrialResult& result) {
     const Duration step = seconds(world_->time_step());
     std::size_t next = 0;
-    for (Time now{}; next < take_.postures.size(); now += step) {
+    // A person keeps the fingers closed until the robot's have come to rest.
+    for (Time now{}; next < take_.postures.size() && !(now > take_.closed && at_rest(now));
+         now += step) {
       if (now.time_since_epoch() % camera_period < step) see(now);
       if (now.time_since_epoch() % state_period < step) feel(now);
       if (now >= take_.postures[next].stamp) {
@@ -73,6 +75,22 @@ class Trial {
   }
 
  private:
+  /// The joints have kept their place for 0.3 s, as the judge of the simulation wants it.
+  bool at_rest(Time now) {
+    constexpr double still = 0.05 * 0.3;  // rad
+    const grasping::HandMotion motion = world_->hand_motion();
+    for (std::size_t i = 0; i < parts_.hand.joints().size(); ++i) {
+      const auto dof = static_cast<std::size_t>(parts_.hand.joints()[i].dof);
+      const double unit = grasping::radian_of(parts_.hand.dofs()[dof]);
+      const auto k = static_cast<Eigen::Index>(i);
+      if (joint_.size() > 0 && std::abs(motion.joint[k] - joint_[k]) <= still * unit) continue;
+      joint_ = motion.joint;
+      moved_ = now;
+      break;
+    }
+    return now - moved_ > std::chrono::milliseconds(300);
+  }
+
   void see(Time now) {
     Detection detection;
     detection.track = 1;
@@ -117,6 +135,8 @@ class Trial {
   const RecordedTake& take_;
   Mapping mapping_;
   std::unique_ptr<grasping::World> world_;
+  Eigen::VectorXd joint_;  // when it last moved
+  Time moved_{};
 };
 
 Expected<std::unique_ptr<grasping::World>> world_of(const BenchmarkedHand& parts,

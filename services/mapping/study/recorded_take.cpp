@@ -13,11 +13,11 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr double rate = 30;       // Hz, of the glove
-constexpr double start = 0.15;    // m, before the grasp, along the approach
-constexpr double reaching = 1.2;  // s, to get there
+constexpr double start = 0.25;    // m, before the grasp, along the approach
+constexpr double reaching = 1.6;  // s, to get there
 constexpr double pause = 0.2;     // s, before the fingers close
 constexpr double closing = 0.8;   // s
-constexpr double keeping = 1.4;   // s, with closed fingers
+constexpr double keeping = 4;     // s, with closed fingers, at most
 constexpr double extra = 0.05;    // of a finger's closure, by which it presses on
 
 /// From 0 to 1 as people move: without a jerk at the ends.
@@ -38,6 +38,7 @@ std::optional<RecordedTake> record_take(const RobotGrasp& grasp, std::uint64_t s
   take.X_WO = make_pose(Vector3d(0, 0, half_extents(grasp.shape).z()));
   take.X_WG = take.X_WO * reached->X_OG;
   take.closure = reached->closure;
+  take.closed = Time(seconds(reaching + pause + closing));
   const auto last = static_cast<int>((reaching + pause + closing + keeping) * rate);
   for (int frame = 0; frame <= last; ++frame) {
     const double t = frame / rate;

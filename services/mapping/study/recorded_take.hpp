@@ -20,13 +20,14 @@ struct TakeOptions {
 };
 
 /// One reach for one object as glove and camera tell it, whatever robot hand shall answer it: from
-/// 15 cm before the grasp to closed fingers that keep closed. W: the table; the object stands on it
+/// 25 cm before the grasp to closed fingers that keep closed. W: the table; the object stands on it
 /// above the origin.
 struct RecordedTake {
   std::string user;
   Pose X_WO;                      // of the object, as it is before anything touches it
   Pose X_WG;                      // of the human grasp frame when it has arrived
   Closure closure;                // of the human fingers when they have closed
+  Time closed;                    // when that is
   std::vector<Posture> postures;  // at 30 Hz, from time 0
   model::Shape seen_shape;
   Pose X_OS;                   // where the object is seen from where it is

@@ -77,4 +77,19 @@ inline MappingModel random_model(std::uint64_t seed, const model::HandModel& han
                                 random_network(model::ShapeKind::box, seed + 2, hand)});
 }
 
+/// Closes the Barrett hand by 1.8 rad, whatever it is asked.
+inline MappingModel closing_model() {
+  const auto constant = [](model::ShapeKind shape) {
+    MappingNetwork network = random_network(shape, 1);
+    network.network =
+        *learning::Network::create({learning::Layer::Zero(4, network.network.inputs() + 1)});
+    network.output =
+        *learning::Scaling::create(Eigen::Vector4d::Zero(), Eigen::Vector4d(0, 3.6, 3.6, 3.6));
+    return network;
+  };
+  return *MappingModel::create(
+      barrett(), plain_traits(barrett()),
+      {constant(model::ShapeKind::unknown), constant(model::ShapeKind::cylinder)});
+}
+
 }  // namespace prehend::mapping

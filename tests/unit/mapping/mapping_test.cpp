@@ -124,8 +124,10 @@ TEST_F(MappingTest, KnowsTheObjectInReachAndCorrectsThePlacement) {
   EXPECT_EQ(last->object, "object 1");
   const Pose expected =
       X_WO * *model::nearest_grasp(talc, X_WO.inverse() * X_WG, barrett().reach());
-  EXPECT_LT(((last->X_WB * barrett().X_BG()).translation() - expected.translation()).norm(), 1e-6);
-  EXPECT_LT(angle_between((last->X_WB * barrett().X_BG()).linear(), expected.linear()), 1e-6);
+  const Pose X_GG = expected.inverse() * last->X_WB * barrett().X_BG();
+  EXPECT_LT(X_GG.translation().cwiseProduct(Eigen::Vector3d(1, 0, 1)).norm(), 1e-6);
+  EXPECT_LT(std::abs(X_GG.translation().y()), 0.03) << "the hand may yield along y";
+  EXPECT_LT(angle_between(X_GG.linear(), Eigen::Matrix3d::Identity()), 1e-6);
   const Features f = *features(tips({0.4, 0.4, 0.4, 0.4, 0.4}), 1);
   EXPECT_TRUE(last->dof.isApprox(
       barrett().clamp(model_.intelligent(f, talc, Pose::Identity())->dof), 1e-9));
@@ -146,6 +148,50 @@ TEST_F(MappingTest, CorrectsNoMoreThanThreeCentimetresAndTwentyDegrees) {
   EXPECT_EQ(last->weight, 1);
   EXPECT_NEAR((commanded.translation() - X_WG.translation()).norm(), 0.03, 1e-9);
   EXPECT_NEAR(angle_between(commanded.linear(), X_WG.linear()), 20 * M_PI / 180, 1e-5);
+}
+
+// Regression: the correction went straight to the grasp, so that its 3 cm were spent on the
+// approach, and the fingers met the object from above before the hand was over it.
+TEST_F(MappingTest, CorrectsSidewaysBeforeItHasArrived) {
+  const Pose X_WO = standing(talc);
+  const Pose X_WG = side_grasp(talc, X_WO) * make_pose(Eigen::Vector3d(-0.012, 0.016, -0.10));
+  Mapping mapping = *Mapping::create(barrett(), model_, {.intelligent = false});
+  ASSERT_TRUE(mapping.on_state(state_at(base_at(X_WG), open_, 0)));
+  Expected<Command> last = fail("");
+  for (int ms = 0; ms < 2000; ms += 33) {
+    ASSERT_TRUE(mapping.on_detection(detection(talc, X_WO, ms)));
+    last = mapping.on_posture(posture(X_WG, ms), at(ms));
+  }
+  // Along a cylinder any height is a grasp: 12 mm stay, 16 mm across it go, 10 cm are the
+  // operator's.
+  const Pose X_GG = X_WG.inverse() * last->X_WB * barrett().X_BG();
+  EXPECT_NEAR(X_GG.translation().y(), -0.016, 1e-6);
+  EXPECT_NEAR(X_GG.translation().x(), 0, 1e-6);
+  EXPECT_NEAR(X_GG.translation().z(), 0, 1e-6);
+}
+
+TEST_F(MappingTest, TheHandYieldsToFingersThatComeFirst) {
+  const MappingModel closing = closing_model();
+  const Arrival arrival(barrett());
+  const Pose X_WO = standing(talc);
+  // Finger 3 comes first or fingers 1 and 2: never does one push while another is 2 cm away.
+  const auto pushed = [&](bool place, double off) {
+    const Pose X_WG = side_grasp(talc, X_WO) * make_pose(Eigen::Vector3d(0, off, 0));
+    Mapping mapping = *Mapping::create(barrett(), closing, {.place = place});
+    EXPECT_TRUE(mapping.on_state(state_at(base_at(X_WG), open_, 0)).has_value());
+    double deepest = 0;
+    for (int ms = 0; ms < 6000; ms += 20) {
+      EXPECT_TRUE(mapping.on_detection(detection(talc, X_WO, ms)).has_value());
+      const auto command = mapping.on_posture(posture(X_WG, ms, 0.6), at(ms));
+      const Eigen::VectorXd distances =
+          arrival.distances(command->dof, talc, command->X_WB.inverse() * X_WO);
+      if (distances.maxCoeff() > 0.02) deepest = std::min(deepest, distances.minCoeff());
+    }
+    return deepest;
+  };
+  EXPECT_LT(pushed(false, 0.02), -0.01);
+  EXPECT_LT(pushed(false, -0.02), -0.01);
+  for (const double off : {-0.02, 0.0, 0.02}) EXPECT_GT(pushed(true, off), -0.001) << off;
 }
 
 TEST_F(MappingTest, ReturnsToDirectWhenTheDetectionIsGone) {
@@ -366,7 +412,10 @@ TEST_F(MappingTest, PlacementAndFingersCanBeImprovedApart) {
         last = mapping.on_posture(posture(X_WG, ms, 0.4), at(ms));
       }
       const double moved = (last->X_WB.translation() - base_at(X_WG).translation()).norm();
-      EXPECT_NEAR(moved, place ? 0.02 : 0, 1e-6);
+      if (intelligent && place)
+        EXPECT_GT(moved, 0.001) << "and the hand may yield to the fingers";
+      else
+        EXPECT_NEAR(moved, place ? 0.02 : 0, 1e-6);
       const Features f = *features(tips({0.4, 0.4, 0.4, 0.4, 0.4}), 1);
       const Answer expected =
           intelligent ? *model_.intelligent(f, talc, Pose::Identity()) : model_.direct(f);
