@@ -35,18 +35,20 @@ Answer answer(const MappingNetwork& network, const Eigen::VectorXd& asked) {
 void write(const learning::Scaling& scaling, messages::ScalingRange& to) {
   to.mutable_minimum()->Add(scaling.minimum().begin(), scaling.minimum().end());
   to.mutable_maximum()->Add(scaling.maximum().begin(), scaling.maximum().end());
+  to.set_kind(std::string(to_string(scaling.kind())));
 }
 
 Expected<learning::Scaling> read(const messages::ScalingRange& from) {
-  return learning::Scaling::create(
-      Eigen::VectorXd::Map(from.minimum().data(), from.minimum_size()),
-      Eigen::VectorXd::Map(from.maximum().data(), from.maximum_size()));
+  const auto scaling_kind = learning::scaling_from_string(from.kind());
+  if (!scaling_kind) return fail(fmt::format("unknown scaling «{}»", from.kind()));
+  return learning::Scaling::create(Eigen::VectorXd::Map(from.minimum().data(), from.minimum_size()),
+                                   Eigen::VectorXd::Map(from.maximum().data(), from.maximum_size()),
+                                   *scaling_kind);
 }
 
-Expected<learning::Network> read(
-    const google::protobuf::RepeatedPtrField<messages::NetworkLayer>& from) {
+Expected<learning::Network> read_network(const messages::MappingNetwork& from) {
   std::vector<learning::Layer> layers;
-  for (const messages::NetworkLayer& layer : from) {
+  for (const messages::NetworkLayer& layer : from.layers()) {
     const auto rows = static_cast<Eigen::Index>(layer.outputs());
     if (rows == 0 || layer.weights_size() % rows != 0)
       return fail("a layer's weights do not fill its rows");
@@ -54,7 +56,8 @@ Expected<learning::Network> read(
     layers.emplace_back(
         Eigen::Map<const RowMajor>(layer.weights().data(), rows, layer.weights_size() / rows));
   }
-  return learning::Network::create(std::move(layers));
+  return learning::Network::create(
+      std::move(layers), from.shortcut() ? learning::Wiring::shortcut : learning::Wiring::layered);
 }
 
 Expected<MappingNetwork> read(const messages::MappingNetwork& from) {
@@ -65,7 +68,7 @@ Expected<MappingNetwork> read(const messages::MappingNetwork& from) {
       return fail(fmt::format("unknown shape «{}»", from.shape()));
     shape = *known;
   }
-  auto network = read(from.layers());
+  auto network = read_network(from);
   if (!network) return tl::unexpected(network.error());
   auto input = read(from.input());
   if (!input) return tl::unexpected(input.error());
@@ -176,6 +179,7 @@ Expected<void> MappingModel::save(const std::filesystem::path& file,
     messages::MappingNetwork& to = *message.add_networks();
     if (network.shape != model::ShapeKind::unknown)
       to.set_shape(std::string(to_string(network.shape)));
+    to.set_shortcut(network.network.wiring() == learning::Wiring::shortcut);
     for (const learning::Layer& layer : network.network.layers()) {
       messages::NetworkLayer& written = *to.add_layers();
       written.set_outputs(static_cast<unsigned>(layer.rows()));

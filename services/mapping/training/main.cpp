@@ -131,7 +131,7 @@ int main(int argc, char** argv) {
       [&](const std::string& name) {
         const auto method = learning::method_from_string(name);
         if (!method)
-          throw CLI::ValidationError("--method", "incremental, batch, rprop, quickprop, sarprop");
+          throw CLI::ValidationError("--method", "incremental, batch, rprop, quickprop, sarprop, cascade");
         trainer.network.method = *method;
       },
       "how to train; default: rprop");

@@ -47,6 +47,34 @@ class ModelFile : public testing::Test {
   std::string bytes_;
 };
 
+// What cascade training grows, and every way to scale.
+TEST_F(ModelFile, CarriesShortcutsAndScalings) {
+  for (const auto kind : {learning::ScalingKind::whole_matrix, learning::ScalingKind::as_printed}) {
+    Random random(5);
+    const auto dofs = static_cast<Eigen::Index>(barrett().dofs().size());
+    learning::Layer grown(1, feature_count + 1), last(dofs, feature_count + 2);
+    for (learning::Layer* layer : {&grown, &last})
+      for (double& weight : layer->reshaped()) weight = random.normal();
+    MappingNetwork network = random_network(model::ShapeKind::unknown, 1);
+    network.network = *learning::Network::create({grown, last}, learning::Wiring::shortcut);
+    network.input = *learning::Scaling::create(Eigen::VectorXd::Constant(feature_count, -0.1),
+                                               Eigen::VectorXd::Constant(feature_count, 0.3), kind);
+    const auto saved = MappingModel::create(barrett(), plain_traits(barrett()), {network});
+    ASSERT_TRUE(saved) << saved.error().message();
+    ASSERT_TRUE(saved->save(file_, barrett()));
+    const auto loaded = MappingModel::load(file_, barrett());
+    ASSERT_TRUE(loaded) << loaded.error().message();
+    EXPECT_EQ(loaded->networks()[0].network.wiring(), learning::Wiring::shortcut);
+    EXPECT_EQ(loaded->networks()[0].input.kind(), kind);
+    const Features f = Features::Constant(0.07);
+    EXPECT_EQ(loaded->direct(f).dof, saved->direct(f).dof);
+  }
+  rewrite([](messages::MappingModel& message) {
+    message.mutable_networks(0)->mutable_input()->set_kind("by feeling");
+  });
+  EXPECT_THAT(refusal(), testing::HasSubstr("unknown scaling «by feeling»"));
+}
+
 TEST_F(ModelFile, ComesBackBitForBit) {
   const auto loaded = MappingModel::load(file_, barrett());
   ASSERT_TRUE(loaded) << loaded.error().message();
