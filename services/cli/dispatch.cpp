@@ -18,6 +18,7 @@ const std::vector<Tool>& tools() {
       {"recording", "prehend-recording", "what is in recordings, parts of them, comparisons"},
       {"glove", "prehend-glove-tool", "decode a serial capture, emulate a tracker"},
       {"objects", "prehend-objects", "train, detect and evaluate object models"},
+      {"teach", "prehend-teach", "show postures to learn a mapping from"},
       {"train", "prehend-train", "train a mapping model for a robot hand"},
       {"study", "prehend-study", "repeat the thesis's experiments and the grasp benchmark"},
       {"hand", "prehend-hand", "is this URDF a usable hand; make it one"},

@@ -8,6 +8,7 @@
 
 #include "mapping.hpp"
 #include "mapping_model.hpp"
+#include "posture_message.hpp"
 
 namespace prehend::mapping {
 
@@ -37,18 +38,6 @@ v1::GraspType to_message(GraspType type) {
       break;
   }
   return v1::GRASP_NONE;
-}
-
-Expected<Posture> from_message(const v1::HandPosture& message) {
-  auto X_WH = dds::from_message(message.X_WH());
-  if (!X_WH) return fail("pose of the hand not usable");
-  Posture posture{
-      from_ns(message.stamp_ns()), from_ns(message.origin_ns()), *X_WH, message.hand_scale(), {}};
-  for (std::size_t f = 0; f < posture.fingertips.size(); ++f) {
-    const v1::Fingertip& tip = message.fingertips()[f];
-    posture.fingertips[f] = {tip.valid(), dds::from_message(tip.p_HF())};
-  }
-  return posture;
 }
 
 Expected<Detection> from_message(const v1::ObjectDetection& message) {
@@ -103,7 +92,7 @@ class Service {
     if (info.gone) return;
     const Time now = shell_.now();
     service::Status& status = shell_.status();
-    const auto posture = from_message(message);
+    const auto posture = posture_from_message(message);
     const auto command =
         posture.and_then([&](const Posture& value) { return mapping_.on_posture(value, now); });
     if (!command) {

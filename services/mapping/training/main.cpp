@@ -1,5 +1,8 @@
 // prehend-train: makes the mapping model of a hand.
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <chrono>
 #include <filesystem>
 #include <iostream>
@@ -10,6 +13,7 @@
 #include <prehend/base/progress.hpp>
 #include <prehend/base/workers.hpp>
 
+#include "teach.hpp"
 #include "trainer.hpp"
 
 namespace {
@@ -18,7 +22,7 @@ using namespace prehend;
 using namespace prehend::mapping;
 
 /// A step of training, shown in thousandths.
-class Shown {
+class Steps {
  public:
   void operator()(std::string_view step, double share) {
     if (step != step_) progress_.emplace(step_ = step);
@@ -33,12 +37,6 @@ class Shown {
 int refuse(const Error& error) {
   log::error("{}", error.message());
   return 3;
-}
-
-/// A name is a file of that name in the folder of schemes.
-std::filesystem::path scheme_path(const std::string& scheme, const std::filesystem::path& share) {
-  if (scheme.find('/') != std::string::npos || scheme.ends_with(".toml")) return scheme;
-  return share / "schemes" / (scheme + ".toml");
 }
 
 /// From the file if it is there; otherwise the hand is closed and the file written.
@@ -59,6 +57,21 @@ Expected<std::vector<RobotGrasp>> grasps_of(const model::HandModel& hand, const 
   if (auto saved = save_robot_grasps(file, hand, grasps); !saved)
     return tl::unexpected(saved.error());
   return grasps;
+}
+
+/// Adds the pairs of a file to a set for the same hand.
+Expected<void> add_taught(learning::TrainingSet& set, const std::string& file) {
+  auto more = learning::load_training_set(file);
+  if (!more) return fail(more.error().what, file, more.error().mend);
+  if (more->hand != set.hand || more->dof_names != set.dof_names)
+    return fail(fmt::format("is for the hand «{}», not for «{}»", more->hand, set.hand), file);
+  if (auto ok = check_consistent(*more); !ok)
+    return fail(ok.error().what, file + ", " + ok.error().where, ok.error().mend);
+  // Repeated until they are a tenth of all: few pairs of one person would be lost among the others.
+  const std::size_t times = std::max<std::size_t>(1, set.pairs.size() / more->pairs.size() / 10);
+  for (std::size_t i = 0; i < times; ++i)
+    set.pairs.insert(set.pairs.end(), more->pairs.begin(), more->pairs.end());
+  return {};
 }
 
 nlohmann::json describe(const RobotGrasp& grasp) {
@@ -91,6 +104,7 @@ int main(int argc, char** argv) {
   log::set_name("train");
   const auto share = share_directory();
   std::string hand_name = "barrett", scheme_name, catalogue_file, grasps_file, out, set_file;
+  std::vector<std::string> taught;
   SetOptions people;
   TrainerOptions trainer;
   bool json = false, close_again = false, close_only = false;
@@ -105,8 +119,9 @@ int main(int argc, char** argv) {
   app.add_flag("--close-only", close_only, "train nothing");
   app.add_option("--out", out, "model to write; default: trained/HAND.mapping");
   app.add_option("--training-set", set_file, "also write the training set there");
-  app.add_option("--users", people.users, "synthetic people to learn from")
-      ->check(CLI::Range(1, 1000))
+  app.add_option("--set", taught, "also learn from these sets, of prehend teach; repeatable");
+  app.add_option("--users", people.users, "synthetic people to learn from; 0: only from --set")
+      ->check(CLI::Range(0, 1000))
       ->capture_default_str();
   app.add_option("--takes", people.takes, "takes of each")
       ->check(CLI::Range(1, 100))
@@ -152,7 +167,7 @@ int main(int argc, char** argv) {
   };
   const auto hand = model::HandModel::load(share / "models" / "hands" / hand_name);
   if (!hand) return refuse(hand.error());
-  const auto scheme = Scheme::load(scheme_path(scheme_name, share), *hand);
+  const auto scheme = Scheme::load(scheme_path(scheme_name), *hand);
   if (!scheme) return refuse(scheme.error());
   const auto grasps =
       grasps_of(*hand, *scheme, catalogue_file, grasps_file, close_again || close_only);
@@ -170,12 +185,14 @@ int main(int argc, char** argv) {
     sets.validation = demonstrate(*hand, *scheme, *grasps, others);
     others.seed = people.seed + 2;
     sets.test = demonstrate(*hand, *scheme, *grasps, others);
+    for (const std::string& file : taught)
+      if (auto added = add_taught(sets.training, file); !added) return refuse(added.error());
     if (!set_file.empty())
       if (auto saved = learning::save(set_file, sets.training); !saved)
         return refuse(saved.error());
-    Shown shown;
+    Steps steps;
     const double before = since_begin();
-    const auto model = train_mapping(*hand, *scheme, sets, trainer, std::ref(shown));
+    const auto model = train_mapping(*hand, *scheme, sets, trainer, std::ref(steps));
     if (!model) return refuse(model.error());
     document["training_seconds"] = since_begin() - before;
     if (auto saved = model->save(out, *hand); !saved) return refuse(saved.error());

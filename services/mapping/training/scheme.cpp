@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <numbers>
 #include <optional>
+#include <prehend/base/paths.hpp>
 
 namespace prehend::mapping {
 
@@ -238,6 +239,11 @@ std::vector<SchemePosture> Scheme::combinations() const {
       made.push_back(std::move(posture));
     }
   return made;
+}
+
+std::filesystem::path scheme_path(const std::string& scheme) {
+  if (scheme.find('/') != std::string::npos || scheme.ends_with(".toml")) return scheme;
+  return share_directory() / "schemes" / (scheme + ".toml");
 }
 
 Expected<Scheme> Scheme::load(const std::filesystem::path& file, const model::HandModel& hand) {

@@ -49,4 +49,8 @@ struct Scheme {
   static Expected<Scheme> load(const std::filesystem::path& file, const model::HandModel& hand);
 };
 
+/// A name is a file of that name in the folder of schemes, what has a slash or ends in .toml a
+/// path.
+std::filesystem::path scheme_path(const std::string& scheme);
+
 }  // namespace prehend::mapping

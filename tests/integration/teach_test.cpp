@@ -1,0 +1,144 @@
+// From showing to using, with real processes: a person (who publishes hand/posture) is taught from
+// by prehend-teach, prehend-train makes a model of it, prehend-mapping answers with that model; and
+// the recording of the session gives the same set again. How long a person needs is measured.
+#include <gmock/gmock.h>
+
+#include <nlohmann/json.hpp>
+#include <prehend/dds/convert.hpp>
+#include <prehend/dds/topics.hpp>
+#include <prehend/learning/training_set.hpp>
+#include <prehend/model/human_hand.hpp>
+#include <set>
+
+#include "rig.hpp"
+
+namespace prehend::integration {
+namespace {
+
+using Closure = std::array<double, model::finger_count>;
+
+class Teach : public Rig {
+ protected:
+  void SetUp() override {
+    auto writer = participant_->writer(dds::hand_posture);
+    ASSERT_TRUE(writer);
+    writer_.emplace(std::move(*writer));
+  }
+
+  void publish(const Closure& closure) {
+    v1::HandPosture message;
+    message.glove("glove");
+    message.sequence_number(++frames_);
+    message.stamp_ns(now_ns());
+    message.origin_ns(now_ns());
+    message.hand_scale(1);
+    message.quality(1);
+    message.X_WH(dds::to_message(make_pose({0, 0, 0.4})));
+    const auto tips = model::HumanHand(1).fingertip_poses(model::HumanHand::posture(closure));
+    for (std::size_t f = 0; f < tips.size(); ++f) {
+      message.fingertips()[f].valid(true);
+      message.fingertips()[f].p_HF(dds::to_message(Eigen::Vector3d(tips[f].translation())));
+    }
+    ASSERT_TRUE(writer_->write(message));
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));  // the glove's rate
+  }
+
+  Strings with_lab(Strings arguments) {
+    const Strings lab = lab_arguments();
+    arguments.insert(arguments.end(), lab.begin(), lab.end());
+    return arguments;
+  }
+
+  std::optional<dds::Writer<v1::HandPosture>> writer_;
+  std::uint64_t frames_ = 0;
+};
+
+TEST_F(Teach, ShownTrainedUsedAndRepeatedFromTheRecording) {
+  const std::string set = (folder_ / "taught.set").string(),
+                    again = (folder_ / "again.set").string(),
+                    model = (folder_ / "taught.mapping").string(),
+                    recording = (folder_ / "session.mcap").string();
+  auto orders = reader(dds::operator_command);
+  service::Process recorder = start_program(
+      "prehend-record", with_lab({"hand/posture", "operator/command", "--quiet", "-o", recording}));
+  service::Process teacher =
+      start_program("prehend-teach", with_lab({"--user", "tester", "-o", set, "--limit", "60"}));
+
+  const std::vector<std::pair<std::string, Closure>> lessons{
+      {"open", {0, 0, 0, 0, 0}},          {"thumb half", {0.5, 0, 0, 0, 0}},
+      {"thumb closed", {1, 0, 0, 0, 0}},  {"index half", {0, 0.5, 0.5, 0, 0}},
+      {"index closed", {0, 1, 1, 0, 0}},  {"little half", {0, 0, 0, 0.5, 0.5}},
+      {"little closed", {0, 0, 0, 1, 1}},
+  };
+  std::optional<std::int64_t> first;
+  for (const auto& [name, closure] : lessons) {
+    const bool taken = eventually(25, [&, posture = closure, label = name] {
+      publish(posture);
+      for (const auto& sample : orders.take())
+        if (!sample.info.gone && sample.data.argument().to_string() == label) return true;
+      return false;
+    });
+    ASSERT_TRUE(taken) << name;
+    if (!first) first = now_ns();
+  }
+  RecordProperty("seconds_of_showing", std::to_string(1e-9 * double(now_ns() - *first)));
+  const auto ended = teacher.wait(seconds(10));
+  ASSERT_TRUE(ended);
+  EXPECT_EQ(ended->code, 0);
+  recorder.signal(SIGINT);
+  ASSERT_TRUE(recorder.wait(seconds(10)));
+
+  const auto taught = learning::load_training_set(set);
+  ASSERT_TRUE(taught) << taught.error().message();
+  ASSERT_EQ(taught->pairs.size(), lessons.size());
+  EXPECT_EQ(taught->pairs[4].posture, "index closed");
+  EXPECT_EQ(taught->pairs[4].user, "tester");
+  EXPECT_EQ(taught->pairs[4].source, "teach");
+
+  // The recording says the same, up to the frames at the ends of each window.
+  const Answer from =
+      run("prehend-teach", {"--user", "tester", "--from", recording, "-o", again}, 30);
+  ASSERT_EQ(from.exit_code, 0) << from.log;
+  const auto repeated = learning::load_training_set(again);
+  ASSERT_TRUE(repeated);
+  ASSERT_EQ(repeated->pairs.size(), taught->pairs.size());
+  for (std::size_t i = 0; i < lessons.size(); ++i) {
+    EXPECT_EQ(repeated->pairs[i].posture, taught->pairs[i].posture);
+    EXPECT_EQ(repeated->pairs[i].source, "recording");
+    EXPECT_TRUE(repeated->pairs[i].features.isApprox(taught->pairs[i].features, 1e-6));
+  }
+
+  const Answer trained =
+      run("prehend-train", {"--set", set, "--users", "4", "--out", model, "--json"}, 60);
+  ASSERT_EQ(trained.exit_code, 0) << trained.log;
+  RecordProperty("training_seconds",
+                 nlohmann::json::parse(trained.output)["training_seconds"].dump());
+
+  auto commands = reader(dds::robot_command);
+  service::Process mapping =
+      start("mapping", {"mapping.model=" + model, "mapping.intelligent=false"});
+  // A closed index finger closes fingers 1 and 2 (here 120 degrees were taught) and not the third.
+  std::vector<double> dof;
+  EXPECT_TRUE(eventually(20, [&] {
+    publish({0, 1, 1, 0, 0});
+    for (const auto& sample : commands.take())
+      if (!sample.info.gone) dof = sample.data.dof();
+    return dof.size() == 4 && dof[1] > 1.6 && dof[2] > 1.6 && dof[3] < 0.5;
+  })) << testing::PrintToString(dof);
+}
+
+TEST_F(Teach, WhatCannotBeIsOneLine) {
+  const Answer silent = run("prehend-teach", with_lab({"-o", "x.set", "--limit", "1"}), 30);
+  EXPECT_EQ(silent.exit_code, 1);
+  EXPECT_THAT(silent.log, testing::HasSubstr("gave up after 1 s, at «open»"));
+  const Answer missing = run("prehend-teach", {"-o", "x.set", "--from", "nowhere.mcap"}, 30);
+  EXPECT_EQ(missing.exit_code, 3);
+  EXPECT_THAT(missing.log, testing::HasSubstr("nowhere.mcap"));
+  const Answer label = run("prehend-teach", {"-o", "x", "--from", "y", "--label", "open"}, 30);
+  EXPECT_EQ(label.exit_code, 2);
+  EXPECT_EQ(run("prehend-teach", {}, 30).exit_code, 2);
+  EXPECT_EQ(run("prehend-teach", {"-o", "x", "--hand", "foot"}, 30).exit_code, 3);
+}
+
+}  // namespace
+}  // namespace prehend::integration
