@@ -10,8 +10,6 @@ namespace {
 constexpr double least_closed = 0.6;
 /// The approach counts as from above within 45 degrees.
 constexpr double from_above = -0.7071;
-/// How much less the little finger bends than the index in a precision grasp.
-constexpr double little_apart = 0.25;
 
 constexpr std::array<std::pair<GraspType, std::string_view>, 4> names{{
     {GraspType::none, "none"},
@@ -33,15 +31,10 @@ std::optional<GraspType> grasp_type_from_string(std::string_view name) {
   return std::nullopt;
 }
 
-GraspType grasp_type(const Features& features, double closed, const Pose& X_WG,
-                     model::ShapeKind shape) {
+GraspType grasp_type(double closed, const Pose& X_WG, bool precision) {
   if (!(closed >= least_closed)) return GraspType::none;
-  const Eigen::Vector3d bent = bending(features);
   if (X_WG.linear()(2, 2) > from_above) return GraspType::power_wrap;
-  if (shape == model::ShapeKind::box) return GraspType::precision;
-  if (shape == model::ShapeKind::unknown && bent[1] - bent[2] > little_apart)
-    return GraspType::precision;
-  return GraspType::circular_sphere;
+  return precision ? GraspType::precision : GraspType::circular_sphere;
 }
 
 }  // namespace prehend::mapping

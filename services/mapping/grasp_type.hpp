@@ -3,10 +3,7 @@
 #include <array>
 #include <optional>
 #include <prehend/base/pose.hpp>
-#include <prehend/model/shape.hpp>
 #include <string_view>
-
-#include "features.hpp"
 
 namespace prehend::mapping {
 
@@ -23,12 +20,9 @@ std::optional<GraspType> grasp_type_from_string(std::string_view name);
 /// Which grasp a hand is making, by where its palm comes from and what its fingers do:
 ///   robot fingers (to be) open           -> none
 ///   palm from the side                   -> power wrap
-///   from above, on a box                 -> precision
-///   from above, on a cylinder or sphere  -> circular sphere
-///   from above, on something unknown     -> precision if the little finger stays out of it
+///   from above                           -> precision or circular sphere
 /// closed: mean angle of the robot's closing DoFs as mapped, rad. X_WG: the hand's grasp frame on
-/// the table.
-GraspType grasp_type(const Features& features, double closed, const Pose& X_WG,
-                     model::ShapeKind shape);
+/// the table. precision: what MappingModel::is_precision says of the fingers.
+GraspType grasp_type(double closed, const Pose& X_WG, bool precision);
 
 }  // namespace prehend::mapping

@@ -367,8 +367,7 @@ Expected<Command> Mapping::on_posture(const Posture& posture, Time now) {
   command_.mode = command_.object.empty() ? Mode::direct : Mode::intelligent;
   dof = hand_.clamp(dof);
   command_.grasp_type =
-      mapping::grasp_type(*features, mean_closing(dof), X_WG,
-                          engaged_ ? engaged_->detection.shape.kind : model::ShapeKind::unknown);
+      mapping::grasp_type(mean_closing(dof), X_WG, model_.is_precision(*features));
 
   const Pose X_WB = corrected(X_WG, seen, elapsed) * hand_.X_BG().inverse();
   move_toward(grip_.squeeze(dof), X_WB, options_.intelligent ? command_.weight : 0, elapsed);

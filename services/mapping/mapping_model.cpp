@@ -13,9 +13,10 @@ namespace prehend::mapping {
 namespace {
 
 constexpr std::string_view kind = "mapping-model";
-constexpr double stretch = 0.1;      // of a feature's range, answered beyond each end
-constexpr double tolerance = 0.05;   // of a feature's range: noise, no extrapolation yet
-constexpr double same_limit = 1e-9;  // rad
+constexpr double stretch = 0.1;        // of a feature's range, answered beyond each end
+constexpr double tolerance = 0.05;     // of a feature's range: noise, no extrapolation yet
+constexpr double same_limit = 1e-9;    // rad
+constexpr double little_apart = 0.15;  // less bent than the index finger: it stays out of a grasp
 
 Answer answer(const MappingNetwork& network, const Eigen::VectorXd& asked) {
   const Eigen::VectorXd& low = network.input.minimum();
@@ -113,6 +114,10 @@ Expected<MappingModel> MappingModel::create(const model::HandModel& hand, ModelT
           traits.lower[i] <= traits.upper[i]))
       return fail("limits that are not the hand's", dof.name);
   }
+  if (traits.precision.size() != 0 && traits.precision.size() != feature_count + 1)
+    return fail("wrong number of weights for precision grasps", traits.scheme);
+  if (!traits.precision.allFinite())
+    return fail("weights for precision grasps are not finite", traits.scheme);
   std::set<model::ShapeKind> shapes;
   for (const MappingNetwork& network : networks) {
     const bool direct = network.shape == model::ShapeKind::unknown;
@@ -152,9 +157,12 @@ Expected<MappingModel> MappingModel::load(const std::filesystem::path& file,
   }
   const auto size_input = size_input_from_string(message.size_input());
   if (!size_input) return refuse(fmt::format("unknown size input «{}»", message.size_input()));
-  ModelTraits traits{message.scheme(), message.training_set_digest(), *size_input,
+  ModelTraits traits{message.scheme(),
+                     message.training_set_digest(),
+                     *size_input,
                      Eigen::VectorXd::Map(message.lower().data(), message.lower_size()),
-                     Eigen::VectorXd::Map(message.upper().data(), message.upper_size())};
+                     Eigen::VectorXd::Map(message.upper().data(), message.upper_size()),
+                     Eigen::VectorXd::Map(message.precision().data(), message.precision_size())};
   auto made = create(hand, std::move(traits), std::move(networks));
   if (!made) return refuse(made.error().message());
   return made;
@@ -175,6 +183,7 @@ Expected<void> MappingModel::save(const std::filesystem::path& file,
   message.set_size_input(std::string(to_string(traits_.size_input)));
   message.mutable_lower()->Add(traits_.lower.begin(), traits_.lower.end());
   message.mutable_upper()->Add(traits_.upper.begin(), traits_.upper.end());
+  message.mutable_precision()->Add(traits_.precision.begin(), traits_.precision.end());
   for (const MappingNetwork& network : networks_) {
     messages::MappingNetwork& to = *message.add_networks();
     if (network.shape != model::ShapeKind::unknown)
@@ -198,6 +207,15 @@ Expected<void> MappingModel::save(const std::filesystem::path& file,
 Answer MappingModel::limited(Answer answer) const {
   answer.dof = answer.dof.cwiseMax(traits_.lower).cwiseMin(traits_.upper);
   return answer;
+}
+
+bool MappingModel::is_precision(const Features& features) const {
+  const Eigen::VectorXd& learnt = traits_.precision;
+  if (learnt.size() == 0) {
+    const Eigen::Vector3d bent = bending(features);
+    return bent[1] - bent[2] > little_apart;
+  }
+  return learnt.head<feature_count>().dot(features) + learnt[feature_count] > 0;
 }
 
 Answer MappingModel::direct(const Features& features) const {

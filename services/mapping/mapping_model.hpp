@@ -34,6 +34,9 @@ struct ModelTraits {
   SizeInput size_input = SizeInput::characteristic;
   /// Of each DoF, rad or m: what the scheme keeps to within the hand's limits. Answers do, too.
   Eigen::VectorXd lower, upper;
+  /// Tells precision grasps from circular sphere ones: a weight of each feature, 1/m, and an
+  /// offset; their sum is positive for precision. Empty: not learnt.
+  Eigen::VectorXd precision;
 };
 
 /// A robot posture, and whether the question lay outside what was trained.
@@ -67,6 +70,9 @@ class MappingModel {
   std::optional<Answer> intelligent(const Features& features, const model::Shape& shape,
                                     const Pose& X_OG) const;
   bool knows(model::ShapeKind shape) const;
+  /// Whether these fingers, above an object, make a precision grasp rather than a circular sphere.
+  /// Not learnt: whether the little finger stays out of it.
+  bool is_precision(const Features& features) const;
 
  private:
   MappingModel() = default;

@@ -146,7 +146,8 @@ int main(int argc, char** argv) {
       [&](const std::string& name) {
         const auto method = learning::method_from_string(name);
         if (!method)
-          throw CLI::ValidationError("--method", "incremental, batch, rprop, quickprop, sarprop, cascade");
+          throw CLI::ValidationError("--method",
+                                     "incremental, batch, rprop, quickprop, sarprop, cascade");
         trainer.network.method = *method;
       },
       "how to train; default: rprop");
@@ -190,6 +191,9 @@ int main(int argc, char** argv) {
     if (!set_file.empty())
       if (auto saved = learning::save(set_file, sets.training); !saved)
         return refuse(saved.error());
+    const auto catalogue = model::Catalogue::load(catalogue_file);
+    if (!catalogue) return refuse(catalogue.error());
+    trainer.precision = precision_discriminant(*catalogue, hand->reach(), people);
     Steps steps;
     const double before = since_begin();
     const auto model = train_mapping(*hand, *scheme, sets, trainer, std::ref(steps));

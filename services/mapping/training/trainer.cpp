@@ -70,6 +70,11 @@ double error(const MappingNetwork& network, const learning::Samples& samples) {
   return sum / static_cast<double>(std::max<Eigen::Index>(samples.inputs.cols(), 1));
 }
 
+/// Seeds of people must not meet those of other sets' people.
+std::uint64_t seed_of(const SetOptions& options, int person) {
+  return options.seed * 1000003 + static_cast<std::uint64_t>(person);
+}
+
 /// Name of pairs between the open hand and a posture.
 const std::string on_the_way_to = "on the way to ";
 
@@ -117,8 +122,7 @@ learning::TrainingSet demonstrate(const model::HandModel& hand, const Scheme& sc
   const SchemePosture& open = scheme.open;
   std::size_t turn = 0;  // of the basic postures
   for (int person = 0; person < options.users; ++person) {
-    // Seeds of people must not meet those of other sets' people.
-    const std::uint64_t seed = options.seed * 1000003 + static_cast<std::uint64_t>(person);
+    const std::uint64_t seed = seed_of(options, person);
     Demonstrator demonstrator(fmt::format("person {}-{}", options.seed, person), seed,
                               options.demonstrator);
     Random random(seed ^ 0x5eed);
@@ -164,6 +168,38 @@ learning::TrainingSet demonstrate(const model::HandModel& hand, const Scheme& sc
   return set;
 }
 
+Eigen::VectorXd precision_discriminant(const model::Catalogue& catalogue, const model::Reach& reach,
+                                       const SetOptions& options) {
+  std::array<std::vector<Features>, 2> classes;  // circular sphere, precision
+  for (int person = 0; person < options.users; ++person) {
+    Demonstrator demonstrator("", seed_of(options, person), options.demonstrator);
+    for (const model::CatalogueObject& object : catalogue.objects())
+      for (const Pose& X_OG : approaches(object.shape, reach))
+        for (const GraspType type : types_from(X_OG)) {
+          if (type == GraspType::power_wrap) continue;
+          if (const auto grasp = demonstrator.reach(object.shape, X_OG, type))
+            classes[type == GraspType::precision ? 1 : 0].push_back(
+                demonstrator.read(grasp->closure));
+        }
+  }
+  if (classes[0].empty() || classes[1].empty()) return {};
+  using Row = Eigen::Matrix<double, feature_count + 1, 1>;
+  Eigen::Matrix<double, feature_count + 1, feature_count + 1> squares;
+  squares.setZero();
+  Row sums = Row::Zero();
+  for (std::size_t i = 0; i < classes.size(); ++i)
+    for (const Features& features : classes[i]) {
+      Row x;
+      x << features, 1.0;
+      const double weight = 1.0 / static_cast<double>(classes[i].size());
+      squares += weight * x * x.transpose();
+      sums += weight * (i == 1 ? 1.0 : -1.0) * x;
+    }
+  // Few people may not span all features: a little ridge beside their spread of centimetres.
+  squares.diagonal().head<feature_count>().array() += 1e-6;
+  return squares.ldlt().solve(sums);
+}
+
 Expected<MappingModel> train_mapping(const model::HandModel& hand, const Scheme& scheme,
                                      const Sets& sets, const TrainerOptions& options,
                                      const Progress& progress) {
@@ -190,8 +226,9 @@ Expected<MappingModel> train_mapping(const model::HandModel& hand, const Scheme&
     if (!network) return tl::unexpected(network.error());
     networks.push_back(std::move(*network));
   }
-  ModelTraits traits{scheme.name, proto::digest(learning::serialise(sets.training)),
-                     options.size_input, scheme.lower, scheme.upper};
+  ModelTraits traits{scheme.name,        proto::digest(learning::serialise(sets.training)),
+                     options.size_input, scheme.lower,
+                     scheme.upper,       options.precision};
   return MappingModel::create(hand, std::move(traits), std::move(networks));
 }
 

@@ -44,11 +44,19 @@ struct SetOptions {
 learning::TrainingSet demonstrate(const model::HandModel& hand, const Scheme& scheme,
                                   const std::vector<RobotGrasp>& grasps, const SetOptions& options);
 
+/// Weights of the features and an offset that tell people's precision grasps (positive) from their
+/// circular sphere ones best in the sense of least squares (Fisher's discriminant, both classes
+/// counting alike). People of `options` grasp every object from above, whatever the robot can do;
+/// empty if nobody could both ways.
+Eigen::VectorXd precision_discriminant(const model::Catalogue& catalogue, const model::Reach& reach,
+                                       const SetOptions& options);
+
 struct TrainerOptions {
   learning::TrainingOptions network{.hidden = 12, .epochs = 1200, .patience = 150};
   int restarts = 3;  // first weights that are tried; the best by validation error is kept
   SizeInput size_input = SizeInput::seen;
   learning::ScalingKind scaling = learning::ScalingKind::each_feature;  // of the inputs
+  Eigen::VectorXd precision;                                            // see ModelTraits
 };
 
 /// A set for each purpose; their users are disjoint.

@@ -58,20 +58,16 @@ Pose palm(const Eigen::Vector3d& approach, const Eigen::Vector3d& closing) {
   return make_pose(Eigen::Vector3d::Zero(), R);
 }
 
-TEST(GraspType, FollowsApproachShapeAndFingers) {
-  using model::ShapeKind;
+TEST(GraspType, FollowsApproachAndFingers) {
   const Eigen::Vector3d x = Eigen::Vector3d::UnitX(), z = Eigen::Vector3d::UnitZ();
   const Pose side = palm(x, z.cross(x)), above = palm(-z, x);
-  const Features open = *features(tips({}), 1);
-  const Features closed = *features(tips({0.5, 0.5, 0.5, 0.5, 0.5}), 1);
-  const Features pinch = *features(tips({0.5, 0.6, 0.6, 0.05, 0.05}), 1);
-  EXPECT_EQ(grasp_type(open, 0.1, side, ShapeKind::cylinder), GraspType::none);
-  EXPECT_EQ(grasp_type(open, 0.1, above, ShapeKind::box), GraspType::none);
-  EXPECT_EQ(grasp_type(closed, 1.2, side, ShapeKind::cylinder), GraspType::power_wrap);
-  EXPECT_EQ(grasp_type(closed, 1.2, above, ShapeKind::cylinder), GraspType::circular_sphere);
-  EXPECT_EQ(grasp_type(closed, 1.2, above, ShapeKind::box), GraspType::precision);
-  EXPECT_EQ(grasp_type(closed, 1.2, above, ShapeKind::unknown), GraspType::circular_sphere);
-  EXPECT_EQ(grasp_type(pinch, 1.2, above, ShapeKind::unknown), GraspType::precision);
+  for (const bool precision : {false, true}) {
+    EXPECT_EQ(grasp_type(0.1, side, precision), GraspType::none);
+    EXPECT_EQ(grasp_type(0.1, above, precision), GraspType::none);
+    EXPECT_EQ(grasp_type(1.2, side, precision), GraspType::power_wrap);
+  }
+  EXPECT_EQ(grasp_type(1.2, above, false), GraspType::circular_sphere);
+  EXPECT_EQ(grasp_type(1.2, above, true), GraspType::precision);
 }
 
 }  // namespace
