@@ -315,7 +315,11 @@ TEST_F(Recording, SplitByTimeNothingIsMissingAndNothingDouble) {
 }
 
 TEST_F(Recording, EndsBeforeTheDiskIsFull) {
-  auto process = record("guarded.mcap", {"--keep-free", "1e9"});
+  // Started without `record`: it ends at once, perhaps before anybody has heard that it runs.
+  Strings arguments = lab_arguments();
+  arguments.insert(arguments.end(),
+                   {"--output", file("guarded.mcap"), "--quiet", "--keep-free", "1e9"});
+  auto process = start_program("prehend-record", arguments);
   const auto exit = process.wait(seconds(20));
   ASSERT_TRUE(exit);
   EXPECT_EQ(exit->code, 3);
