@@ -50,7 +50,7 @@ class Observer {
   const v1::ServiceStatus* service(std::string_view name) const;
 
   std::optional<model::Scene> truth_;
-  std::map<std::string, v1::ServiceStatus> services_;  // by key
+  std::map<std::string, v1::ServiceStatus> services_;                  // by key
   std::map<std::string, std::deque<v1::ObjectDetection>> detections_;  // by name, in order of stamp
   std::optional<v1::HandCommand> command_;
   std::optional<v1::GraspReport> report_;

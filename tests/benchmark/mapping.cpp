@@ -9,6 +9,7 @@
 #include <prehend/base/random.hpp>
 #include <prehend/mapping/mapping.hpp>
 #include <prehend/model/placement.hpp>
+#include <prehend/test_support/hands.hpp>
 #include <stdexcept>
 #include <vector>
 
@@ -16,15 +17,6 @@ namespace {
 
 using namespace prehend;
 using namespace prehend::mapping;
-
-const model::HandModel& hand(const std::string& name) {
-  static std::map<std::string, model::HandModel> loaded;
-  const auto found = loaded.find(name);
-  if (found != loaded.end()) return found->second;
-  auto made = model::HandModel::load(PREHEND_SOURCE "/common/models/hands/" + name);
-  if (!made) throw std::runtime_error(made.error().message());
-  return loaded.emplace(name, std::move(*made)).first->second;
-}
 
 MappingNetwork network(const model::HandModel& model, model::ShapeKind shape) {
   Random random(1);
@@ -60,7 +52,7 @@ ModelTraits plain_traits(const model::HandModel& model) {
 /// A hand near nine objects that closes and opens, a frame every 33 ms.
 void frames(benchmark::State& state, const std::string& name, FingerMode fingers,
             bool intelligent) {
-  const model::HandModel& model = hand(name);
+  const model::HandModel& model = test::hand(name);
   const MappingModel networks = *MappingModel::create(
       model, plain_traits(model),
       {network(model, model::ShapeKind::unknown), network(model, model::ShapeKind::cylinder)});

@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <map>
 #include <prehend/grasping/world.hpp>
+#include <prehend/test_support/hands.hpp>
 
 namespace {
 
@@ -15,18 +16,6 @@ using namespace prehend;
 using namespace prehend::grasping;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
-
-const std::filesystem::path hands_folder =
-    std::filesystem::path(PREHEND_SOURCE) / "common/models/hands";
-
-const model::HandModel& hand(const std::string& name) {
-  static std::map<std::string, model::HandModel> loaded;
-  const auto found = loaded.find(name);
-  if (found != loaded.end()) return found->second;
-  auto made = model::HandModel::load(hands_folder / name);
-  if (!made) throw std::runtime_error(made.error().message());
-  return loaded.emplace(name, std::move(*made)).first->second;
-}
 
 /// A hand that has closed on the Talc at its grasp frame, moved `ahead` m along its z, and
 /// squeezes.
@@ -72,7 +61,7 @@ void grip(benchmark::State& state, const std::string& name) {
   std::unique_ptr<World> world;
   bool gripped = false;
   for (const double ahead : {0.0, -0.01, 0.01}) {
-    world = gripping(hand(name), ahead);
+    world = gripping(test::hand(name), ahead);
     const auto contacts = world->contacts(0);
     gripped = std::any_of(contacts.begin(), contacts.end(), [&](const auto& contact) {
       return contact.link != contacts.front().link;
@@ -90,8 +79,8 @@ void grip(benchmark::State& state, const std::string& name) {
 /// Cubes that rest on the table, each with four contacts; the hand far above.
 void bodies(benchmark::State& state) {
   const auto count = static_cast<int>(state.range(0));
-  auto world = std::move(*World::create(hand("barrett"), make_pose(Vector3d(0, 0, 2)),
-                                        hand("barrett").postures().at("open")));
+  auto world = std::move(*World::create(test::hand("barrett"), make_pose(Vector3d(0, 0, 2)),
+                                        test::hand("barrett").postures().at("open")));
   const Body cube{"cube", {model::ShapeKind::box, Vector3d::Constant(0.04)}, 0.05, "wood", {}};
   for (int i = 0; i < count; ++i)
     if (!world->add_body(cube, make_pose(Vector3d(0.06 * (i % 8), 0.06 * (i / 8), 0.02))))
@@ -104,8 +93,8 @@ void bodies(benchmark::State& state) {
 /// A pile of cubes in one column, so that all contacts are solved together.
 void stacked(benchmark::State& state) {
   const auto count = static_cast<int>(state.range(0));
-  auto world = std::move(*World::create(hand("barrett"), make_pose(Vector3d(1, 0, 2)),
-                                        hand("barrett").postures().at("open")));
+  auto world = std::move(*World::create(test::hand("barrett"), make_pose(Vector3d(1, 0, 2)),
+                                        test::hand("barrett").postures().at("open")));
   const Body cube{"cube", {model::ShapeKind::box, Vector3d::Constant(0.04)}, 0.05, "wood", {}};
   for (int i = 0; i < count; ++i)
     if (!world->add_body(cube, make_pose(Vector3d(0, 0, 0.02 + 0.04 * i))))
@@ -118,12 +107,7 @@ void stacked(benchmark::State& state) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  std::vector<std::string> names;
-  for (const auto& entry : std::filesystem::directory_iterator(hands_folder))
-    if (std::filesystem::exists(entry.path() / "hand.urdf"))
-      names.push_back(entry.path().filename().string());
-  std::sort(names.begin(), names.end());
-  for (const std::string& name : names)
+  for (const std::string& name : test::hand_names())
     benchmark::RegisterBenchmark(("gripping/" + name).c_str(), grip, name)
         ->Unit(benchmark::kMicrosecond);
   benchmark::RegisterBenchmark("bodies", bodies)

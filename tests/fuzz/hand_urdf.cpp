@@ -13,19 +13,7 @@ int main(int argc, char** argv) {
   fuzz::Fuzzer fuzzer;
   for (const fuzz::HandFiles& hand : hands) fuzzer.seeds.push_back(hand.urdf);
   fuzzer.mutate = [](Random& random, std::string text) {
-    for (std::size_t i = 0, changes = 1 + random.index(3); i < changes; ++i)
-      switch (random.index(5)) {
-        case 0:
-          text = fuzz::mutate_bytes(random, std::move(text));
-          break;
-        case 1:
-        case 2:
-          text = fuzz::mutate_number(random, std::move(text));
-          break;
-        default:
-          text = fuzz::mutate_xml(random, std::move(text));
-      }
-    return text;
+    return fuzz::mutate_text(random, std::move(text), fuzz::mutate_xml);
   };
   fuzzer.target = [&](const std::string& urdf) {
     // The hand.toml of the robot that is named, as long as one is.

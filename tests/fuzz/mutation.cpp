@@ -185,4 +185,21 @@ std::string mutate_lines(Random& random, std::string text) {
   return text;
 }
 
+std::string mutate_text(Random& random, std::string text,
+                        std::string (*mutate_structure)(Random&, std::string)) {
+  for (std::size_t i = 0, changes = 1 + random.index(3); i < changes; ++i)
+    switch (random.index(5)) {
+      case 0:
+        text = mutate_bytes(random, std::move(text));
+        break;
+      case 1:
+      case 2:
+        text = mutate_number(random, std::move(text));
+        break;
+      default:
+        text = mutate_structure(random, std::move(text));
+    }
+  return text;
+}
+
 }  // namespace prehend::fuzz

@@ -18,4 +18,9 @@ std::string mutate_xml(Random& random, std::string text);
 /// A line is deleted, doubled, moved, or loses what stands behind its equals sign.
 std::string mutate_lines(Random& random, std::string text);
 
+/// One to three of these: bytes, numbers (twice as often), and as often what changes the structure
+/// of this kind of text, mutate_xml or mutate_lines.
+std::string mutate_text(Random& random, std::string text,
+                        std::string (*mutate_structure)(Random&, std::string));
+
 }  // namespace prehend::fuzz

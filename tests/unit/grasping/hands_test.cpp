@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <limits>
 #include <prehend/grasping/world.hpp>
+#include <prehend/test_support/hands.hpp>
 
 namespace {
 
@@ -13,16 +14,6 @@ using namespace prehend;
 using namespace prehend::grasping;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
-
-std::vector<std::string> hand_names() {
-  std::vector<std::string> names;
-  for (const auto& entry :
-       std::filesystem::directory_iterator(std::string(PREHEND_SOURCE) + "/common/models/hands"))
-    if (std::filesystem::exists(entry.path() / "hand.urdf"))
-      names.push_back(entry.path().filename().string());
-  std::sort(names.begin(), names.end());
-  return names;
-}
 
 /// All that can be seen of a world, as one row of numbers.
 VectorXd state_of(const World& world) {
@@ -37,8 +28,7 @@ VectorXd state_of(const World& world) {
 
 class Hands : public testing::TestWithParam<std::string> {
  protected:
-  const model::HandModel hand =
-      *model::HandModel::load(std::string(PREHEND_SOURCE) + "/common/models/hands/" + GetParam());
+  const model::HandModel& hand = test::hand(GetParam());
 
   /// The hand about a ball at its grasp frame, closing on it for `steps`.
   std::unique_ptr<World> closing(int steps) const {
@@ -130,6 +120,6 @@ TEST_P(Hands, RefusedCommandsLeaveTheWorldAsItWas) {
   EXPECT_EQ(state_of(*told), state_of(*untold));
 }
 
-INSTANTIATE_TEST_SUITE_P(All, Hands, testing::ValuesIn(hand_names()));
+INSTANTIATE_TEST_SUITE_P(All, Hands, testing::ValuesIn(test::hand_names()));
 
 }  // namespace

@@ -15,6 +15,7 @@
 #include <prehend/analysis/materials.hpp>
 #include <prehend/base/random.hpp>
 #include <prehend/model/hand_model.hpp>
+#include <prehend/test_support/hands.hpp>
 
 namespace {
 
@@ -459,19 +460,11 @@ TEST_P(AllHands, HasMassesThatExist) {
   EXPECT_LT(total, 5);
 }
 
-std::vector<std::string> names() {
-  std::vector<std::string> found;
-  for (const auto& entry : std::filesystem::directory_iterator(folder))
-    if (entry.is_directory()) found.push_back(entry.path().filename().string());
-  std::sort(found.begin(), found.end());
-  return found;
-}
-
-INSTANTIATE_TEST_SUITE_P(Models, AllHands, testing::ValuesIn(names()),
+INSTANTIATE_TEST_SUITE_P(Models, AllHands, testing::ValuesIn(test::hand_names()),
                          [](const auto& hand) { return hand.param; });
 
 TEST(AllHands, EveryTableHasItsHand) {
-  const std::vector<std::string> found = names();
+  const std::vector<std::string> found = test::hand_names();
   for (const auto& [name, table] : tables)
     EXPECT_TRUE(std::find(found.begin(), found.end(), name) != found.end()) << name;
 }

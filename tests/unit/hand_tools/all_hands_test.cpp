@@ -10,6 +10,7 @@
 #include <fstream>
 #include <optional>
 #include <prehend/hands/make_hand.hpp>
+#include <prehend/test_support/hands.hpp>
 #include <sstream>
 
 namespace {
@@ -19,14 +20,6 @@ using Eigen::Vector3d;
 
 std::filesystem::path folder() {
   return std::filesystem::path(PREHEND_SOURCE) / "common/models/hands";
-}
-
-std::vector<std::string> names() {
-  std::vector<std::string> found;
-  for (const auto& entry : std::filesystem::directory_iterator(folder()))
-    if (entry.is_directory()) found.push_back(entry.path().filename());
-  std::sort(found.begin(), found.end());
-  return found;
 }
 
 std::string read(const std::filesystem::path& file) {
@@ -114,7 +107,7 @@ TEST_P(EveryHand, LooksOutOfThePalmAsWritten) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(All, EveryHand, testing::ValuesIn(names()),
+INSTANTIATE_TEST_SUITE_P(All, EveryHand, testing::ValuesIn(test::hand_names()),
                          [](const auto& tested) { return tested.param; });
 
 }  // namespace

@@ -15,19 +15,10 @@
 namespace prehend::mapping {
 namespace {
 
-std::vector<std::string> hand_names() {
-  std::vector<std::string> names;
-  for (const auto& entry :
-       std::filesystem::directory_iterator(PREHEND_SOURCE "/common/models/hands"))
-    if (entry.is_directory()) names.push_back(entry.path().filename());
-  std::sort(names.begin(), names.end());
-  return names;
-}
-
 class ArrivalOf : public testing::TestWithParam<std::string> {};
 
 TEST_P(ArrivalOf, EqualsThePhysicalDistance) {
-  const model::HandModel& hand = hand_named(GetParam());
+  const model::HandModel& hand = test::hand(GetParam());
   const Arrival arrival(hand);
   ASSERT_EQ(arrival.fingers(), static_cast<int>(hand.fingertips().size()));
   const model::Shape ball{model::ShapeKind::sphere, Eigen::Vector3d::Constant(0.01)};
@@ -62,7 +53,7 @@ TEST_P(ArrivalOf, EqualsThePhysicalDistance) {
 }
 
 TEST_P(ArrivalOf, FallsWhileAFingerClosesOnWhatItWillTouch) {
-  const model::HandModel& hand = hand_named(GetParam());
+  const model::HandModel& hand = test::hand(GetParam());
   const Arrival arrival(hand);
   // In the middle of the closing fingers.
   const model::Shape ball{model::ShapeKind::sphere, Eigen::Vector3d::Constant(0.02)};
@@ -76,7 +67,7 @@ TEST_P(ArrivalOf, FallsWhileAFingerClosesOnWhatItWillTouch) {
   EXPECT_LT(arrival.distances(dof, ball, hand.X_BG()).sum(), open.sum());
 }
 
-INSTANTIATE_TEST_SUITE_P(Mapping, ArrivalOf, testing::ValuesIn(hand_names()),
+INSTANTIATE_TEST_SUITE_P(Mapping, ArrivalOf, testing::ValuesIn(test::hand_names()),
                          [](const auto& named) { return named.param; });
 
 }  // namespace

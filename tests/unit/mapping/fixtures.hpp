@@ -1,27 +1,17 @@
 #pragma once
 
 #include <array>
-#include <map>
 #include <prehend/base/random.hpp>
 #include <prehend/mapping/mapping.hpp>
 #include <prehend/mapping/mapping_model.hpp>
 #include <prehend/model/human_hand.hpp>
-#include <stdexcept>
+#include <prehend/test_support/hands.hpp>
 
 namespace prehend::mapping {
 
-inline const model::HandModel& hand_named(const std::string& name) {
-  static std::map<std::string, model::HandModel> loaded;
-  const auto found = loaded.find(name);
-  if (found != loaded.end()) return found->second;
-  auto made = model::HandModel::load(PREHEND_SOURCE "/common/models/hands/" + name);
-  if (!made) throw std::runtime_error(made.error().message());
-  return loaded.emplace(name, std::move(*made)).first->second;
-}
-
 /// The Barrett hand of the lab.
 inline const model::HandModel& barrett() {
-  static const model::HandModel& hand = hand_named("barrett");
+  static const model::HandModel& hand = test::hand("barrett");
   return hand;
 }
 

@@ -63,9 +63,7 @@ TEST(RobotGrasps, AreClosedTheSameAgain) {
 }
 
 TEST(RobotGrasps, OfAnotherHandOrDamagedAreRefused) {
-  const auto dlr = model::HandModel::load(PREHEND_SOURCE "/common/models/hands/dlr");
-  ASSERT_TRUE(dlr);
-  const auto refused = load_robot_grasps(PREHEND_TRAINED "/barrett.grasps", *dlr);
+  const auto refused = load_robot_grasps(PREHEND_TRAINED "/barrett.grasps", test::hand("dlr"));
   ASSERT_FALSE(refused);
   EXPECT_THAT(refused.error().message(),
               testing::HasSubstr("the hand «barrett», not of this «dlr»"));
@@ -173,15 +171,14 @@ TEST(TrainedModel, OpensWithTheHand) {
 // way that it can be grasped. At least 90 % right, and no type below 85 %.
 TEST(TrainedModel, TellsGraspTypesOfOtherPeople) {
   for (const std::string name : {"barrett", "dlr", "robonaut"}) {
-    const auto hand = model::HandModel::load(PREHEND_SOURCE "/common/models/hands/" + name);
-    ASSERT_TRUE(hand);
-    const auto model = MappingModel::load(PREHEND_TRAINED "/" + name + ".mapping", *hand);
+    const model::HandModel& hand = test::hand(name);
+    const auto model = MappingModel::load(PREHEND_TRAINED "/" + name + ".mapping", hand);
     ASSERT_TRUE(model) << model.error().message();
     std::map<GraspType, std::map<GraspType, int>> confusion;  // made, told
     for (unsigned person = 0; person < 20; ++person) {
       Demonstrator demonstrator("unseen", 7'000'000 + person, {});
       for (const model::CatalogueObject& object : catalogue().objects())
-        for (const Pose& X_OG : approaches(object.shape, hand->reach()))
+        for (const Pose& X_OG : approaches(object.shape, hand.reach()))
           for (const GraspType type : types_from(X_OG))
             if (const auto grasp = demonstrator.reach(object.shape, X_OG, type)) {
               const bool precision = model->is_precision(demonstrator.read(grasp->closure));

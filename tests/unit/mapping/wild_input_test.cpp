@@ -16,19 +16,10 @@ namespace {
 
 using std::chrono::milliseconds;
 
-std::vector<std::string> all_hands() {
-  std::vector<std::string> names;
-  for (const auto& entry :
-       std::filesystem::directory_iterator(PREHEND_SOURCE "/common/models/hands"))
-    if (entry.is_directory()) names.push_back(entry.path().filename());
-  std::sort(names.begin(), names.end());
-  return names;
-}
-
 class WildInput : public testing::TestWithParam<std::tuple<std::string, int>> {};
 
 TEST_P(WildInput, NeverMovesFasterThanTheLimits) {
-  const model::HandModel& hand = hand_named(std::get<0>(GetParam()));
+  const model::HandModel& hand = test::hand(std::get<0>(GetParam()));
   const auto seed = static_cast<std::uint64_t>(std::get<1>(GetParam()));
   Random random(seed);
   const MappingModel model = random_model(seed, hand);
@@ -122,7 +113,8 @@ TEST_P(WildInput, NeverMovesFasterThanTheLimits) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Mapping, WildInput,
-                         testing::Combine(testing::ValuesIn(all_hands()), testing::Range(1, 4)));
+                         testing::Combine(testing::ValuesIn(test::hand_names()),
+                                          testing::Range(1, 4)));
 
 }  // namespace
 }  // namespace prehend::mapping

@@ -10,6 +10,7 @@
 #include <numeric>
 #include <prehend/grasping/candidates.hpp>
 #include <prehend/planning/grasp_file.hpp>
+#include <prehend/test_support/hands.hpp>
 
 #include "plans.hpp"
 
@@ -43,7 +44,7 @@ void expect_sound(const Plan& plan) {
     EXPECT_GT(count, 0);
   }
   EXPECT_EQ(plan.held(), plan.reason.empty());
-  const model::HandModel& hand = hand_called(plan.hand);
+  const model::HandModel& hand = test::hand(plan.hand);
   for (std::size_t i = 0; i < plan.grasps.size(); ++i) {
     const PlannedGrasp& grasp = plan.grasps[i];
     if (i > 0) {
@@ -108,7 +109,7 @@ TEST_P(EveryHand, IsToldWhatDoesNotFit) {
 }
 
 TEST_P(EveryHand, CandidatesDependOnSeedAndIndexAlone) {
-  const model::HandModel& hand = hand_called(GetParam());
+  const model::HandModel& hand = test::hand(GetParam());
   for (int i = 0; i < 200; ++i) {
     const auto a = grasping::sample_candidate(hand, talc.shape, 5, i);
     const auto b = grasping::sample_candidate(hand, talc.shape, 5, i);
@@ -121,7 +122,7 @@ TEST_P(EveryHand, CandidatesDependOnSeedAndIndexAlone) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Hands, EveryHand, testing::ValuesIn(all_hands()),
+INSTANTIATE_TEST_SUITE_P(Hands, EveryHand, testing::ValuesIn(test::hand_names()),
                          [](const auto& hand) { return hand.param; });
 
 TEST(PlanGrasps, NothingReachesThroughTheTable) {
@@ -138,7 +139,7 @@ TEST(PlanGrasps, NothingReachesThroughTheTable) {
 
 TEST(PlanGrasps, RefusesNonsense) {
   const auto refused = [](Body object, const grasping::PlanOptions& options) {
-    return !grasping::plan_grasps(hand_called("barrett"), object, options,
+    return !grasping::plan_grasps(test::hand("barrett"), object, options,
                                   [](std::size_t, const auto&) {});
   };
   EXPECT_TRUE(refused(talc, {.candidates = 0}));

@@ -1,16 +1,9 @@
 #pragma once
 
 #include <prehend/grasping/planner.hpp>
-#include <prehend/model/hand_model.hpp>
 #include <string>
 
 namespace prehend::simulation {
-
-/// A hand of the source tree, loaded once.
-const model::HandModel& hand_called(const std::string& name);
-
-/// The folders of common/models/hands.
-std::vector<std::string> all_hands();
 
 inline const grasping::Body talc{
     "Talc", {model::ShapeKind::cylinder, {0.024, 0.024, 0.105}}, 0.15, "plastic", {}};

@@ -7,16 +7,14 @@
 #include <filesystem>
 #include <prehend/base/random.hpp>
 #include <prehend/recorder/ease_in.hpp>
+#include <prehend/test_support/hands.hpp>
 
 namespace prehend::recorder {
 namespace {
 
 std::vector<model::HandModel> hands() {
   std::vector<model::HandModel> all;
-  for (const auto& entry :
-       std::filesystem::directory_iterator(std::string(PREHEND_SOURCE) + "/common/models/hands"))
-    if (std::filesystem::exists(entry.path() / "hand.toml"))
-      all.push_back(model::HandModel::load(entry.path()).value());
+  for (const std::string& name : test::hand_names()) all.push_back(test::hand(name));
   return all;
 }
 

@@ -14,6 +14,7 @@
 #include <prehend/retargeting/inverse_kinematics.hpp>
 #include <prehend/retargeting/retargeter.hpp>
 #include <prehend/retargeting/vector_matching.hpp>
+#include <prehend/test_support/hands.hpp>
 #include <stdexcept>
 
 namespace prehend::retargeting {
@@ -23,25 +24,6 @@ using Eigen::Matrix3Xd;
 using Eigen::MatrixXd;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
-
-const std::filesystem::path hands_folder = PREHEND_SOURCE "/common/models/hands";
-
-std::vector<std::string> hand_names() {
-  std::vector<std::string> names;
-  for (const auto& entry : std::filesystem::directory_iterator(hands_folder))
-    if (entry.is_directory()) names.push_back(entry.path().filename());
-  std::sort(names.begin(), names.end());
-  return names;
-}
-
-const model::HandModel& hand(const std::string& name) {
-  static std::map<std::string, model::HandModel> loaded;
-  const auto found = loaded.find(name);
-  if (found != loaded.end()) return found->second;
-  auto made = model::HandModel::load(hands_folder / name);
-  if (!made) throw std::runtime_error(made.error().message());
-  return loaded.emplace(name, std::move(*made)).first->second;
-}
 
 VectorXd random_posture(const model::HandModel& model, Random& random) {
   VectorXd dof(static_cast<Eigen::Index>(model.dofs().size()));
@@ -77,7 +59,7 @@ const Vector3d p_GH = model::HumanHand(1).X_HG().inverse().translation();
 
 class AllHands : public testing::TestWithParam<std::string> {
  protected:
-  const model::HandModel& hand_ = hand(GetParam());
+  const model::HandModel& hand_ = test::hand(GetParam());
   FollowingTips tips_ = *FollowingTips::create(hand_);
 
   void expect_within_limits(const VectorXd& dof) const {
@@ -170,13 +152,13 @@ TEST_P(AllHands, RefusesMissingFingertips) {
   EXPECT_EQ(retargeter->answer(tips, p_GH, open).error().what, "fingertip not finite");
 }
 
-INSTANTIATE_TEST_SUITE_P(Retargeting, AllHands, testing::ValuesIn(hand_names()),
+INSTANTIATE_TEST_SUITE_P(Retargeting, AllHands, testing::ValuesIn(test::hand_names()),
                          [](const auto& named) { return named.param; });
 
 TEST(Retargeting, FingersThatFollowTheSameOneStayApart) {
-  const FollowingTips tips = *FollowingTips::create(hand("barrett"));
+  const FollowingTips tips = *FollowingTips::create(test::hand("barrett"));
   const Matrix3Xd p = *tips.targets(human_tips({}));
-  const Matrix3Xd open = tips.positions(hand("barrett").postures().at("open"));
+  const Matrix3Xd open = tips.positions(test::hand("barrett").postures().at("open"));
   const Vector3d index = *human_tips({})[static_cast<std::size_t>(model::Finger::index)];
   // Fingers 1 and 2 follow the index, finger 3 the thumb.
   EXPECT_NEAR(p(0, 0) - p(0, 1), open(0, 0) - open(0, 1), 1e-12);

@@ -1,0 +1,32 @@
+#include "hands.hpp"
+
+#include <algorithm>
+#include <filesystem>
+#include <map>
+#include <stdexcept>
+#include <utility>
+
+namespace prehend::test {
+
+namespace {
+const std::filesystem::path folder = PREHEND_SOURCE "/common/models/hands";
+}
+
+std::vector<std::string> hand_names() {
+  std::vector<std::string> names;
+  for (const auto& entry : std::filesystem::directory_iterator(folder))
+    if (entry.is_directory()) names.push_back(entry.path().filename());
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+const model::HandModel& hand(const std::string& name) {
+  static std::map<std::string, model::HandModel> loaded;
+  const auto found = loaded.find(name);
+  if (found != loaded.end()) return found->second;
+  auto made = model::HandModel::load(folder / name);
+  if (!made) throw std::runtime_error(made.error().message());
+  return loaded.emplace(name, std::move(*made)).first->second;
+}
+
+}  // namespace prehend::test
