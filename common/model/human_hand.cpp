@@ -92,8 +92,9 @@ int first_dof(int f) {
   return f == static_cast<int>(Finger::thumb) ? 16 : 4 * (f - 1);
 }
 
-/// X_HS of the finger's base and behind each of its four joints.
-std::array<Pose, 5> chain(int f, const HumanPosture& posture, double scale) {
+/// X_HS of the finger's base and behind each of its four joints. Bones are `length` times as long
+/// as those of a hand of that scale.
+std::array<Pose, 5> chain(int f, const HumanPosture& posture, double scale, double length) {
   const FingerModel& model = finger_models()[static_cast<std::size_t>(f)];
   const Matrix3d R_HA = rotation_of_H().transpose();
   std::array<Pose, 5> X_HS;
@@ -101,15 +102,15 @@ std::array<Pose, 5> chain(int f, const HumanPosture& posture, double scale) {
   for (int j = 0; j < 4; ++j) {
     const Segment& s = model.segments[static_cast<std::size_t>(j)];
     X_HS[j + 1] = X_HS[j] * AngleAxisd(posture[first_dof(f) + j] + s.offset, Vector3d::UnitZ()) *
-                  Eigen::Translation3d(scale * s.length, 0, 0) *
+                  Eigen::Translation3d(scale * length * s.length, 0, 0) *
                   AngleAxisd(s.twist, Vector3d::UnitX());
   }
   return X_HS;
 }
 
-std::vector<Capsule> capsules(int f, const HumanPosture& posture, double scale) {
+std::vector<Capsule> capsules(int f, const HumanPosture& posture, double scale, double length) {
   const FingerModel& model = finger_models()[static_cast<std::size_t>(f)];
-  const auto X_HS = chain(f, posture, scale);
+  const auto X_HS = chain(f, posture, scale, length);
   std::vector<Capsule> result;
   for (int j = model.first_drawn; j < 4; ++j)
     result.push_back({X_HS[j].translation(), X_HS[j + 1].translation(), scale * model.radius});
@@ -141,18 +142,35 @@ std::optional<Finger> finger_from_string(std::string_view name) {
   return static_cast<Finger>(found - names.begin());
 }
 
-HumanHand::HumanHand(double scale) : scale_(std::clamp(scale, 0.7, 1.4)) {}
+HumanHand::HumanHand(double scale, const std::array<double, finger_count>& fingers)
+    : scale_(std::clamp(scale, 0.7, 1.4)), fingers_(fingers) {
+  for (double& length : fingers_) length = std::clamp(length, 0.7, 1.4);
+}
+
+std::array<double, 3> HumanHand::bones(Finger finger) const {
+  const auto f = static_cast<std::size_t>(finger);
+  std::array<double, 3> lengths{};
+  for (std::size_t j = 0; j < lengths.size(); ++j)
+    lengths[j] = scale_ * fingers_[f] * finger_models()[f].segments[j + 1].length;
+  return lengths;
+}
+
+Vector3d HumanHand::base(Finger finger) const {
+  const auto f = static_cast<std::size_t>(finger);
+  return scale_ * (rotation_of_H().transpose() * (finger_models()[f].p_AF - p_AH));
+}
 
 std::array<Pose, finger_count> HumanHand::fingertip_poses(const HumanPosture& posture) const {
   std::array<Pose, finger_count> tips;
-  for (int f = 0; f < finger_count; ++f) tips[f] = chain(f, posture, scale_)[4];
+  for (int f = 0; f < finger_count; ++f) tips[f] = chain(f, posture, scale_, fingers_[f])[4];
   return tips;
 }
 
 std::vector<Capsule> HumanHand::segments(const HumanPosture& posture) const {
   std::vector<Capsule> result;
   for (int f = 0; f < finger_count; ++f)
-    for (const Capsule& capsule : capsules(f, posture, scale_)) result.push_back(capsule);
+    for (const Capsule& capsule : capsules(f, posture, scale_, fingers_[f]))
+      result.push_back(capsule);
   return result;
 }
 
@@ -215,7 +233,7 @@ std::array<double, finger_count> HumanHand::close_on(const Shape& shape, const P
     const auto free = [&](double c) {
       std::array<double, finger_count> trial{};
       trial[f] = c;
-      for (const Capsule& capsule : capsules(f, posture(trial), scale_))
+      for (const Capsule& capsule : capsules(f, posture(trial), scale_, fingers_[f]))
         if (clearance(capsule, shape, X_OH) <= 0) return false;
       return true;
     };

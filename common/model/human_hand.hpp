@@ -30,10 +30,16 @@ struct Capsule {
 /// z out of the back of the hand, y towards the thumb.
 class HumanHand {
  public:
-  /// scale: length relative to an average adult hand, 0.7 to 1.4.
-  explicit HumanHand(double scale);
+  /// scale: length relative to an average adult hand, 0.7 to 1.4. fingers: length of each finger's
+  /// bones relative to that of a hand of this scale, 0.7 to 1.4.
+  explicit HumanHand(double scale,
+                     const std::array<double, finger_count>& fingers = {1, 1, 1, 1, 1});
 
   double scale() const { return scale_; }
+  /// Lengths of the three bones of a finger, from the palm to the tip, m.
+  std::array<double, 3> bones(Finger finger) const;
+  /// Where a finger begins, in H, m: its first joint.
+  Eigen::Vector3d base(Finger finger) const;
   /// Frame of the last segment of every finger; its origin is the fingertip (pad side of the tip),
   /// x along the segment.
   std::array<Pose, finger_count> fingertip_poses(const HumanPosture& posture) const;
@@ -56,6 +62,7 @@ class HumanHand {
 
  private:
   double scale_;
+  std::array<double, finger_count> fingers_;
 };
 
 }  // namespace prehend::model

@@ -51,6 +51,26 @@ TEST(HumanHand, FrameHPointsAsDocumented) {
   for (int f = thumb; f <= little; ++f) EXPECT_LT(open[f].z(), 0);
 }
 
+// A straight finger ends its bones' lengths away from where it begins; longer bones move neither
+// the beginnings nor the other fingers.
+TEST(HumanHand, FingersHaveTheLengthsOfTheirBones) {
+  const HumanHand average(1.1), person(1.1, {0.9, 1.1, 1, 1.05, 1.2});
+  const std::array<double, finger_count> factors{0.9, 1.1, 1, 1.05, 1.2};
+  const auto straight = person.fingertip_poses(HumanPosture::Zero());
+  for (int f = thumb; f <= little; ++f) {
+    const auto finger = static_cast<Finger>(f);
+    EXPECT_EQ(person.base(finger), average.base(finger));
+    double length = 0;
+    for (std::size_t bone = 0; bone < 3; ++bone) {
+      EXPECT_NEAR(person.bones(finger)[bone], factors[f] * average.bones(finger)[bone], 1e-12);
+      length += person.bones(finger)[bone];
+    }
+    if (f != thumb) {
+      EXPECT_NEAR((straight[f].translation() - person.base(finger)).norm(), length, 1e-9) << f;
+    }
+  }
+}
+
 TEST(HumanHand, FingersCloseTowardThePalmAndTheThumbOpposesThem) {
   const HumanHand hand(1);
   for (double c = 0; c < 0.5; c += 0.05) {
