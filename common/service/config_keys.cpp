@@ -22,6 +22,7 @@ const std::vector<ConfigKey>& config_keys() {
       {"glove.name", Text("glove"), "key of this glove's topics"},
       {"glove.device", Text("synthetic"), "topic, nest_of_birds, recording or synthetic"},
       {"glove.user", Text("anyone"), "who wears the glove"},
+      {"glove.hand", Text("right"), "right, or left, which is mirrored into a right one"},
       {"glove.hand_scale", 1.0, "length of the user's hand, 1 = average adult"},
       {"glove.port", Text(""), "serial port of the tracker"},
       {"glove.baud", std::int64_t{115200}, "bits per second on that port"},

@@ -21,6 +21,28 @@ std::optional<model::Finger> finger_of(Site site) {
   return std::nullopt;
 }
 
+bool is_identity_pose(const Reading& reading) {
+  return reading.p_TS.norm() < 1e-9 && reading.q_TS.norm() > 1e-6 &&
+         reading.q_TS.normalized().angularDistance(Eigen::Quaterniond::Identity()) < 1e-7;
+}
+
+Frame mirrored(Frame frame, const Eigen::Vector3d& normal_T) {
+  // Both reflections are half turns times -1, and a half turn about a unit axis is the quaternion
+  // (0, axis): the product is linear in q, so it need not be a rotation.
+  const Eigen::Quaterniond across(0, normal_T.x(), normal_T.y(), normal_T.z()), about_y(0, 0, 1, 0);
+  for (Reading& reading : frame.readings) {
+    if (is_identity_pose(reading)) continue;
+    reading.p_TS -= 2 * normal_T.dot(reading.p_TS) * normal_T;
+    reading.q_TS = across * reading.q_TS * about_y;
+  }
+  frame.left = !frame.left;
+  return frame;
+}
+
+Eigen::Vector3d left_to_right(const Pose& X_WT) {
+  return X_WT.linear().transpose().col(0);
+}
+
 const std::vector<Site>& sites_by_address() {
   static const std::vector<Site> sites{Site::back_of_hand, Site::thumb,  Site::index,
                                        Site::little,       Site::middle, Site::ring};

@@ -7,7 +7,6 @@
 #include <prehend/base/pose.hpp>
 #include <prehend/base/time.hpp>
 #include <prehend/model/human_hand.hpp>
-#include <string_view>
 #include <vector>
 
 namespace prehend::glove {
@@ -34,6 +33,22 @@ struct Frame {
   std::vector<double> joint_angles;  // rad, order of model::HumanPosture; empty: not measured
   bool left = false;                 // a left hand that the device mirrored into a right one
 };
+
+/// What a lost sensor reports: at the tracker's origin, not turned.
+bool is_identity_pose(const Reading& reading);
+
+/// The mirror image of a frame: a left hand becomes a right one and the other way round.
+///
+/// The mirror S = I - 2 n nᵀ goes through the tracker's origin, with the normal n (unit) in T.
+/// Positions become S p. The axes x (towards the fingers) and z (out of the back of the hand) of
+/// every sensor become S x and S z, and y follows, so R becomes S R diag(1, -1, 1). Joint angles,
+/// which are defined by the hand itself, stay. Nothing is checked: what is not finite or has no
+/// norm stays so, and so do identity poses. Twice is the same frame again (rotations up to their
+/// sign).
+Frame mirrored(Frame frame, const Eigen::Vector3d& normal_T);
+
+/// The normal of the plane that makes the table's left its right: the table's x axis in T.
+Eigen::Vector3d left_to_right(const Pose& X_WT);
 
 struct Fingertip {
   bool valid = false;

@@ -10,6 +10,10 @@ using Eigen::Vector3d;
 constexpr double farthest = 5;           // m from the transmitter, twice what any tracker reaches
 constexpr double longest_finger = 0.28;  // m from H to a fingertip of an average hand, with margin
 
+/// rad, that a glove's joint angle may lie outside of what joints do: fingers bend further and
+/// calibrations are worse than the average; more is a broken sensor.
+constexpr double beyond_limits = 0.7;
+
 /// The end of a unit axis moves as far as the angle turns: 300 rad/s², 15 rad/s, 0.1 rad of noise.
 constexpr GateOptions turning{.noise = 0.1, .acceleration = 300, .agreement = 15};
 /// Relative to the hand, fingers are slower than the arm.
@@ -23,8 +27,7 @@ std::optional<Pose> checked(const Reading& reading, std::string_view& reason) {
     reason = "not finite";
   } else if (reading.q_TS.norm() < 1e-6) {
     reason = "zero norm";
-  } else if (reading.p_TS.norm() < 1e-9 &&
-             reading.q_TS.normalized().angularDistance(Eigen::Quaterniond::Identity()) < 1e-7) {
+  } else if (is_identity_pose(reading)) {
     reason = "identity pose";
   } else if (reading.p_TS.norm() > farthest) {
     reason = "extreme point";
@@ -66,28 +69,36 @@ Processed Processor::process(const Frame& frame, Time now) {
   const std::optional<Pose> X_TH = back_of_hand(frame, result);
   if (!X_TH) return result;
 
+  const auto q = angles(frame, result);
   Posture posture;
   posture.sequence = frame.sequence;
   posture.stamp = frame.stamp;
-  posture.joint_angles = frame.joint_angles;
+  if (q) posture.joint_angles.assign(q->begin(), q->end());
   const Pose X_WH = options_.X_WT * *X_TH;
   posture.X_WH = make_pose(hand_filter_(frame.stamp, X_WH.translation()),
                            hand_rotation_(frame.stamp, Eigen::Quaterniond(X_WH.linear())));
 
   int sensors = 1, good = 1;
   std::array<bool, model::finger_count> done{};
+  const auto take = [&](std::size_t f, const std::optional<Vector3d>& p_HF) {
+    done[f] = true;
+    ++sensors;
+    Finger& finger = fingers_[f];
+    if (p_HF && follow(finger, frame.stamp, *p_HF, result)) ++good;
+    posture.fingertips[f].valid =
+        finger.seen && to_seconds(frame.stamp - *finger.seen) <= options_.carry;
+    if (posture.fingertips[f].valid) posture.fingertips[f].p_HF = finger.p_HF;
+  };
   for (const Reading& reading : frame.readings) {
     const auto which = finger_of(reading.site);
     if (!which) continue;
     const auto f = static_cast<std::size_t>(*which);
-    if (done[f]) continue;  // a site counts once
-    done[f] = true;
-    ++sensors;
-    Finger& finger = fingers_[f];
-    if (fingertip(finger, frame.stamp, reading, *X_TH, result)) ++good;
-    posture.fingertips[f].valid =
-        finger.seen && to_seconds(frame.stamp - *finger.seen) <= options_.carry;
-    if (posture.fingertips[f].valid) posture.fingertips[f].p_HF = finger.p_HF;
+    if (!done[f]) take(f, sensed(reading, *X_TH, result));  // a site counts once
+  }
+  if (!frame.joint_angles.empty()) {
+    const auto tips = options_.hand.fingertip_poses(q.value_or(model::HumanPosture::Zero()));
+    for (std::size_t f = 0; f < tips.size(); ++f)
+      if (!done[f]) take(f, q ? std::optional<Vector3d>(tips[f].translation()) : std::nullopt);
   }
   posture.quality = static_cast<double>(good) / sensors;
   result.posture = std::move(posture);
@@ -117,17 +128,39 @@ std::optional<Pose> Processor::back_of_hand(const Frame& frame, Processed& resul
   return std::nullopt;
 }
 
-bool Processor::fingertip(Finger& finger, Time stamp, const Reading& reading, const Pose& X_TH,
-                          Processed& result) {
+std::optional<Vector3d> Processor::sensed(const Reading& reading, const Pose& X_TH,
+                                          Processed& result) {
   std::string_view reason;
   const std::optional<Pose> X_TS = checked(reading, reason);
   if (!X_TS) {
     result.rejects.push_back(reason);
-    return false;
+    return std::nullopt;
   }
   // The unfiltered hand: a filtered one lags, and its lag would look like bent fingers.
-  const Vector3d p_HF = invariant_feature(X_TH, X_TS->translation());
-  if (p_HF.norm() > longest_finger * options_.hand_scale) {
+  return invariant_feature(X_TH, X_TS->translation());
+}
+
+std::optional<model::HumanPosture> Processor::angles(const Frame& frame, Processed& result) const {
+  if (frame.joint_angles.empty()) return std::nullopt;
+  if (frame.joint_angles.size() != model::human_dof_count) {
+    result.rejects.push_back("not the joints of a hand");
+    return std::nullopt;
+  }
+  const Eigen::Map<const model::HumanPosture> measured(frame.joint_angles.data());
+  if (!measured.allFinite()) {
+    result.rejects.push_back("not finite");
+    return std::nullopt;
+  }
+  const model::HumanPosture q = options_.hand.clamp(measured);
+  if ((measured - q).lpNorm<Eigen::Infinity>() > beyond_limits) {
+    result.rejects.push_back("extreme angle");
+    return std::nullopt;
+  }
+  return q;
+}
+
+bool Processor::follow(Finger& finger, Time stamp, const Vector3d& p_HF, Processed& result) {
+  if (p_HF.norm() > longest_finger * options_.hand.scale()) {
     result.rejects.push_back("extreme point");
     return false;
   }

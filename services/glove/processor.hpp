@@ -14,7 +14,7 @@ namespace prehend::glove {
 
 struct ProcessorOptions {
   Pose X_WT = Pose::Identity();  // tracker on the table
-  double hand_scale = 1;         // 1 = average adult; bounds where a fingertip can be
+  model::HumanHand hand{1};      // of the wearer: where a fingertip can be, and is at given angles
   double stale = 0.3;            // s, age at which a frame says nothing about now
   double carry = 0.1;            // s, a finger may be carried over that much lost input
 };
@@ -28,7 +28,8 @@ struct Processed {
 /// Frames of raw sensor poses in, clean hands out. Extreme points, values that are not finite,
 /// rotations without norm, identity poses of lost sensors and stale frames never come through.
 ///
-/// Fingertips are the invariant features of their sensors (features.hpp), thus in H.
+/// Fingertips are the invariant features of their sensors (features.hpp), thus in H. A finger that
+/// has no sensor but joint angles has its tip where the wearer's hand model says.
 class Processor {
  public:
   explicit Processor(const ProcessorOptions& options);
@@ -47,9 +48,13 @@ class Processor {
 
   /// X_TH, if this frame's reading of the back of the hand can be trusted.
   std::optional<Pose> back_of_hand(const Frame& frame, Processed& result);
-  /// True if the reading was used.
-  bool fingertip(Finger& finger, Time stamp, const Reading& reading, const Pose& X_TH,
-                 Processed& result);
+  /// Where the sensor says that the fingertip is, in H, if that can be trusted.
+  static std::optional<Eigen::Vector3d> sensed(const Reading& reading, const Pose& X_TH,
+                                               Processed& result);
+  /// The joint angles, if they can be trusted, forced into the limits of a hand.
+  std::optional<model::HumanPosture> angles(const Frame& frame, Processed& result) const;
+  /// True if the finger takes this place.
+  bool follow(Finger& finger, Time stamp, const Eigen::Vector3d& p_HF, Processed& result);
 
   ProcessorOptions options_;
   std::optional<Time> last_;

@@ -22,6 +22,11 @@ Expected<std::unique_ptr<Service>> Service::create(service::Shell& shell, int& e
     log::info("in lockstep, frames come on glove/frame; {} is left alone", kind->name);
     kind = find_device("topic");
   }
+  const std::string& hand = shell.config().text("glove.hand");
+  if (hand != "right" && hand != "left")
+    return fail("'" + hand + "' is no hand", "glove.hand", "choose right or left");
+  if (hand == "left" && kind->name == "synthetic")
+    return fail("the synthetic hand is a right one", "glove.hand", "choose right");
   exit_code = 3;
   const auto options = device_options(shell.config());
   if (!options) return tl::unexpected(options.error());
@@ -37,8 +42,9 @@ Service::Service(service::Shell& shell, const DeviceKind& kind, const DeviceOpti
     : shell_(shell),
       kind_(kind),
       glove_(shell.config().text("glove.name")),
+      left_to_right_T_(left_to_right(options.X_WT)),
       wearer_{shell.config().text("glove.user"), options.hand_scale},
-      processor_({.X_WT = options.X_WT, .hand_scale = options.hand_scale}),
+      processor_({.X_WT = options.X_WT, .hand = model::HumanHand(options.hand_scale)}),
       postures_(shell.publish(dds::hand_posture)),
       started_(shell.now()) {
   if (kind.name == "synthetic") wearer_.user = options.scene.demonstrator.user;
@@ -59,8 +65,13 @@ Service::Service(service::Shell& shell, const DeviceKind& kind, const DeviceOpti
 void Service::connect(std::unique_ptr<Device> device) {
   device_ = std::move(device);
   if (shell_.lockstep()) return;
+  const bool left = shell_.config().text("glove.hand") == "left";
+  if (left) log::info("the left hand is mirrored into a right one");
   device_->start({.frame =
-                      [this](Frame frame) {
+                      [this, left](Frame frame) {
+                        // A recording knows by itself which hand it is.
+                        if (left && !frame.left)
+                          frame = mirrored(std::move(frame), left_to_right_T_);
                         shell_.exclusively([this, &frame] {
                           frames_.publish(to_message(frame, glove_, std::string(kind_.name)));
                           on_frame(frame);
@@ -81,6 +92,7 @@ void Service::on_frame(const Frame& frame) {
   const Time now = shell_.now();
   const auto begin = std::chrono::steady_clock::now();
   shell_.status().count("frames");
+  if (frame.left) shell_.status().count("frames of a left hand, mirrored");
   // Frames that begin to come get their time to become a posture.
   if (now - last_frame_ > silence) last_posture_ = now;
   last_frame_ = now;

@@ -27,6 +27,7 @@ class Service {
   service::Shell& shell_;
   DeviceKind kind_;
   std::string glove_;
+  Eigen::Vector3d left_to_right_T_;  // normal of the plane that a left hand is mirrored by
   Wearer wearer_;
   Processor processor_;
   service::Shell::Output<v1::GloveFrame> frames_;

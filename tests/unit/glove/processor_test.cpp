@@ -151,6 +151,58 @@ TEST(Processor, NeverPublishesAnExtremeFinger) {
   EXPECT_LT((out.posture->fingertips[index_finger].p_HF - tip).norm(), 1e-9);
 }
 
+/// A hand whose glove measures angles, all fingers closed alike; the index also has a sensor.
+Frame angle_frame(double time, double closure) {
+  Frame f = frame(time, place);
+  std::array<double, model::finger_count> all{};
+  all.fill(closure);
+  const model::HumanPosture q = model::HumanHand::posture(all);
+  f.joint_angles.assign(q.begin(), q.end());
+  return f;
+}
+
+// Where there are no sensors, the wearer's hand model says where the fingertips are; a sensor is
+// believed before it.
+TEST(Processor, PutsFingertipsWhereTheJointAnglesSay) {
+  const model::HumanHand hand(1.15, {1, 1.05, 0.95, 1, 0.9});
+  Processor processor({.hand = hand});
+  std::optional<Posture> posture;
+  for (int n = 0; n < 40; ++n) posture = feed(processor, angle_frame(n / 30., 0.4)).posture;
+  ASSERT_TRUE(posture);
+  const auto tips = hand.fingertip_poses(model::HumanHand::posture({0.4, 0.4, 0.4, 0.4, 0.4}));
+  for (std::size_t f = 0; f < tips.size(); ++f) {
+    ASSERT_TRUE(posture->fingertips[f].valid);
+    const Vector3d wanted = f == index_finger ? tip : Vector3d(tips[f].translation());
+    EXPECT_LT((posture->fingertips[f].p_HF - wanted).norm(), 1e-9) << f;
+  }
+  EXPECT_EQ(posture->joint_angles.size(), 20u);
+  EXPECT_DOUBLE_EQ(posture->quality, 1);
+}
+
+TEST(Processor, RejectsBadJointAnglesAndKeepsTheSensors) {
+  const auto with = [](auto change) {
+    Processor processor({});
+    for (int n = 0; n < 10; ++n) feed(processor, angle_frame(n / 30., 0.2));
+    Processed out;
+    for (int n = 10; n < 15; ++n) {
+      Frame f = angle_frame(n / 30., 0.2);
+      change(f.joint_angles);
+      out = feed(processor, f);
+    }
+    EXPECT_TRUE(out.posture);
+    if (!out.posture) return std::string();
+    EXPECT_TRUE(out.posture->joint_angles.empty());
+    EXPECT_TRUE(out.posture->fingertips[index_finger].valid) << "its sensor is good";
+    EXPECT_FALSE(out.posture->fingertips[0].valid);
+    EXPECT_DOUBLE_EQ(out.posture->quality, 2. / 6);
+    EXPECT_EQ(out.rejects.size(), 1u);
+    return out.rejects.empty() ? std::string() : std::string(out.rejects[0]);
+  };
+  EXPECT_EQ(with([](auto& q) { q[3] = NAN; }), "not finite");
+  EXPECT_EQ(with([](auto& q) { q[3] = 3; }), "extreme angle");
+  EXPECT_EQ(with([](auto& q) { q.pop_back(); }), "not the joints of a hand");
+}
+
 // The tracker of the thesis: 30 Hz, noise of 1.5 mm, 1 % extreme points of up to 50 cm in every
 // sensor, on a hand that moves and closes. What is published may be off by the noise and by a frame
 // of lag, never by an extreme point.
