@@ -20,9 +20,22 @@ const ConfigKey* find_key(std::string_view name) {
 }
 
 std::string_view type_name(const Setting& setting) {
-  constexpr std::string_view names[] = {"true or false", "a whole number", "a number", "a text",
-                                        "a list of numbers"};
+  constexpr std::string_view names[] = {"true or false", "a whole number",    "a number",
+                                        "a text",        "a list of numbers", "a list of texts"};
   return names[setting.index()];
+}
+
+template <class T>
+std::optional<std::vector<T>> list(const toml::node& node) {
+  const toml::array* array = node.as_array();
+  if (!array) return std::nullopt;
+  std::vector<T> entries;
+  for (const toml::node& entry : *array) {
+    const auto value = entry.value<T>();
+    if (!value) return std::nullopt;
+    entries.push_back(*value);
+  }
+  return entries;
 }
 
 /// The node as a value of the same type as `like`, or nothing.
@@ -36,13 +49,10 @@ std::optional<Setting> convert(const toml::node& node, const Setting& like) {
       return Setting(*number);
   } else if (std::holds_alternative<std::string>(like)) {
     if (node.is_string()) return Setting(**node.as_string());
-  } else if (const toml::array* array = node.as_array()) {
-    std::vector<double> numbers;
-    for (const toml::node& entry : *array) {
-      if (!entry.is_number()) return std::nullopt;
-      numbers.push_back(*entry.value<double>());
-    }
-    return Setting(std::move(numbers));
+  } else if (std::holds_alternative<std::vector<double>>(like)) {
+    if (auto numbers = list<double>(node)) return Setting(std::move(*numbers));
+  } else if (auto texts = list<std::string>(node)) {
+    return Setting(std::move(*texts));
   }
   return std::nullopt;
 }
@@ -166,6 +176,9 @@ const std::string& Config::text(std::string_view key) const {
 const std::vector<double>& Config::numbers(std::string_view key) const {
   return get<std::vector<double>>(values_, key);
 }
+const std::vector<std::string>& Config::names(std::string_view key) const {
+  return get<std::vector<std::string>>(values_, key);
+}
 
 std::filesystem::path Config::path(std::string_view key) const {
   const std::string& given = text(key);
@@ -183,6 +196,9 @@ std::map<std::string, std::string> Config::texts() const {
     std::string operator()(const std::string& value) const { return value; }
     std::string operator()(const std::vector<double>& value) const {
       return fmt::format("[{}]", fmt::join(value, ", "));
+    }
+    std::string operator()(const std::vector<std::string>& value) const {
+      return value.empty() ? "[]" : fmt::format("[\"{}\"]", fmt::join(value, "\", \""));
     }
   };
   std::map<std::string, std::string> texts;

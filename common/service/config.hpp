@@ -11,8 +11,9 @@
 
 namespace prehend::service {
 
-/// A setting of the lab: a number, a truth value, a text, or a list of numbers.
-using Setting = std::variant<bool, std::int64_t, double, std::string, std::vector<double>>;
+/// A setting of the lab: a number, a truth value, a text, or a list of numbers or of texts.
+using Setting = std::variant<bool, std::int64_t, double, std::string, std::vector<double>,
+                             std::vector<std::string>>;
 
 /// One key of lab.toml. All services share one table of keys (config_keys.cpp), so that a misspelt
 /// key is an error everywhere, whoever reads it.
@@ -35,6 +36,7 @@ class Config {
   double number(std::string_view key) const;
   const std::string& text(std::string_view key) const;
   const std::vector<double>& numbers(std::string_view key) const;
+  const std::vector<std::string>& names(std::string_view key) const;
   /// A path; a relative one is meant from the folder of the file, "share:x" from share_directory().
   /// Empty stays empty.
   std::filesystem::path path(std::string_view key) const;

@@ -4,6 +4,7 @@ namespace prehend::service {
 
 using Numbers = std::vector<double>;
 using Text = std::string;
+using Names = std::vector<std::string>;
 
 // A pose is seven numbers: x, y, z in metres, then the quaternion w, x, y, z.
 const std::vector<ConfigKey>& config_keys() {
@@ -26,11 +27,15 @@ const std::vector<ConfigKey>& config_keys() {
       {"glove.hand_scale", 1.0, "length of the user's hand, 1 = average adult"},
       {"glove.port", Text(""), "serial port of the tracker"},
       {"glove.baud", std::int64_t{115200}, "bits per second on that port"},
-      {"glove.sensors", std::int64_t{4},
-       "sensors of the tracker; back of hand, thumb, index, little"},
+      {"glove.sites", Names{"back_of_hand", "thumb", "index", "little"},
+       "where the tracker's sensors sit, in the order of their addresses"},
       {"glove.format", Text("position_matrix"), "records asked of the tracker"},
+      {"glove.mode", Text("stream"), "stream, or point: the tracker is asked for each frame"},
+      {"glove.range", std::int64_t{72}, "inches, of the tracker: 36, 72 or 144"},
+      {"glove.hemisphere", Text("left"),
+       "side of the transmitter where the hand is: front, rear, left, right, upper or lower"},
       {"glove.file", Text(""), "recording to play"},
-      {"glove.rate", 30.0, "Hz, of the synthetic hand"},
+      {"glove.rate", 30.0, "Hz, of the synthetic hand, and in point mode"},
 
       {"camera.name", Text("camera"), "key of this camera's topic"},
       {"camera.width", std::int64_t{640}, "px"},

@@ -1,5 +1,7 @@
 #include "frame.hpp"
 
+#include <algorithm>
+
 namespace prehend::glove {
 
 std::optional<model::Finger> finger_of(Site site) {
@@ -43,9 +45,16 @@ Eigen::Vector3d left_to_right(const Pose& X_WT) {
   return X_WT.linear().transpose().col(0);
 }
 
-const std::vector<Site>& sites_by_address() {
-  static const std::vector<Site> sites{Site::back_of_hand, Site::thumb,  Site::index,
-                                       Site::little,       Site::middle, Site::ring};
+std::optional<Site> site_from_string(std::string_view name) {
+  constexpr std::array<std::string_view, 7> names{"back_of_hand", "thumb",  "index",  "middle",
+                                                  "ring",         "little", "forearm"};
+  const auto found = std::find(names.begin(), names.end(), name);
+  if (found == names.end()) return std::nullopt;
+  return static_cast<Site>(found - names.begin());
+}
+
+const std::vector<Site>& usual_sites() {
+  static const std::vector<Site> sites{Site::back_of_hand, Site::thumb, Site::index, Site::little};
   return sites;
 }
 

@@ -17,6 +17,9 @@ enum class Site { back_of_hand, thumb, index, middle, ring, little, forearm };
 /// The finger that carries a sensor, if a finger does.
 std::optional<model::Finger> finger_of(Site site);
 
+/// "back_of_hand", "thumb", ... as in lab.toml.
+std::optional<Site> site_from_string(std::string_view name);
+
 /// One sensor as the device gave it: nothing has been checked yet. T: the tracker's frame.
 struct Reading {
   Site site = Site::back_of_hand;
@@ -65,7 +68,8 @@ struct Posture {
   std::vector<double> joint_angles;
 };
 
-/// Sites of a tracker's sensors in the order of their addresses, for 1 to 6 sensors.
-const std::vector<Site>& sites_by_address();
+/// Sites of the thesis's four sensors in the order of their addresses: back of the hand, thumb,
+/// index and little finger.
+const std::vector<Site>& usual_sites();
 
 }  // namespace prehend::glove

@@ -1,6 +1,30 @@
 #include "options.hpp"
 
+#include <algorithm>
+
 namespace prehend::glove {
+namespace {
+
+/// Every sensor somewhere, no two at the same place, and one on the back of the hand, which says
+/// where the hand is and relative to which the fingertips are known.
+Expected<std::vector<Site>> checked_sites(const std::vector<std::string>& names) {
+  std::vector<Site> sites;
+  for (const std::string& name : names) {
+    const auto site = site_from_string(name);
+    if (!site)
+      return fail("there is no site '" + name + "'", "glove.sites",
+                  "choose back_of_hand, thumb, index, middle, ring, little or forearm");
+    if (std::find(sites.begin(), sites.end(), *site) != sites.end())
+      return fail("two sensors at '" + name + "'", "glove.sites", "name each site once");
+    sites.push_back(*site);
+  }
+  if (std::find(sites.begin(), sites.end(), Site::back_of_hand) == sites.end())
+    return fail("no sensor is on the back of the hand, where the fingertips are measured from",
+                "glove.sites", "put one there: a forearm's does not replace it");
+  return sites;
+}
+
+}  // namespace
 
 Expected<DeviceOptions> device_options(const service::Config& config) {
   DeviceOptions options;
@@ -12,8 +36,13 @@ Expected<DeviceOptions> device_options(const service::Config& config) {
   options.X_WT = *X_WT;
   options.port = config.text("glove.port");
   options.baud = static_cast<int>(config.integer("glove.baud"));
-  options.sensors = static_cast<int>(config.integer("glove.sensors"));
+  auto sites = checked_sites(config.names("glove.sites"));
+  if (!sites) return tl::unexpected(sites.error());
+  options.sites = std::move(*sites);
   options.format = config.text("glove.format");
+  options.mode = config.text("glove.mode");
+  options.range = static_cast<int>(config.integer("glove.range"));
+  options.hemisphere = config.text("glove.hemisphere");
   options.file = config.path("glove.file");
   options.rate = config.number("glove.rate");
   options.hand_scale = config.number("glove.hand_scale");

@@ -199,7 +199,7 @@ std::optional<Frame> SyntheticHand::frame(std::uint64_t n) const {
   Random random((person_.seed * 1000003 + options_.seed) * 6364136223846793005ULL + n);
   for (std::size_t s = 0; s < sensor_count; ++s) {
     Reading reading;
-    reading.site = sites_by_address()[s];
+    reading.site = usual_sites()[s];
     const auto finger = finger_of(reading.site);
     const Pose X_HF = finger ? tips[static_cast<std::size_t>(*finger)] : Pose::Identity();
     const Pose X_TS = X_TH * X_HF * mounting_[s];

@@ -1,6 +1,7 @@
 #include "bird_emulator.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace prehend::glove::bird {
 namespace {
@@ -24,20 +25,19 @@ std::size_t command_length(char first) {
 
 }  // namespace
 
-Emulator::Emulator(int units, const Faults& faults)
-    : units_(std::clamp(units, 1, static_cast<int>(sites_by_address().size()))),
-      faults_(faults),
-      random_(faults.seed) {
+Emulator::Emulator(const EmulatorOptions& options) : options_(options) {
   reset();
 }
 
 void Emulator::reset() {
-  layout_ = Layout{.format = Format::position_angles};
-  unit_format_.assign(static_cast<std::size_t>(units_), layout_.format);
+  units_.assign(options_.sites.size(), {});
+  if (options_.extended)
+    for (Unit& unit : units_) unit.layout.range = extended_scale;
   running_units_ = 1;
   addressed_ = 1;
-  streaming_ = paused_ = false;
+  group_ = streaming_ = paused_ = false;
   report_every_ = 1;
+  error_ = 0;
   pending_.clear();
 }
 
@@ -70,20 +70,35 @@ std::string Emulator::receive(std::string_view bytes, Duration now) {
 }
 
 std::string Emulator::command(std::string_view bytes) {
+  if (addressed_ < 1 || addressed_ > static_cast<int>(units_.size())) {
+    error_ = 13;  // no such unit answers
+    return {};
+  }
+  Unit& unit = units_[static_cast<std::size_t>(addressed_ - 1)];
   if (const auto format = format_of_command(bytes[0])) {
-    if (addressed_ >= 1 && addressed_ <= units_)
-      unit_format_[static_cast<std::size_t>(addressed_ - 1)] = *format;
+    unit.layout.format = *format;
     return {};
   }
   switch (bytes[0]) {
-    case 'B':
+    case 'B': {
       streaming_ = false;
-      return records();
+      std::string answer;
+      for (const std::string& record : records()) answer += record;
+      return answer;
+    }
     case '@':
       streaming_ = true;
       break;
+    case 'F':
+      break;  // it runs already
     case 'G':
       streaming_ = false;
+      break;
+    case 'L':
+      for (const HemisphereInfo& hemisphere : hemispheres)
+        if (static_cast<char>(hemisphere.code[0]) == bytes[1] &&
+            static_cast<char>(hemisphere.code[1]) == bytes[2])
+          unit.hemisphere = hemisphere;
       break;
     case 'Q':
       report_every_ = 1;
@@ -98,7 +113,7 @@ std::string Emulator::command(std::string_view bytes) {
       report_every_ = 32;
       break;
     case 'M':
-      layout_.button = bytes[1] != 0;
+      unit.layout.button = bytes[1] != 0;
       break;
     case 'O':
       return examine(static_cast<std::uint8_t>(bytes[1]));
@@ -110,32 +125,35 @@ std::string Emulator::command(std::string_view bytes) {
       busy_until_ = now_ + reset_time;
       break;
     default:
-      break;  // F and L change nothing that shows; the rest is ignored, as a tracker does
+      error_ = 6;  // not understood, and otherwise ignored
   }
   return {};
 }
 
-std::string Emulator::examine(std::uint8_t parameter) const {
+std::string Emulator::examine(std::uint8_t parameter) {
   using std::string_literals::operator""s;
+  const Unit& unit = units_[static_cast<std::size_t>(addressed_ - 1)];
   switch (parameter) {
     case status:
       return "\x08\xD1"s;
     case revision:
       return "\x03\x3C"s;
     case position_scaling:
-      return layout_.range == long_range ? "\x01\x00"s : "\x00\x00"s;
+      return unit.layout.range > short_range ? "\x01\x00"s : "\x00\x00"s;
     case error_code:
-      return "\x00"s;
+      return std::string(1, static_cast<char>(std::exchange(error_, std::uint8_t{0})));
     case model_name:
-      return "6DFOB     "s;
+      return options_.extended ? "6DERC     "s : "6DFOB     "s;
     case group_mode:
-      return layout_.group ? "\x01"s : "\x00"s;
+      return group_ ? "\x01"s : "\x00"s;
     case system_status: {
-      std::string units(most_units, '\0');
-      for (int unit = 0; unit < units_; ++unit)
-        units[static_cast<std::size_t>(unit)] = static_cast<char>(
-            accessible | has_receiver | (unit < running_units_ ? running : std::uint8_t{0}));
-      return units;
+      std::string bytes(most_units, '\0');
+      // One unit that stands alone has no bus to tell about.
+      for (int n = 0; units_.size() > 1 && n < static_cast<int>(units_.size()); ++n)
+        bytes[static_cast<std::size_t>(n)] = static_cast<char>(
+            accessible | has_receiver | (n < running_units_ ? running : std::uint8_t{0}) |
+            (options_.extended && n == 0 ? extended_range : std::uint8_t{0}));
+      return bytes;
     }
     default:
       return {};
@@ -143,15 +161,16 @@ std::string Emulator::examine(std::uint8_t parameter) const {
 }
 
 void Emulator::change(std::uint8_t parameter, std::string_view value) {
+  Unit& unit = units_[static_cast<std::size_t>(addressed_ - 1)];
   switch (parameter) {
     case position_scaling:
-      layout_.range = value[0] != 0 ? long_range : short_range;
+      if (!options_.extended) unit.layout.range = value[0] != 0 ? long_range : short_range;
       break;
     case group_mode:
-      layout_.group = value[0] != 0;
+      group_ = value[0] != 0;
       break;
     case auto_configure:
-      running_units_ = std::clamp<int>(value[0], 1, units_);
+      running_units_ = std::clamp<int>(value[0], 1, static_cast<int>(units_.size()));
       busy_until_ = now_ + configure_time;
       break;
     default:
@@ -159,7 +178,7 @@ void Emulator::change(std::uint8_t parameter, std::string_view value) {
   }
 }
 
-std::string Emulator::measure(const Frame& frame, Duration now) {
+std::vector<std::string> Emulator::measure(const Frame& frame, Duration now) {
   now_ = now;
   readings_ = frame.readings;
   const bool due = measurements_++ % static_cast<std::uint64_t>(report_every_) == 0;
@@ -167,24 +186,21 @@ std::string Emulator::measure(const Frame& frame, Duration now) {
   return records();
 }
 
-std::string Emulator::records() {
-  std::string bytes;
-  const int count = layout_.group ? running_units_ : 1;
-  for (int unit = 0; unit < count; ++unit) {
+std::vector<std::string> Emulator::records() const {
+  std::vector<std::string> records;
+  const std::size_t count = group_ ? static_cast<std::size_t>(running_units_) : 1;
+  for (std::size_t n = 0; n < count; ++n) {
     Reading reading;  // a sensor that the source does not have lies at the transmitter
     for (const Reading& known : readings_)
-      if (known.site == sites_by_address()[static_cast<std::size_t>(unit)]) reading = known;
-    Layout layout = layout_;
-    layout.format = unit_format_[static_cast<std::size_t>(unit)];
-    std::string record =
-        encode(reading.p_TS, reading.q_TS.normalized().toRotationMatrix(), layout, unit + 1);
-    if (random_.uniform() < faults_.drop_bytes) record.erase(random_.index(record.size()), 1);
-    if (random_.uniform() < faults_.garbage)
-      for (std::size_t n = 1 + random_.index(20); n > 0; --n)
-        bytes.push_back(static_cast<char>(random_.bits() & 0xff));
-    bytes += record;
+      if (known.site == options_.sites[n]) reading = known;
+    const Unit& unit = units_[n];
+    if (reading.p_TS[unit.hemisphere.axis] * unit.hemisphere.sign < 0) reading.p_TS = -reading.p_TS;
+    Layout layout = unit.layout;
+    layout.group = group_;
+    records.push_back(encode(reading.p_TS, reading.q_TS.normalized().toRotationMatrix(), layout,
+                             static_cast<int>(n) + 1));
   }
-  return bytes;
+  return records;
 }
 
 }  // namespace prehend::glove::bird

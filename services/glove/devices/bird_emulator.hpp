@@ -1,58 +1,52 @@
 #pragma once
 
-#include <prehend/base/random.hpp>
-#include <prehend/base/time.hpp>
-#include <prehend/glove/frame.hpp>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "bird_protocol.hpp"
+#include "emulator.hpp"
 
 namespace prehend::glove::bird {
 
-/// Faults that a real line shows. Shares are of records.
-struct Faults {
-  double garbage = 0;     // share of records before which foreign bytes come
-  double drop_bytes = 0;  // share of records that lose a byte
-  std::uint64_t seed = 1;
+struct EmulatorOptions {
+  std::vector<Site> sites = usual_sites();  // of the units, in the order of their addresses
+  bool extended = false;                    // has an extended range transmitter
 };
 
-/// The tracker's side of the protocol as a value: bytes from the host in, bytes to the host out.
-/// Starts as a tracker does when it is switched on: no unit runs but the first, point mode, 36
-/// inches. Being busy after a reset or an auto-configure it does not listen, so that a driver that
-/// does not wait is caught here.
-class Emulator {
+/// A tracker. Starts as one does when it is switched on: only the first unit runs, point mode, 36
+/// inches, front hemisphere. Being busy after a reset or an auto-configure it does not listen, so
+/// that a driver that does not wait is caught here. Range, hemisphere, format and button mode are
+/// each unit's own, so that a driver that sets up only the first is caught as well.
+class Emulator final : public glove::Emulator {
  public:
-  explicit Emulator(int units, const Faults& faults = {});
+  explicit Emulator(const EmulatorOptions& options);
 
-  /// What it answers to bytes that come at `now` (any clock that does not run backwards).
-  std::string receive(std::string_view bytes, Duration now);
-
-  /// A new measurement; units take their sensors by site, see sites_by_address(). In stream mode
-  /// its records are returned; in point mode they wait to be asked for.
-  std::string measure(const Frame& frame, Duration now);
+  std::string receive(std::string_view bytes, Duration now) override;
+  std::vector<std::string> measure(const Frame& frame, Duration now) override;
 
   bool streaming() const { return streaming_ && !paused_; }
-  const Layout& layout() const { return layout_; }
 
  private:
+  struct Unit {
+    Layout layout{.format = Format::position_angles};
+    HemisphereInfo hemisphere = hemispheres[0];
+  };
+
   std::string command(std::string_view bytes);
-  std::string examine(std::uint8_t parameter) const;
+  std::string examine(std::uint8_t parameter);
   void change(std::uint8_t parameter, std::string_view value);
-  std::string records();
+  std::vector<std::string> records() const;
   void reset();
 
-  int units_;
-  Faults faults_;
-  Random random_;
+  EmulatorOptions options_;
   Duration now_{}, busy_until_{};
   std::string pending_;  // of a command that is not complete
-  Layout layout_;
-  std::vector<Format> unit_format_;
+  std::vector<Unit> units_;
   int running_units_ = 1;
   int addressed_ = 1;
-  bool streaming_ = false, paused_ = false;
+  bool group_ = false, streaming_ = false, paused_ = false;
+  std::uint8_t error_ = 0;
   int report_every_ = 1;
   std::uint64_t measurements_ = 0;
   std::vector<Reading> readings_;

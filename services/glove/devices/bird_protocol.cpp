@@ -75,6 +75,12 @@ std::optional<Format> format_of_name(std::string_view name) {
   return std::nullopt;
 }
 
+const HemisphereInfo* find_hemisphere(std::string_view name) {
+  for (const HemisphereInfo& entry : hemispheres)
+    if (entry.name == name) return &entry;
+  return nullptr;
+}
+
 std::size_t examined_length(std::uint8_t parameter) {
   switch (parameter) {
     case status:

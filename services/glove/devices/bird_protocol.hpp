@@ -58,12 +58,31 @@ std::size_t examined_length(std::uint8_t parameter);
 std::size_t changed_length(std::uint8_t parameter);
 
 /// Bits of a unit's byte in the system status.
-inline constexpr std::uint8_t accessible = 0x80, running = 0x40, has_receiver = 0x20;
+inline constexpr std::uint8_t accessible = 0x80, running = 0x40, has_receiver = 0x20,
+                              extended_range = 0x10;
 inline constexpr std::size_t most_units = 14;
 
 inline constexpr double inch = 0.0254;            // m
 inline constexpr double short_range = 36 * inch;  // full scale of a position word, m
 inline constexpr double long_range = 72 * inch;
+/// Of an extended range transmitter, whatever the position scaling says.
+inline constexpr double extended_scale = 144 * inch;
+
+/// The side of the transmitter where the sensors are. On the other side they would be reported at
+/// the point opposite: the field is the same there. z of the transmitter points down.
+struct HemisphereInfo {
+  std::string_view name;
+  int axis;              // 0, 1, 2
+  int sign;              // of the coordinate on that side
+  std::uint8_t code[2];  // behind the command L
+};
+
+inline constexpr std::array hemispheres{
+    HemisphereInfo{"front", 0, 1, {0x00, 0x00}}, HemisphereInfo{"rear", 0, -1, {0x00, 0x01}},
+    HemisphereInfo{"right", 1, 1, {0x06, 0x00}}, HemisphereInfo{"left", 1, -1, {0x06, 0x01}},
+    HemisphereInfo{"lower", 2, 1, {0x0C, 0x00}}, HemisphereInfo{"upper", 2, -1, {0x0C, 0x01}}};
+
+const HemisphereInfo* find_hemisphere(std::string_view name);
 
 /// How records look on the line at present.
 struct Layout {

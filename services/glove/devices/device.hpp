@@ -11,6 +11,8 @@
 #include <string_view>
 #include <vector>
 
+#include "emulator.hpp"
+
 namespace prehend::glove {
 
 /// What a device tells the service. All of it may be called from the device's thread.
@@ -26,8 +28,11 @@ struct DeviceOptions {
   Pose X_WT = Pose::Identity();
   std::string port;
   int baud = 115200;
-  int sensors = 4;
+  std::vector<Site> sites = usual_sites();  // of a tracker's sensors, by address
   std::string format = "position_matrix";
+  std::string mode = "stream";
+  int range = 72;  // inches
+  std::string hemisphere = "left";
   std::filesystem::path file;
   double rate = 30;  // Hz
   double hand_scale = 1;
@@ -50,6 +55,9 @@ struct DeviceKind {
   /// Frames come by topic from elsewhere; the service must not publish them again.
   bool by_topic = false;
   Expected<std::unique_ptr<Device>> (*create)(const DeviceOptions& options) = nullptr;
+  /// The other side of its line, for tests and `prehend glove emulate`; null where there is no
+  /// line.
+  std::unique_ptr<Emulator> (*emulate)(const DeviceOptions& options) = nullptr;
 };
 
 /// The one table of devices; a new one is a row in registry.cpp.

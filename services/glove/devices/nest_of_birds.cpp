@@ -1,11 +1,16 @@
 #include "nest_of_birds.hpp"
 
-#include <condition_variable>
-#include <mutex>
-#include <thread>
+#include <fmt/format.h>
 
+#include <prehend/base/log.hpp>
+#include <set>
+
+#include "bird_emulator.hpp"
 #include "bird_protocol.hpp"
+#include "bird_words.hpp"
+#include "frame_clock.hpp"
 #include "paced.hpp"
+#include "persistent.hpp"
 #include "serial_port.hpp"
 
 namespace prehend::glove {
@@ -14,7 +19,6 @@ namespace {
 using std::chrono::milliseconds;
 using Clock = std::chrono::steady_clock;
 
-constexpr Duration retry_after = milliseconds(200);
 constexpr Duration settle = milliseconds(600);  // around auto-configure: 300 needed, 600 advised
 constexpr Duration answer_time = milliseconds(200);
 constexpr Duration quiet = milliseconds(30);  // longer than the gap between two records
@@ -24,9 +28,10 @@ constexpr char xon = 0x11;
 /// Gathers the records of one cycle into a frame.
 class Assembly {
  public:
-  explicit Assembly(int sensors) : readings_(static_cast<std::size_t>(sensors)) { clear(); }
+  explicit Assembly(std::vector<Site> sites) : sites_(std::move(sites)) { clear(); }
 
-  /// Calls emit(frame) when a frame is complete, or the next one begins before it is.
+  /// Calls emit(frame) when a frame is complete, or the next one begins before it is. The stamp is
+  /// when its first record came.
   template <class Emit>
   void add(const bird::Record& record, Time now, const DeviceSink& sink, Emit emit) {
     const int address = record.address.value_or(1);
@@ -42,10 +47,7 @@ class Assembly {
     last_ = address;
     Reading& reading = readings_[static_cast<std::size_t>(address - 1)];
     reading.p_TS = *record.position;
-    if (record.quaternion) {
-      reading.valid = true;  // its norm is judged with everything else
-      reading.q_TS = *record.quaternion;
-    } else if (const auto R = record.rotation()) {
+    if (const auto R = record.rotation()) {
       reading.valid = true;
       reading.q_TS = Eigen::Quaterniond(*R);
     } else {
@@ -60,92 +62,129 @@ class Assembly {
     Frame frame;
     frame.sequence = sequence_++;
     frame.stamp = stamp_;
-    frame.readings = readings_;
-    emit(std::move(frame));
+    frame.readings = std::move(readings_);
     clear();
+    emit(std::move(frame));
   }
   void clear() {
     last_ = 0;
-    for (std::size_t i = 0; i < readings_.size(); ++i)
-      readings_[i] = Reading{.site = sites_by_address()[i], .valid = false};
+    readings_.clear();
+    for (const Site site : sites_) readings_.push_back({.site = site, .valid = false});
   }
 
+  std::vector<Site> sites_;
   std::vector<Reading> readings_;
   std::uint64_t sequence_ = 0;
   Time stamp_{};
   int last_ = 0;  // address of the last record; 0: none yet
 };
 
+/// What the tracker shall do.
+struct Setup {
+  int sensors = 4;
+  bird::Format format = bird::Format::position_matrix;
+  double range = bird::long_range;  // m
+  bird::HemisphereInfo hemisphere = bird::hemispheres[0];
+  bool point = false;  // asked for each frame
+  double rate = 30;    // Hz, at which it is asked
+
+  /// A unit that stands alone has no bus, and its records no address.
+  bool group() const { return sensors > 1; }
+  bird::Layout layout() const {
+    return {.format = format, .button = false, .group = group(), .range = range};
+  }
+  /// Everything is said to every unit, as each has settings of its own, perhaps from another day.
+  std::string commands() const {
+    using std::string_literals::operator""s;
+    std::string text;
+    for (int unit = 1; unit <= sensors; ++unit) {
+      const std::string to = group() ? std::string(1, static_cast<char>(0xF0 + unit)) : "";
+      text += to + "P\x03"s + (range > bird::short_range ? '\x01' : '\x00') + '\x00';
+      text +=
+          to + "L" + static_cast<char>(hemisphere.code[0]) + static_cast<char>(hemisphere.code[1]);
+      text += to + "M\x00"s;
+      text += to + bird::info(format).command;
+    }
+    return text + (group() ? "P\x23\x01"s : "P\x23\x00"s) + "Q";
+  }
+};
+
 class NestOfBirds final : public Device {
  public:
-  NestOfBirds(std::string port, int baud, int sensors, bird::Format format)
-      : path_(std::move(port)),
-        baud_(baud),
-        sensors_(sensors),
-        format_(format),
-        assembly_(sensors) {}
+  NestOfBirds(std::string port, int baud, std::vector<Site> sites, const Setup& setup)
+      : path_(std::move(port)), baud_(baud), setup_(setup), assembly_(std::move(sites)) {}
 
   void start(DeviceSink sink) override {
     sink_ = std::move(sink);
-    thread_ = std::jthread([this](const std::stop_token& stop) { run(stop); });
+    thread_.start([this](const std::stop_token& stop) { return live(stop); }, sink_.degraded);
   }
 
  private:
-  void run(const std::stop_token& stop) {
-    while (!stop.stop_requested()) {
-      auto port = SerialPort::open(path_, baud_);
-      auto done = port ? begin(*port, stop) : tl::unexpected(port.error());
-      if (done && !stop.stop_requested()) done = stream(*port, stop);
-      if (!done) {
-        say(done.error().message());
-        pause(stop, retry_after);
-      }
-    }
-  }
-
-  /// A line for the operator, once as long as nothing changes.
-  void say(const std::string& line) {
-    if (line == said_) return;
-    said_ = line;
-    sink_.degraded(line);
-  }
-
-  static void pause(const std::stop_token& stop, Duration duration) {
-    std::mutex mutex;
-    std::condition_variable_any wake;
-    std::unique_lock lock(mutex);
-    wake.wait_for(lock, stop, duration, [] { return false; });
+  Expected<void> live(const std::stop_token& stop) {
+    auto port = SerialPort::open(path_, baud_);
+    if (!port) return tl::unexpected(port.error());
+    if (auto begun = begin(*port, stop); !begun || stop.stop_requested()) return begun;
+    clock_.restart();
+    return setup_.point ? ask(*port, stop) : listen(*port, stop);
   }
 
   Expected<void> begin(SerialPort& port, const std::stop_token& stop) {
-    using std::string_literals::operator""s;
     port.discard_input();
     auto sent = port.write({&xon, 1});
     if (sent) sent = port.write("B");  // ends a stream
     if (!sent) return sent;
     if (auto drained = drain(port); !drained) return drained;
+    if (setup_.group()) {
+      const auto before = running(port);
+      if (!before) return tl::unexpected(before.error());
+      if (!*before) {
+        if (sent = configure(port, stop); !sent || stop.stop_requested()) return sent;
+      }
+    }
+    if (auto answered = introduce(port); !answered) return answered;
+    return port.write(setup_.commands());
+  }
 
-    const auto before = running(port);
-    if (!before) return tl::unexpected(before.error());
-    if (!*before) {
-      if (sent = port.write("/"); !sent) return sent;
-      pause(stop, settle);
-      const char configure[] = {'P', bird::auto_configure, static_cast<char>(sensors_)};
-      if (sent = port.write({configure, sizeof configure}); !sent) return sent;
-      pause(stop, settle);
-      if (stop.stop_requested()) return {};
-      const auto after = running(port);
-      if (!after) return tl::unexpected(after.error());
-      if (!*after)
-        return fail("the tracker does not answer, or not all of its sensors are there", path_,
-                    "check its power, its baud rate and glove.sensors");
+  Expected<void> configure(SerialPort& port, const std::stop_token& stop) {
+    if (auto sent = port.write("/"); !sent) return sent;
+    Persistent::pause(stop, settle);
+    const char command[] = {'P', bird::auto_configure, static_cast<char>(setup_.sensors)};
+    if (auto sent = port.write({command, sizeof command}); !sent) return sent;
+    Persistent::pause(stop, settle);
+    if (stop.stop_requested()) return {};
+    const auto after = running(port);
+    if (!after) return tl::unexpected(after.error());
+    if (!*after)
+      return fail("the tracker does not answer, or not all of its sensors are there", path_,
+                  "check its power, its baud rate and glove.sites");
+    return {};
+  }
+
+  /// Asks it who it is, and says so when that is new.
+  Expected<void> introduce(SerialPort& port) {
+    std::array<std::string, 4> answers;
+    constexpr std::array asked{bird::model_name, bird::revision, bird::status, bird::error_code};
+    for (std::size_t i = 0; i < asked.size(); ++i) {
+      auto answer = examine(port, asked[i]);
+      if (!answer) return tl::unexpected(answer.error());
+      if (answer->size() != bird::examined_length(asked[i]))
+        return fail("the tracker does not answer", path_, "check its power and its baud rate");
+      answers[i] = *answer;
     }
-    std::string setup = "P\x03\x01\x00"s + "P\x23\x01";
-    for (int unit = 1; unit <= sensors_; ++unit) {
-      setup.push_back(static_cast<char>(0xF0 + unit));
-      setup.push_back(bird::info(format_).command);
-    }
-    return port.write(setup + "Q@");
+    const auto byte = [](char c) { return static_cast<std::uint8_t>(c); };
+    const auto word = static_cast<std::uint16_t>(byte(answers[2][0]) | byte(answers[2][1]) << 8);
+    std::string name = answers[0].substr(0, answers[0].find_last_not_of(' ') + 1);
+    for (char& c : name)
+      if (c < ' ' || c > '~') c = '?';
+    const std::string line =
+        fmt::format("{}: {}, revision {}: {}", path_, name, bird::revision_in_words(answers[1]),
+                    bird::status_in_words(word));
+    if (line != introduced_) log::info("{}", line);
+    introduced_ = line;
+    // Reading it has cleared it. What it did not understand is what the line was full of before.
+    if (const auto error = byte(answers[3][0]); error != 0 && error != 6)
+      log::warning("{}: the tracker says: {}", path_, bird::error_in_words(error));
+    return {};
   }
 
   /// Reads until nothing comes any more.
@@ -159,73 +198,146 @@ class NestOfBirds final : public Device {
     return {};
   }
 
-  /// Do all units run? No also when nobody answers.
-  Expected<bool> running(SerialPort& port) {
-    const char examine[] = {'O', bird::system_status};
-    if (auto sent = port.write({examine, sizeof examine}); !sent)
+  /// The answer, shorter if not all of it came in time.
+  Expected<std::string> examine(SerialPort& port, std::uint8_t parameter) {
+    const char question[] = {'O', static_cast<char>(parameter)};
+    if (auto sent = port.write({question, sizeof question}); !sent)
       return tl::unexpected(sent.error());
     std::string answer;
     const auto until = Clock::now() + answer_time;
-    while (answer.size() < bird::most_units && Clock::now() < until) {
+    while (answer.size() < bird::examined_length(parameter) && Clock::now() < until) {
       auto bytes = port.read(milliseconds(20));
       if (!bytes) return tl::unexpected(bytes.error());
       answer += *bytes;
     }
-    if (answer.size() != bird::most_units) return false;
+    return answer;
+  }
+
+  /// Do all units run? No also when nobody answers.
+  Expected<bool> running(SerialPort& port) {
+    const auto answer = examine(port, bird::system_status);
+    if (!answer) return tl::unexpected(answer.error());
+    if (answer->size() != bird::most_units) return false;
     constexpr auto wanted = static_cast<std::uint8_t>(bird::running | bird::has_receiver);
-    for (int unit = 0; unit < sensors_; ++unit)
-      if ((static_cast<std::uint8_t>(answer[static_cast<std::size_t>(unit)]) & wanted) != wanted)
+    for (int unit = 0; unit < setup_.sensors; ++unit)
+      if ((static_cast<std::uint8_t>((*answer)[static_cast<std::size_t>(unit)]) & wanted) != wanted)
         return false;
     return true;
   }
 
-  Expected<void> stream(SerialPort& port, const std::stop_token& stop) {
-    bird::RecordParser parser(
-        {.format = format_, .button = false, .group = true, .range = bird::long_range});
-    std::uint64_t garbage = 0;
-    auto last = Clock::now();
-    while (!stop.stop_requested()) {
-      auto bytes = port.read(milliseconds(50));
+  /// Reads what comes and passes on what is complete; fails when nothing has come for too long.
+  class Reader {
+   public:
+    Reader(NestOfBirds& device, SerialPort& port)
+        : device_(device), port_(port), parser_(device.setup_.layout()) {}
+
+    /// Number of frames.
+    Expected<int> read(Duration timeout) {
+      auto bytes = port_.read(timeout);
       if (!bytes) return tl::unexpected(bytes.error());
       const Time now = system_now();
-      for (const bird::Record& record : parser.feed(*bytes)) {
-        last = Clock::now();
-        assembly_.add(record, now, sink_, [this](Frame frame) {
-          said_.clear();
-          sink_.frame(std::move(frame));
+      int frames = 0;
+      for (const bird::Record& record : parser_.feed(*bytes)) {
+        last_ = Clock::now();
+        device_.assembly_.add(record, now, device_.sink_, [&](Frame frame) {
+          ++frames;
+          device_.deliver(std::move(frame));
         });
       }
-      if (parser.garbage() > garbage) sink_.drop("garbage bytes", parser.garbage() - garbage);
-      garbage = parser.garbage();
-      if (Clock::now() - last > longest_silence)
-        return fail("the tracker has fallen silent", path_, "starts it again by itself");
+      if (parser_.garbage() > garbage_)
+        device_.sink_.drop("garbage bytes", parser_.garbage() - garbage_);
+      garbage_ = parser_.garbage();
+      if (Clock::now() - last_ > longest_silence)
+        return fail("the tracker has fallen silent", device_.path_, "starts it again by itself");
+      return frames;
+    }
+
+   private:
+    NestOfBirds& device_;
+    SerialPort& port_;
+    bird::RecordParser parser_;
+    std::uint64_t garbage_ = 0;
+    Clock::time_point last_ = Clock::now();
+  };
+
+  Expected<void> listen(SerialPort& port, const std::stop_token& stop) {
+    if (auto sent = port.write("@"); !sent) return sent;
+    Reader reader(*this, port);
+    while (!stop.stop_requested())
+      if (auto frames = reader.read(milliseconds(50)); !frames)
+        return tl::unexpected(frames.error());
+    return {};
+  }
+
+  Expected<void> ask(SerialPort& port, const std::stop_token& stop) {
+    Reader reader(*this, port);
+    auto due = Clock::now();
+    while (!stop.stop_requested()) {
+      if (auto sent = port.write("B"); !sent) return sent;
+      const auto lost = Clock::now() + answer_time;  // asked again if no frame has come by then
+      for (int frames = 0; frames == 0 && Clock::now() < lost && !stop.stop_requested();) {
+        auto got = reader.read(milliseconds(20));
+        if (!got) return tl::unexpected(got.error());
+        frames = *got;
+      }
+      due = std::max(due + seconds(1 / setup_.rate), Clock::now());
+      Persistent::pause(stop, due - Clock::now());
     }
     return {};
   }
 
+  void deliver(Frame frame) {
+    frame.stamp = clock_.stamp(frame.stamp);
+    thread_.well();
+    sink_.frame(std::move(frame));
+  }
+
   std::string path_;
-  int baud_, sensors_;
-  bird::Format format_;
+  int baud_;
+  Setup setup_;
   DeviceSink sink_;
-  std::string said_;
+  std::string introduced_;
   Assembly assembly_;
-  std::jthread thread_;  // last: joined before the rest goes
+  FrameClock clock_;
+  Persistent thread_;  // last: joined before the rest goes
 };
 
 }  // namespace
 
 Expected<std::unique_ptr<Device>> create_nest_of_birds(const DeviceOptions& options) {
+  Setup setup;
   const auto format = bird::format_of_name(options.format);
   if (!format || *format < bird::Format::position_angles)
     return fail("'" + options.format + "' is no record with position and orientation",
                 "glove.format", "choose position_angles, position_matrix or position_quaternion");
+  const auto* hemisphere = bird::find_hemisphere(options.hemisphere);
+  if (!hemisphere)
+    return fail("there is no hemisphere '" + options.hemisphere + "'", "glove.hemisphere",
+                "choose front, rear, left, right, upper or lower");
+  if (options.range != 36 && options.range != 72 && options.range != 144)
+    return fail("the tracker knows ranges of 36, 72 and 144 inches", "glove.range");
+  if (options.mode != "stream" && options.mode != "point")
+    return fail("'" + options.mode + "' is no mode", "glove.mode", "choose stream or point");
+  if (!(options.rate >= 1 && options.rate <= 1000))
+    return fail("the rate must be 1 to 1000 Hz", "glove.rate");
   if (options.port.empty())
     return fail("no port is named", "glove.port", "name one such as /dev/ttyUSB0");
   if (options.baud < 2400 || options.baud > 115200)
     return fail("the tracker knows 2400 to 115200 bits per second", "glove.baud");
-  if (options.sensors < 1 || options.sensors > static_cast<int>(sites_by_address().size()))
-    return fail("1 to 6 sensors are possible", "glove.sensors");
-  return std::make_unique<NestOfBirds>(options.port, options.baud, options.sensors, *format);
+  if (options.sites.empty() || options.sites.size() > bird::most_units)
+    return fail(fmt::format("1 to {} sensors are possible", bird::most_units), "glove.sites");
+  setup.sensors = static_cast<int>(options.sites.size());
+  setup.format = *format;
+  setup.range = options.range * bird::inch;
+  setup.hemisphere = *hemisphere;
+  setup.point = options.mode == "point";
+  setup.rate = options.rate;
+  return std::make_unique<NestOfBirds>(options.port, options.baud, options.sites, setup);
+}
+
+std::unique_ptr<Emulator> emulate_nest_of_birds(const DeviceOptions& options) {
+  return std::make_unique<bird::Emulator>(
+      bird::EmulatorOptions{.sites = options.sites, .extended = options.range == 144});
 }
 
 }  // namespace prehend::glove

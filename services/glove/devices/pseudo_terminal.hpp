@@ -6,24 +6,26 @@
 #include <string>
 #include <string_view>
 
+#include "emulator.hpp"
+
 namespace prehend::glove {
 
 /// The far end of a serial line made of software: a program opens path() as its port. It may open
 /// and close it as often as it likes.
-class PseudoTerminal {
+class PseudoTerminal final : public Plug {
  public:
   /// `link` becomes a symbolic link to the terminal (replacing a link, but no other file); empty:
   /// none. Both go with this object.
   static Expected<PseudoTerminal> open(const std::filesystem::path& link);
   PseudoTerminal(PseudoTerminal&& other) noexcept;
   PseudoTerminal& operator=(PseudoTerminal&&) = delete;
-  ~PseudoTerminal();
+  ~PseudoTerminal() override;
 
   const std::string& path() const { return path_; }
-  /// What the program wrote; waits for it at most that long.
-  std::string read(Duration timeout);
-  /// Bytes that find no room, because nobody reads, are lost as on a real line.
-  void write(std::string_view bytes);
+  std::string read(Duration timeout) override;
+  void write(std::string_view bytes) override;
+  /// The link, or else the terminal.
+  std::string where() const override { return link_.empty() ? path_ : link_.string(); }
 
  private:
   PseudoTerminal() = default;

@@ -51,7 +51,8 @@ Expected<std::unique_ptr<Device>> create_recording(const DeviceOptions& options)
 const std::vector<DeviceKind>& device_kinds() {
   static const std::vector<DeviceKind> kinds{
       {"topic", "frames that others publish on glove/frame", true, create_topic},
-      {"nest_of_birds", "four magnetic sensors on a serial port", false, create_nest_of_birds},
+      {"nest_of_birds", "magnetic sensors on a serial port", false, create_nest_of_birds,
+       emulate_nest_of_birds},
       {"recording", "a hand recording, Leap or 21 landmarks", false, create_recording},
       {"synthetic", "a computed hand that grasps the scene's object", false, create_synthetic},
   };

@@ -17,7 +17,8 @@ using Eigen::Vector3d;
 
 Frame some_frame(Random& random) {
   Frame frame;
-  for (const Site site : sites_by_address()) {
+  for (int s = 0; s <= static_cast<int>(Site::forearm); ++s) {
+    const Site site = static_cast<Site>(s);
     const Quaterniond q(random.normal(), random.normal(), random.normal(), random.normal());
     frame.readings.push_back({site, true, random.normal3(0.3), q.normalized()});
   }

@@ -46,8 +46,9 @@ TEST(Config, PathsAreMeantFromTheFile) {
 }
 
 TEST(Config, ItsTextsMakeItAgain) {
-  const auto file =
-      write("[glove]\nrate = 33.3\nuser = \"ann b\"\n[camera]\nfocal = [500, 510.5]\n");
+  const auto file = write(
+      "[glove]\nrate = 33.3\nuser = \"ann b\"\nsites = [\"thumb\", \"back_of_hand\"]\n"
+      "[camera]\nfocal = [500, 510.5]\n");
   const auto config = Config::load(file);
   ASSERT_TRUE(config);
   std::vector<std::string> overrides;
@@ -58,6 +59,7 @@ TEST(Config, ItsTextsMakeItAgain) {
   EXPECT_EQ(again->number("glove.rate"), 33.3);
   EXPECT_EQ(again->text("glove.user"), "ann b");
   EXPECT_EQ(again->numbers("camera.focal"), (std::vector<double>{500, 510.5}));
+  EXPECT_EQ(again->names("glove.sites"), (std::vector<std::string>{"thumb", "back_of_hand"}));
 }
 
 TEST(Config, MistakesAreNamed) {
@@ -79,7 +81,8 @@ TEST(Config, MistakesAreNamed) {
     EXPECT_EQ(config.error().message().find('\n'), std::string::npos) << "one line";
   }
   const auto file = write("");
-  for (const char* text : {"glove.rat=3", "glove.rate", "glove.rate=fast", "glove.rate=[1]", "=3"})
+  for (const char* text : {"glove.rat=3", "glove.rate", "glove.rate=fast", "glove.rate=[1]", "=3",
+                           "glove.sites=[1]", "glove.sites=thumb"})
     EXPECT_FALSE(Config::load(file, {text})) << text;
   EXPECT_FALSE(Config::load("/nowhere/lab.toml"));
 }

@@ -1,0 +1,93 @@
+#include "emulation.hpp"
+
+#include <algorithm>
+#include <deque>
+#include <thread>
+
+namespace prehend::glove {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+/// Bytes on their way through a line of a certain speed.
+class Wire {
+ public:
+  explicit Wire(int baud) : byte_(baud > 0 ? seconds(10.0 / baud) : Duration::zero()) {}
+
+  bool busy(Duration now) const { return free_ > now; }
+  void send(std::string bytes, Duration now) {
+    if (bytes.empty()) return;
+    free_ = std::max(free_, now) + byte_ * static_cast<std::int64_t>(bytes.size());
+    on_it_.push_back({free_, std::move(bytes)});
+  }
+  /// When the next record will have arrived; none on its way: `otherwise`.
+  Duration next(Duration otherwise) const {
+    return on_it_.empty() ? otherwise : std::min(otherwise, on_it_.front().arrival);
+  }
+  void deliver(Duration now, Plug& plug) {
+    for (; !on_it_.empty() && on_it_.front().arrival <= now; on_it_.pop_front())
+      plug.write(on_it_.front().bytes);
+  }
+
+ private:
+  struct Sent {
+    Duration arrival;  // of the last byte
+    std::string bytes;
+  };
+  Duration byte_, free_{};
+  std::deque<Sent> on_it_;
+};
+
+}  // namespace
+
+Expected<void> emulate(const EmulationOptions& options, const FrameSource& source,
+                       const std::function<bool()>& stopped) {
+  constexpr Duration glance = std::chrono::milliseconds(20);  // at `stopped`
+  const Clock::time_point start = Clock::now();
+  const auto elapsed = [&] { return std::chrono::duration_cast<Duration>(Clock::now() - start); };
+  Faults faults(options.faults);
+  std::unique_ptr<Plug> plug;
+  std::unique_ptr<Emulator> device;
+  Wire wire(options.baud);
+  std::uint64_t tick = 0, n = 0;
+  std::optional<Frame> current = source.frame(0), next = source.frame(1);
+  if (!current) return fail("the source has no frame", "emulator", "choose another");
+
+  while (!stopped()) {
+    if (faults.unplugged(elapsed())) {
+      plug.reset();
+      std::this_thread::sleep_for(glance);
+      continue;
+    }
+    if (!plug) {
+      auto made = options.plug_in();
+      if (!made) return tl::unexpected(made.error());
+      plug = std::move(*made);
+      device = options.device();
+      wire = Wire(options.baud);
+      if (options.on_plugged) options.on_plugged(plug->where());
+    }
+    const Duration due = seconds(static_cast<double>(tick) / options.rate);
+    const std::string heard =
+        plug->read(std::clamp(wire.next(due) - elapsed(), Duration::zero(), glance));
+    const Duration now = elapsed();
+    const bool silent = faults.silent(now);
+    if (!heard.empty() && !silent) wire.send(faults.spoil(device->receive(heard, now)), now);
+    wire.deliver(now, *plug);
+    if (now < due) continue;
+    // What lies between the device's measurements is never seen; after the end the hand stays.
+    while (next && next->stamp.time_since_epoch() <= due) {
+      current = std::move(next);
+      next = source.frame(++n + 1);
+    }
+    if (!wire.busy(now)) {
+      const auto records = device->measure(faults.spoil(*current), now);
+      if (!silent)
+        for (const std::string& record : records) wire.send(faults.spoil(record), now);
+    }
+    tick = std::max(tick + 1, static_cast<std::uint64_t>(to_seconds(now) * options.rate));
+  }
+  return {};
+}
+
+}  // namespace prehend::glove

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <prehend/glove/frame_source.hpp>
+
+#include "emulator.hpp"
+#include "faults.hpp"
+
+namespace prehend::glove {
+
+struct EmulationOptions {
+  std::function<std::unique_ptr<Emulator>()> device;         // as it is when switched on
+  std::function<Expected<std::unique_ptr<Plug>>()> plug_in;  // asked again after an unplugging
+  double rate = 30;                                          // Hz, measurements
+  int baud = 0;  // 8N1; bytes take their time on the line. 0: they take none
+  FaultOptions faults;
+  std::function<void(const std::string& where)> on_plugged = {};
+};
+
+/// Runs an emulated device that feels what the source says, in real time, until `stopped` says so.
+/// After its end the source stays as it was last. A device that is still sending its last records
+/// when the next measurement is due leaves that out, as real ones do.
+Expected<void> emulate(const EmulationOptions& options, const FrameSource& source,
+                       const std::function<bool()>& stopped);
+
+}  // namespace prehend::glove

@@ -1,0 +1,119 @@
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <condition_variable>
+#include <future>
+#include <map>
+#include <mutex>
+#include <prehend/glove_devices/device.hpp>
+#include <prehend/glove_devices/emulation.hpp>
+#include <thread>
+
+namespace prehend::glove::testing {
+
+/// Collects what a device says.
+class Listener {
+ public:
+  DeviceSink sink() {
+    return {.frame =
+                [this](Frame frame) {
+                  const std::lock_guard lock(mutex_);
+                  frames_.push_back(std::move(frame));
+                  news_.notify_all();
+                },
+            .degraded =
+                [this](std::string line) {
+                  const std::lock_guard lock(mutex_);
+                  lines_.push_back(std::move(line));
+                  news_.notify_all();
+                },
+            .drop =
+                [this](std::string_view reason, std::uint64_t count) {
+                  const std::lock_guard lock(mutex_);
+                  drops_[std::string(reason)] += count;
+                }};
+  }
+  /// Waits for that many more frames.
+  bool frames(std::size_t count, double patience = 10) {
+    std::unique_lock lock(mutex_);
+    const std::size_t wanted = frames_.size() + count;
+    return news_.wait_for(lock, seconds(patience), [&] { return frames_.size() >= wanted; });
+  }
+  /// Waits for a frame of which this is true.
+  bool frame_with(const std::function<bool(const Frame&)>& condition, double patience = 10) {
+    std::unique_lock lock(mutex_);
+    return news_.wait_for(lock, seconds(patience),
+                          [&] { return std::any_of(frames_.begin(), frames_.end(), condition); });
+  }
+  bool says(const std::string& text, double patience = 10) {
+    std::unique_lock lock(mutex_);
+    return news_.wait_for(lock, seconds(patience), [&] {
+      return std::any_of(lines_.begin(), lines_.end(), [&](const std::string& line) {
+        return line.find(text) != std::string::npos;
+      });
+    });
+  }
+  std::vector<Frame> all() {
+    const std::lock_guard lock(mutex_);
+    return frames_;
+  }
+  std::map<std::string, std::uint64_t> drops() {
+    const std::lock_guard lock(mutex_);
+    return drops_;
+  }
+  std::vector<std::string> lines() {
+    const std::lock_guard lock(mutex_);
+    return lines_;
+  }
+
+ private:
+  std::mutex mutex_;
+  std::condition_variable news_;
+  std::vector<Frame> frames_;
+  std::vector<std::string> lines_;
+  std::map<std::string, std::uint64_t> drops_;
+};
+
+/// A hand that does not move: always the same frame, every 10 ms.
+class StillHand final : public FrameSource {
+ public:
+  explicit StillHand(Frame frame) : frame_(std::move(frame)) {}
+  std::optional<Frame> frame(std::uint64_t n) const override {
+    Frame frame = frame_;
+    frame.sequence = n;
+    frame.stamp = Time(std::chrono::milliseconds(10 * n));
+    return frame;
+  }
+
+ private:
+  Frame frame_;
+};
+
+/// Runs an emulated device from construction to destruction.
+class EmulatedDevice {
+ public:
+  /// Waits until it is plugged in.
+  EmulatedDevice(EmulationOptions options, const FrameSource& source) {
+    std::promise<void> plugged;
+    options.on_plugged = [&plugged, first = true](const std::string&) mutable {
+      if (std::exchange(first, false)) plugged.set_value();
+    };
+    thread_ = std::thread([this, options = std::move(options), &source] {
+      const auto done = emulate(options, source, [this] { return stop_.load(); });
+      EXPECT_TRUE(done) << done.error().message();
+    });
+    plugged.get_future().wait();
+  }
+  ~EmulatedDevice() {
+    stop_ = true;
+    thread_.join();
+  }
+
+ private:
+  std::atomic<bool> stop_ = false;
+  std::thread thread_;
+};
+
+}  // namespace prehend::glove::testing
