@@ -11,6 +11,7 @@
 #include <prehend/base/log.hpp>
 #include <prehend/base/paths.hpp>
 #include <prehend/service/lab.hpp>
+#include <random>
 #include <thread>
 
 #include "listener.hpp"
@@ -167,18 +168,19 @@ class Demonstration {
 
   Trouble start_glove(const std::filesystem::path& scene_file, const std::string& truth) {
     std::vector<std::string> sets{truth};
-    if (glove_.kind == "nest_of_birds") {
-      std::string port = absolute(glove_.detail);
+    const bool serial = glove_.kind == "nest_of_birds" || glove_.kind == "joint_glove";
+    if (serial || glove_.kind == "landmarks") {
+      std::string port = serial ? absolute(glove_.detail) : glove_.detail;
       if (port.empty()) {
-        port = (folder_->path() / "tracker").string();
-        const auto started =
-            lab_->start("tracker", "prehend-glove-tool",
-                        {"emulate", "--from", "synthetic", "--scene", scene_file.string(), "--link",
-                         port, "--config", options_.lab.file()});
-        if (!started) return broken(started.error());
-        while (!std::filesystem::exists(std::filesystem::symlink_status(port))) {
-          if (const auto trouble = step("starting the tracker")) return trouble;
-          if (Clock::now() >= end_) return broken({"did not open its port", "tracker", ""});
+        port = serial ? (folder_->path() / "glove_port").string() : some_address();
+        if (const auto trouble = emulate(glove_.kind, scene_file, port, {})) return trouble;
+        if (glove_.kind == "joint_glove") {
+          // The glove measures only joints: a tracker on its back says where the hand is.
+          const std::string wrist = (folder_->path() / "wrist_port").string();
+          if (const auto trouble =
+                  emulate("nest_of_birds", scene_file, wrist, {"glove.sites=[\"back_of_hand\"]"}))
+            return trouble;
+          sets.push_back("glove.wrist_port=" + wrist);
         }
       }
       sets.push_back("glove.port=" + port);
@@ -186,6 +188,32 @@ class Demonstration {
     const auto started = lab_->start_service("glove", sets);
     if (!started) return broken(started.error());
     return std::nullopt;
+  }
+
+  /// Starts a device that is not there, and waits until it is plugged in.
+  Trouble emulate(const std::string& kind, const std::filesystem::path& scene_file,
+                  const std::string& port, std::vector<std::string> sets) {
+    const bool serial = kind != "landmarks";
+    std::vector<std::string> arguments{
+        "emulate",  "--kind",           kind, "--from", "synthetic", "--scene", scene_file.string(),
+        "--config", options_.lab.file()};
+    if (serial)
+      arguments.insert(arguments.end(), {"--link", port});
+    else
+      sets.push_back("glove.port=" + port);
+    for (const std::string& set : sets) arguments.insert(arguments.end(), {"--set", set});
+    const auto started = lab_->start("emulated " + kind, "prehend-glove-tool", arguments);
+    if (!started) return broken(started.error());
+    while (serial && !std::filesystem::exists(std::filesystem::symlink_status(port))) {
+      if (const auto trouble = step("starting the emulated " + kind)) return trouble;
+      if (Clock::now() >= end_) return broken({"did not open its port", "emulated " + kind, ""});
+    }
+    return std::nullopt;
+  }
+
+  /// Of this machine, for datagrams; that somebody else has it is as good as impossible.
+  static std::string some_address() {
+    return fmt::format("127.0.0.1:{}", 20000 + std::random_device{}() % 10000);
   }
 
   /// Up before the others, so that it misses nothing.
@@ -337,8 +365,8 @@ int demo_command(const std::vector<std::string>& arguments) {
       ->type_size(1)
       ->allow_extra_args(false);
   app.add_option("--glove", demo.glove,
-                 "DEVICE[:FILE]: nest_of_birds (emulated, or on the port FILE), synthetic,\n"
-                 "recording:FILE, topic");
+                 "DEVICE[:PORT]: nest_of_birds or joint_glove (emulated, or on that port),\n"
+                 "landmarks (emulated, or to HOST:PORT), synthetic, recording:FILE, topic");
   app.add_option("--camera", demo.camera,
                  "SOURCE[:PATH]: synthetic, device:/dev/videoN, video:FILE, folder:DIR, topic");
   app.add_option("--mode", mode, "direct: the mapping does not use what is recognised")

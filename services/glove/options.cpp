@@ -43,6 +43,8 @@ Expected<DeviceOptions> device_options(const service::Config& config) {
   options.mode = config.text("glove.mode");
   options.range = static_cast<int>(config.integer("glove.range"));
   options.hemisphere = config.text("glove.hemisphere");
+  options.left = config.text("glove.hand") == "left";
+  options.wrist_port = config.text("glove.wrist_port");
   options.file = config.path("glove.file");
   options.rate = config.number("glove.rate");
   options.hand_scale = config.number("glove.hand_scale");

@@ -10,23 +10,17 @@
 #include <map>
 #include <string>
 
+#include "bare_hand.hpp"
+
 namespace prehend::glove {
 namespace {
 
-using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-/// The middle knuckle in H of an average hand, m (see model::HumanHand).
-const Vector3d p_HKnuckle(0.0557, 0.0, -0.013);
-
-/// A recorded hand in the recording's own frame R.
+/// One row of a recording.
 struct Hand {
   double time = 0;  // s
-  bool left = false;
-  Vector3d x_R, z_R;  // towards the fingers; out of the back of the hand; any length
-  Vector3d knuckle_R;
-  std::array<Vector3d, model::finger_count> tip_R,
-      before_R;  // fingertip and the joint before it, m
+  BareHand bare;
 };
 
 std::vector<std::string_view> split(std::string_view line, char separator) {
@@ -81,13 +75,13 @@ Hand read_leap(Row& row) {
                                                                     "ring", "pinky"};
   Hand hand;
   hand.time = 1e-6 * row.number("t_us");
-  hand.left = row.text("hand") == "left";
-  hand.x_R = row.vector("dir");
-  hand.z_R = -row.vector("normal");
-  hand.knuckle_R = mm * row.vector("middle_mcp");
+  hand.bare.left = row.text("hand") == "left";
+  hand.bare.x_R = row.vector("dir");
+  hand.bare.z_R = -row.vector("normal");
+  hand.bare.knuckle_R = mm * row.vector("middle_mcp");
   for (std::size_t f = 0; f < fingers.size(); ++f) {
-    hand.tip_R[f] = mm * row.vector(fingers[f] + "_tip");
-    hand.before_R[f] = mm * row.vector(fingers[f] + "_dip");
+    hand.bare.tip_R[f] = mm * row.vector(fingers[f] + "_tip");
+    hand.bare.before_R[f] = mm * row.vector(fingers[f] + "_dip");
   }
   return hand;
 }
@@ -95,61 +89,10 @@ Hand read_leap(Row& row) {
 Hand read_landmarks(Row& row, double rate) {
   Hand hand;
   hand.time = row.number("frame") / rate;
-  std::array<Vector3d, 21> l;
-  for (std::size_t i = 0; i < l.size(); ++i) l[i] = row.vector(fmt::format("l{}", i));
-  hand.x_R = l[9] - l[0];
-  // Wrist, index knuckle and little knuckle span the back of a right hand.
-  hand.z_R = (l[17] - l[0]).cross(l[5] - l[0]);
-  hand.knuckle_R = l[9];
-  for (std::size_t f = 0; f < model::finger_count; ++f) {
-    hand.tip_R[f] = l[4 * f + 4];
-    hand.before_R[f] = l[4 * f + 3];
-  }
+  Landmarks points;
+  for (std::size_t i = 0; i < points.size(); ++i) points[i] = row.vector(fmt::format("l{}", i));
+  hand.bare = bare_hand(points, false);
   return hand;
-}
-
-/// Frame with x along x_R and z as near to z_R as that allows; none if they span no plane.
-std::optional<Matrix3d> rotation_of(const Vector3d& x_R, const Vector3d& z_R) {
-  const Vector3d y = z_R.cross(x_R);
-  if (!(x_R.norm() > 1e-6) || !(y.norm() > 1e-3 * x_R.norm() * z_R.norm())) return std::nullopt;
-  Matrix3d R;
-  R.col(0) = x_R.normalized();
-  R.col(1) = y.normalized();
-  R.col(2) = R.col(0).cross(R.col(1));
-  return R;
-}
-
-void mirror(Hand& hand) {
-  const auto flip = [](Vector3d& v) { v.x() = -v.x(); };
-  flip(hand.x_R);
-  flip(hand.z_R);
-  flip(hand.knuckle_R);
-  for (auto& p : hand.tip_R) flip(p);
-  for (auto& p : hand.before_R) flip(p);
-}
-
-/// The sensors of a glove on that hand. Fails where the hand's directions say nothing.
-std::optional<Frame> make_frame(const Hand& hand, const RecordingOptions& options) {
-  const auto R_RH = rotation_of(hand.x_R, hand.z_R);
-  if (!R_RH) return std::nullopt;
-  const Pose X_RH = make_pose(hand.knuckle_R - *R_RH * (options.hand_scale * p_HKnuckle), *R_RH);
-  const Pose X_TH = options.X_WT.inverse() * options.X_WH;
-  const Pose X_TR = X_TH * X_RH.inverse();
-
-  Frame frame;
-  frame.left = hand.left;
-  frame.readings.push_back(
-      {Site::back_of_hand, true, X_TH.translation(), Eigen::Quaterniond(X_TH.linear())});
-  constexpr std::array sites{Site::thumb, Site::index, Site::middle, Site::ring, Site::little};
-  for (std::size_t f = 0; f < sites.size(); ++f) {
-    Reading reading{sites[f]};
-    const auto R_RF = rotation_of(hand.tip_R[f] - hand.before_R[f], R_RH->col(2));
-    reading.p_TS = X_TR * hand.tip_R[f];
-    // A fingertip that points along the normal has no orientation of its own: take the hand's.
-    reading.q_TS = Eigen::Quaterniond(X_TR.linear() * R_RF.value_or(*R_RH));
-    frame.readings.push_back(reading);
-  }
-  return frame;
 }
 
 }  // namespace
@@ -195,16 +138,17 @@ Expected<Recording> Recording::parse(std::string_view text, std::string_view nam
   }
 
   std::size_t left = 0;
-  for (const Hand& hand : hands) left += hand.left;
+  for (const Hand& hand : hands) left += hand.bare.left;
   made.left_ = left > 0 && left == hands.size();
+  const Pose X_TH = options.X_WT.inverse() * options.X_WH;
   std::optional<double> first, last;
   for (Hand& hand : hands) {
-    if (hand.left && !made.left_) {
+    if (hand.bare.left && !made.left_) {
       ++made.other_hand_;
       continue;
     }
-    if (hand.left) mirror(hand);
-    auto frame = make_frame(hand, options);
+    if (hand.bare.left) mirror(hand.bare, Vector3d::UnitX());
+    auto frame = sensors_on(hand.bare, options.hand_scale, X_TH);
     // Two hands of the same kind in one picture: the second is a false one. Days later: nonsense.
     const bool in_time = !last || (hand.time > *last && hand.time - *first < 1e6);
     if (!frame || !in_time) {

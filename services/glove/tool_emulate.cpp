@@ -3,8 +3,7 @@
 #include <memory>
 #include <prehend/base/log.hpp>
 #include <prehend/base/paths.hpp>
-#include <prehend/glove_devices/emulation.hpp>
-#include <prehend/glove_devices/pseudo_terminal.hpp>
+#include <prehend/glove_devices/device.hpp>
 
 #include "options.hpp"
 #include "recording.hpp"
@@ -85,16 +84,9 @@ int run(const Arguments& arguments) {
   action.sa_handler = on_signal;
   sigaction(SIGTERM, &action, nullptr);
   sigaction(SIGINT, &action, nullptr);
-  EmulationOptions emulation;
-  emulation.device = [&] { return kind->emulate(*options); };
-  emulation.plug_in = [&]() -> Expected<std::unique_ptr<Plug>> {
-    auto terminal = PseudoTerminal::open(arguments.link);
-    if (!terminal) return tl::unexpected(terminal.error());
-    return std::make_unique<PseudoTerminal>(std::move(*terminal));
-  };
+  EmulationOptions emulation = emulation_of(*kind, *options, arguments.link);
   emulation.on_plugged = [](const std::string& where) { std::cout << where << std::endl; };
   emulation.rate = arguments.rate;
-  emulation.baud = options->baud;
   emulation.faults = arguments.faults;
   const auto done = emulate(emulation, **source, [] { return stopped != 0; });
   if (done) return 0;
@@ -114,7 +106,7 @@ void add_emulate(CLI::App& app, int& exit_code) {
   command->add_option("--kind", a->kind, kinds)->capture_default_str();
   command->add_option("--from", a->from, "synthetic or recording:FILE")->capture_default_str();
   command->add_option("--scene", a->scene, "scene file");
-  command->add_option("--link", a->link, "path of a symbolic link to the port");
+  command->add_option("--link", a->link, "path of a symbolic link to a serial port");
   command->add_option("--rate", a->rate, "Hz, measurements")->capture_default_str();
   command->add_option("--seed", a->faults.seed, "of noise and faults, beside the scene's own");
   command->add_option("--config", a->config, "the lab's configuration file")->capture_default_str();

@@ -91,6 +91,14 @@ TEST_F(BadInput, AbsentRecording) {
                  missing);
 }
 
+TEST_F(BadInput, SensorsAtWrongPlaces) {
+  expect_refusal("glove", lab_arguments({"glove.sites=[\"forearm\", \"thumb\"]"}), 3,
+                 "no sensor is on the back of the hand");
+  expect_refusal("glove", lab_arguments({"glove.sites=[\"back_of_hand\", \"toe\"]"}), 3, "toe");
+  expect_refusal("glove", lab_arguments({"glove.sites=[\"back_of_hand\", \"thumb\", \"thumb\"]"}),
+                 3, "two sensors at 'thumb'");
+}
+
 TEST_F(BadInput, GarbageOnThePort) {
   const std::string port = (folder_ / "tracker").string();
   auto tracker = start_program(

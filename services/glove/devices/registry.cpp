@@ -2,9 +2,13 @@
 #include <prehend/glove/recording.hpp>
 #include <prehend/glove/synthetic_hand.hpp>
 
+#include "datagrams.hpp"
 #include "device.hpp"
+#include "joint_glove.hpp"
+#include "landmarks.hpp"
 #include "nest_of_birds.hpp"
 #include "paced.hpp"
+#include "pseudo_terminal.hpp"
 
 namespace prehend::glove {
 namespace {
@@ -50,11 +54,31 @@ Expected<std::unique_ptr<Device>> create_recording(const DeviceOptions& options)
 
 const std::vector<DeviceKind>& device_kinds() {
   static const std::vector<DeviceKind> kinds{
-      {"topic", "frames that others publish on glove/frame", true, create_topic},
-      {"nest_of_birds", "magnetic sensors on a serial port", false, create_nest_of_birds,
-       emulate_nest_of_birds},
-      {"recording", "a hand recording, Leap or 21 landmarks", false, create_recording},
-      {"synthetic", "a computed hand that grasps the scene's object", false, create_synthetic},
+      {.name = "topic",
+       .help = "frames that others publish on glove/frame",
+       .create = create_topic,
+       .by_topic = true},
+      {.name = "nest_of_birds",
+       .help = "magnetic sensors on a serial port",
+       .create = create_nest_of_birds,
+       .line = Line::serial,
+       .emulate = emulate_nest_of_birds},
+      {.name = "joint_glove",
+       .help = "a glove that measures joint angles, on a serial port",
+       .create = create_joint_glove,
+       .line = Line::serial,
+       .emulate = emulate_joint_glove},
+      {.name = "landmarks",
+       .help = "a bare hand that a camera sees, as datagrams",
+       .create = create_landmarks,
+       .line = Line::datagrams,
+       .emulate = emulate_landmarks},
+      {.name = "recording",
+       .help = "a hand recording, Leap or 21 landmarks",
+       .create = create_recording},
+      {.name = "synthetic",
+       .help = "a computed hand that grasps the scene's object",
+       .create = create_synthetic},
   };
   return kinds;
 }
@@ -67,6 +91,27 @@ Expected<DeviceKind> find_device(std::string_view name) {
   }
   return fail("there is no device '" + std::string(name) + "'", "glove.device",
               "choose one of " + known);
+}
+
+EmulationOptions emulation_of(const DeviceKind& kind, const DeviceOptions& options,
+                              const std::filesystem::path& link) {
+  EmulationOptions made;
+  made.device = [kind, options] { return kind.emulate(options); };
+  if (kind.line == Line::datagrams) {
+    made.plug_in = [options]() -> Expected<std::unique_ptr<Plug>> {
+      auto sender = DatagramSender::create(options.port.empty() ? landmarks_address : options.port);
+      if (!sender) return tl::unexpected(sender.error());
+      return std::make_unique<DatagramSender>(std::move(*sender));
+    };
+  } else {
+    made.baud = options.baud;
+    made.plug_in = [link]() -> Expected<std::unique_ptr<Plug>> {
+      auto terminal = PseudoTerminal::open(link);
+      if (!terminal) return tl::unexpected(terminal.error());
+      return std::make_unique<PseudoTerminal>(std::move(*terminal));
+    };
+  }
+  return made;
 }
 
 }  // namespace prehend::glove

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <optional>
+#include <prehend/glove/bare_hand.hpp>
+#include <string>
+#include <string_view>
+#include <tl/expected.hpp>
+
+/// What a hand tracking program (webcam, headset, Leap) sends to the `landmarks` device: one line
+/// of JSON a hand, UTF-8, version 1. Several lines may share a datagram.
+///
+///   {"version": 1, "stamp_s": 1732200000.125, "hand": "right", "origin": "room",
+///    "points_m": [[x, y, z], …]}
+///
+///   version   1
+///   stamp_s   optional: time of the picture, s since 1970-01-01T00:00:00Z on this machine's clock
+///   hand      "left" or "right": whose hand it is
+///   origin    "room": the points are where the hand is, in one frame that stays where it is, the
+///             tracker's (tracker.X_WT). "hand": only relative to each other they are right, as of
+///             a webcam; the hand is then held at the scene's X_WH
+///   points_m  21 points as MediaPipe has them (bare_hand.hpp), or 25 in the order of WebXR, which
+///             also has the four metacarpals; metres, at most 5 from the origin
+namespace prehend::glove {
+
+inline constexpr int landmark_line_version = 1;
+
+struct LandmarkLine {
+  std::optional<double> stamp;  // s
+  bool left = false;
+  bool in_room = false;
+  Landmarks points;  // m
+};
+
+/// Fails with the reason why it cannot be used: "unreadable", "unknown version", "wrong count",
+/// "not finite" or "out of range".
+tl::expected<LandmarkLine, std::string_view> parse_landmarks(std::string_view line);
+
+/// The line, without a line break. `webxr`: with 25 points, metacarpals halfway from the wrist.
+std::string to_line(const LandmarkLine& line, bool webxr = false);
+
+}  // namespace prehend::glove

@@ -1,0 +1,166 @@
+#include "landmarks.hpp"
+
+#include "datagrams.hpp"
+#include "frame_clock.hpp"
+#include "hand_in_frame.hpp"
+#include "landmark_line.hpp"
+#include "paced.hpp"
+#include "persistent.hpp"
+
+namespace prehend::glove {
+namespace {
+
+using std::chrono::milliseconds;
+using Clock = std::chrono::steady_clock;
+
+constexpr double stale = 0.3;  // s, as the processor has it
+constexpr Duration longest_silence = milliseconds(500);
+
+/// From the wrist, m: the middle knuckle at least and at most, and the farthest of all points.
+constexpr double short_palm = 0.04, long_palm = 0.18, long_hand = 0.35;
+
+bool is_hand(const Landmarks& points) {
+  const double palm = (points[9] - points[0]).norm();
+  if (palm < short_palm || palm > long_palm) return false;
+  for (const auto& point : points)
+    if ((point - points[0]).norm() > long_hand) return false;
+  return true;
+}
+
+class LandmarksDevice final : public Device {
+ public:
+  LandmarksDevice(const DeviceOptions& options, std::string address)
+      : address_(std::move(address)),
+        left_(options.left),
+        hand_scale_(options.hand_scale),
+        X_TH_(options.X_WT.inverse() * options.scene.X_WH),
+        left_to_right_T_(left_to_right(options.X_WT)) {
+    last_points_.fill(Eigen::Vector3d::Zero());
+  }
+
+  void start(DeviceSink sink) override {
+    sink_ = std::move(sink);
+    thread_.start([this](const std::stop_token& stop) { return live(stop); }, sink_.degraded);
+  }
+
+ private:
+  Expected<void> live(const std::stop_token& stop) {
+    auto socket = DatagramReceiver::bind(address_);
+    if (!socket) return tl::unexpected(socket.error());
+    clock_.restart();
+    auto last = Clock::now();
+    while (!stop.stop_requested()) {
+      const auto datagram = socket->read(milliseconds(50));
+      if (!datagram) return tl::unexpected(datagram.error());
+      if (!datagram->empty() && receive(*datagram, system_now())) last = Clock::now();
+      if (Clock::now() - last > longest_silence)
+        return fail("no usable landmarks come", address_, "start the hand tracking program");
+    }
+    return {};
+  }
+
+  /// True if there was a hand in it.
+  bool receive(std::string_view datagram, Time now) {
+    bool any = false;
+    while (!datagram.empty()) {
+      const std::size_t end = datagram.find('\n');
+      const std::string_view text = datagram.substr(0, end);
+      datagram.remove_prefix(end == std::string_view::npos ? datagram.size() : end + 1);
+      if (text.empty()) continue;
+      const auto line = parse_landmarks(text);
+      const std::string_view reason = line ? use(*line, now, any) : line.error();
+      if (!reason.empty()) sink_.drop(reason, 1);
+      any = any || reason.empty();
+    }
+    return any;
+  }
+
+  /// Why it cannot be used; empty if it was. `second`: the datagram had a hand already.
+  std::string_view use(const LandmarkLine& line, Time now, bool second) {
+    if (line.left != left_) return "other hand";
+    if (!is_hand(line.points)) return "not a hand";
+    if (line.stamp) {
+      const Time stamp(seconds(*line.stamp));
+      const double age = to_seconds(now - stamp);
+      if (age > stale) return "stale";
+      if (age < -stale) return "from the future";
+      if (stamp == last_stamp_) return line.points == last_points_ ? "repeated" : "second hand";
+      if (stamp < last_stamp_) return "out of order";
+      last_stamp_ = stamp;
+    } else {
+      if (second) return "second hand";
+      if (line.points == last_points_) return "repeated";
+      last_stamp_ = clock_.stamp(std::max(now, last_stamp_));
+    }
+    last_points_ = line.points;
+
+    BareHand hand = bare_hand(line.points, line.left);
+    if (line.left) mirror(hand, left_to_right_T_);
+    auto frame = sensors_on(hand, hand_scale_, line.in_room ? std::nullopt : std::optional(X_TH_));
+    if (!frame) return "not a hand";
+    frame->sequence = sequence_++;
+    frame->stamp = last_stamp_;
+    thread_.well();
+    sink_.frame(std::move(*frame));
+    return {};
+  }
+
+  std::string address_;
+  bool left_;
+  double hand_scale_;
+  Pose X_TH_;  // where a hand is held of which that is not known
+  Eigen::Vector3d left_to_right_T_;
+  DeviceSink sink_;
+  std::uint64_t sequence_ = 0;
+  Time last_stamp_{};
+  Landmarks last_points_;
+  FrameClock clock_;
+  Persistent thread_;  // last: joined before the rest goes
+};
+
+/// Sends a line for every measurement, without a stamp: it has no clock.
+class LandmarksEmulator final : public Emulator {
+ public:
+  explicit LandmarksEmulator(const DeviceOptions& options)
+      : left_(options.left),
+        left_to_right_T_(left_to_right(options.X_WT)),
+        hand_(options.hand_scale) {}
+
+  std::string receive(std::string_view, Duration) override { return {}; }
+
+  std::vector<std::string> measure(const Frame& frame, Duration) override {
+    const auto seen = hand_in(frame, hand_, posture_);
+    if (!seen) return {};
+    posture_ = seen->posture;
+    LandmarkLine line{.left = left_, .in_room = true, .points = landmarks_of(hand_, posture_)};
+    for (auto& point : line.points) point = seen->X_TH * point;
+    // Tips are where the source has them, reachable or not.
+    for (const Reading& reading : frame.readings)
+      if (const auto finger = finger_of(reading.site))
+        line.points[4 * static_cast<std::size_t>(*finger) + 4] = reading.p_TS;
+    // The source has right hands; a left one is their image.
+    if (left_)
+      for (auto& point : line.points) point -= 2 * left_to_right_T_.dot(point) * left_to_right_T_;
+    return {to_line(line) + "\n"};
+  }
+
+ private:
+  bool left_;
+  Eigen::Vector3d left_to_right_T_;
+  model::HumanHand hand_;
+  model::HumanPosture posture_ = model::HumanHand::open_posture();
+};
+
+}  // namespace
+
+Expected<std::unique_ptr<Device>> create_landmarks(const DeviceOptions& options) {
+  std::string address = options.port.empty() ? landmarks_address : options.port;
+  if (const auto good = parse_address(address); !good) return tl::unexpected(good.error());
+  return std::make_unique<LandmarksDevice>(options, std::move(address));
+}
+
+std::unique_ptr<Emulator> emulate_landmarks(const DeviceOptions& options) {
+  return std::make_unique<LandmarksEmulator>(options);
+}
+
+}  // namespace prehend::glove

@@ -1,0 +1,258 @@
+// The bird driver at 100 Hz and four sensors, with both records that carry a whole pose well:
+//  - its processor time, alone in a process, as a share of one core (aim: below 1 %)
+//  - from the last byte of a frame on the line until the service has published the posture, against
+//    a floor in the same run: a process that reads the same bytes from a bare pseudo-terminal and
+//    writes a posture to DDS (aim: at most twice that)
+// All three hang on pseudo-terminals of this process, which is the tracker, and are served in turn,
+// so that a machine that changes its speed changes all of them. A sample's source time stamp tells
+// when it was published.
+//
+//   benchmark_glove_driver [--json] [--seconds S]
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <poll.h>
+#include <termios.h>
+#include <unistd.h>
+
+#include <fstream>
+#include <iostream>
+#include <nlohmann/json.hpp>
+#include <prehend/base/paths.hpp>
+#include <prehend/dds/participant.hpp>
+#include <prehend/glove_devices/bird_emulator.hpp>
+#include <prehend/glove_devices/device.hpp>
+#include <prehend/glove_devices/paced.hpp>
+#include <prehend/glove_devices/pseudo_terminal.hpp>
+#include <prehend/service/process.hpp>
+#include <random>
+#include <thread>
+
+namespace prehend {
+namespace {
+
+using namespace std::chrono_literals;
+using glove::bird::Emulator;
+
+constexpr double rate = 100;
+constexpr std::size_t sensors = 4;
+
+template <class T>
+T must(Expected<T> made) {
+  if (made) return std::move(*made);
+  std::cerr << made.error().message() << "\n";
+  std::exit(3);
+}
+
+dds::Participant join(int domain, const std::string& rig, const char* name) {
+  return must(dds::Participant::create({.name = name, .domain = domain, .rig = rig}));
+}
+
+/// The floor: so many bytes read, a posture written.
+int floor(const std::string& port, int domain, const std::string& rig, std::size_t bytes) {
+  auto participant = join(domain, rig, "floor");
+  auto writer = must(participant.writer(dds::hand_posture));
+  v1::HandPosture posture;
+  posture.glove("floor");
+  const int line = ::open(port.c_str(), O_RDWR | O_NOCTTY);
+  termios settings{};
+  ::tcgetattr(line, &settings);
+  ::cfmakeraw(&settings);
+  ::tcsetattr(line, TCSANOW, &settings);
+  std::array<char, 4096> buffer;
+  std::size_t seen = 0;
+  while (true) {
+    const ssize_t count = ::read(line, buffer.data(), buffer.size());
+    if (count <= 0) return 0;
+    seen += static_cast<std::size_t>(count);
+    if (seen < bytes) continue;
+    seen -= bytes;
+    posture.sequence_number(posture.sequence_number() + 1);
+    posture.stamp_ns(to_ns(glove::system_now()));
+    writer.write(posture);
+  }
+}
+
+/// The driver, and nobody who listens.
+int driver(const std::string& port, const std::string& format) {
+  glove::DeviceOptions options;
+  options.port = port;
+  options.format = format;
+  const auto device = must(must(glove::find_device("nest_of_birds")).create(options));
+  device->start({.frame = [](const glove::Frame&) {},
+                 .degraded = [](const std::string&) {},
+                 .drop = [](std::string_view, std::uint64_t) {}});
+  while (getppid() != 1) std::this_thread::sleep_for(1s);
+  return 0;
+}
+
+/// s of processor time that a process has used.
+double cpu_time(pid_t pid) {
+  std::ifstream stream(fmt::format("/proc/{}/stat", pid));
+  const std::string text{std::istreambuf_iterator<char>(stream), {}};
+  std::istringstream fields(text.substr(text.rfind(')') + 2));
+  std::string skipped;
+  double user = 0, system = 0;
+  for (int i = 0; i < 11; ++i) fields >> skipped;
+  fields >> user >> system;
+  return (user + system) / static_cast<double>(::sysconf(_SC_CLK_TCK));
+}
+
+/// A line with a tracker at this end.
+struct TrackerLine {
+  glove::PseudoTerminal terminal = must(glove::PseudoTerminal::open({}));
+  Emulator tracker{{}};
+
+  void listen(Duration now) { terminal.write(tracker.receive(terminal.read(0ns), now)); }
+};
+
+struct Figures {
+  double driver_cpu = 0, service_cpu = 0;  // share of a core
+  double floor_us = 0, service_us = 0;     // medians
+  std::size_t samples = 0;
+};
+
+double median(std::vector<double> values) {
+  if (values.empty()) return 0;
+  std::nth_element(values.begin(), values.begin() + static_cast<long>(values.size() / 2),
+                   values.end());
+  return values[values.size() / 2];
+}
+
+Figures measure(const std::string& format, double length, const std::string& self) {
+  const int domain = static_cast<int>(std::random_device{}() % 200);
+  const std::string rig = fmt::format("glove-driver-{}", ::getpid());
+  TrackerLine driver_line, service_line;
+  auto floor_line = must(glove::PseudoTerminal::open({}));
+
+  glove::Frame frame;
+  for (std::size_t s = 0; s < sensors; ++s)
+    frame.readings.push_back({glove::usual_sites()[s], true,
+                              Eigen::Vector3d(0.03 * static_cast<double>(s), -0.4, 0.02),
+                              Eigen::Quaterniond::Identity()});
+  // Without a wave every frame would be the same.
+  const auto waving = [&](int n) {
+    glove::Frame moved = frame;
+    for (auto& reading : moved.readings) reading.p_TS.x() += 0.05 * std::sin(0.02 * n);
+    return moved;
+  };
+  const std::size_t bytes =
+      sensors * (glove::bird::info(*glove::bird::format_of_name(format)).length + 1);
+
+  auto participant = join(domain, rig, "watcher");
+  auto reader = must(participant.reader(dds::hand_posture));
+  const auto log = std::filesystem::temp_directory_path() / rig;
+  const auto spawn = [&](std::vector<std::string> command) {
+    return must(service::Process::start({.command = std::move(command), .log = log}));
+  };
+  auto driver_process = spawn({self, "--driver", driver_line.terminal.path(), format});
+  auto floor_process = spawn(
+      {self, "--floor", floor_line.path(), std::to_string(domain), rig, std::to_string(bytes)});
+  auto service_process =
+      spawn({(program_directory() / "prehend-glove").string(), "--set", "lab.rig=" + rig, "--set",
+             "lab.domain=" + std::to_string(domain), "--set", "glove.device=nest_of_birds", "--set",
+             "glove.port=" + service_line.terminal.path(), "--set", "glove.format=" + format});
+
+  Figures figures;
+  std::vector<double> floors, services;
+  const auto start = std::chrono::steady_clock::now();
+  const auto elapsed = [&] {
+    return std::chrono::duration_cast<Duration>(std::chrono::steady_clock::now() - start);
+  };
+  const double warm_up = 5;
+  double driver_begin = 0, service_begin = 0, cpu_begin = 0;
+  Time floor_sent{}, service_sent{};
+  for (int n = 0; to_seconds(elapsed()) < warm_up + length; ++n) {
+    if (cpu_begin == 0 && to_seconds(elapsed()) >= warm_up) {
+      cpu_begin = to_seconds(elapsed());
+      driver_begin = cpu_time(driver_process.pid());
+      service_begin = cpu_time(service_process.pid());
+    }
+    const Duration due = seconds(n / rate);
+    while (elapsed() < due) {
+      driver_line.listen(elapsed());
+      service_line.listen(elapsed());
+      std::this_thread::sleep_for(
+          std::min<Duration>(1ms, std::max<Duration>(0ns, due - elapsed())));
+    }
+    const auto joined = [](const std::vector<std::string>& records) {
+      std::string all;
+      for (const std::string& record : records) all += record;
+      return all;
+    };
+    const std::string to_driver = joined(driver_line.tracker.measure(waving(n), elapsed()));
+    const std::string to_service = joined(service_line.tracker.measure(waving(n), elapsed()));
+    const std::string to_floor(bytes, 'x');
+    driver_line.terminal.write(to_driver);
+    // All but the last byte, so that only its way is measured.
+    floor_line.write(std::string_view(to_floor).substr(1));
+    service_line.terminal.write(
+        std::string_view(to_service).substr(0, to_service.size() - !to_service.empty()));
+    std::this_thread::sleep_for(2ms);
+    floor_sent = glove::system_now();
+    floor_line.write("x");
+    std::this_thread::sleep_for(2ms);
+    service_sent = glove::system_now();
+    if (!to_service.empty()) service_line.terminal.write(to_service.substr(to_service.size() - 1));
+    std::this_thread::sleep_for(2ms);
+    for (const auto& sample : reader.take()) {
+      if (sample.info.gone || cpu_begin == 0) continue;
+      const bool is_floor = std::string_view(sample.data.glove().c_str()) == "floor";
+      const double us = 1e6 * to_seconds(sample.info.sent - (is_floor ? floor_sent : service_sent));
+      if (us > 0) (is_floor ? floors : services).push_back(us);
+    }
+  }
+  const double span = to_seconds(elapsed()) - cpu_begin;
+  figures.driver_cpu = (cpu_time(driver_process.pid()) - driver_begin) / span;
+  figures.service_cpu = (cpu_time(service_process.pid()) - service_begin) / span;
+  figures.floor_us = median(floors);
+  figures.service_us = median(services);
+  figures.samples = services.size();
+  if (services.empty()) {
+    std::cerr << "no postures: " << service::last_lines(log, 5) << "\n";
+    std::exit(3);
+  }
+  for (auto* process : {&service_process, &floor_process, &driver_process}) process->stop(1s);
+  std::filesystem::remove(log);
+  return figures;
+}
+
+int run(bool json, double length, const std::string& self) {
+  nlohmann::json rows = nlohmann::json::array();
+  for (const char* format : {"position_quaternion", "position_matrix"}) {
+    const Figures f = measure(format, length, self);
+    rows.push_back({{"format", format},
+                    {"driver_cpu_percent", 100 * f.driver_cpu},
+                    {"service_cpu_percent", 100 * f.service_cpu},
+                    {"floor_us", f.floor_us},
+                    {"published_us", f.service_us},
+                    {"ratio_of_medians", f.service_us / f.floor_us},
+                    {"samples", f.samples}});
+    if (!json)
+      fmt::print(
+          "{}: driver {:.2f} % of a core, the whole service {:.2f} %; last byte to published: "
+          "floor "
+          "{:.0f} us, service {:.0f} us, ratio of medians {:.2f} ({} frames)\n",
+          format, 100 * f.driver_cpu, 100 * f.service_cpu, f.floor_us, f.service_us,
+          f.service_us / f.floor_us, f.samples);
+  }
+  if (json) std::cout << rows.dump() << "\n";
+  return 0;
+}
+
+}  // namespace
+}  // namespace prehend
+
+int main(int argc, char** argv) {
+  using namespace prehend;
+  const std::string_view role = argc > 1 ? argv[1] : "";
+  if (role == "--driver" && argc == 4) return driver(argv[2], argv[3]);
+  if (role == "--floor" && argc == 6)
+    return floor(argv[2], std::atoi(argv[3]), argv[4], std::strtoul(argv[5], nullptr, 10));
+  bool json = false;
+  double length = 20;
+  for (int i = 1; i < argc; ++i) {
+    if (std::string_view(argv[i]) == "--json") json = true;
+    if (std::string_view(argv[i]) == "--seconds" && i + 1 < argc) length = std::atof(argv[++i]);
+  }
+  return run(json, length, std::filesystem::read_symlink("/proc/self/exe").string());
+}

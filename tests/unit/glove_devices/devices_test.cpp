@@ -1,0 +1,221 @@
+// What holds for every device in the registry: its frames are finite and within its reach,
+// rotations orthonormal, stamps strictly increasing and close to their arrival; no fault of a line
+// ends it; it comes back by itself. A new row is tested without a word here, and fails without an
+// emulator.
+#include <arpa/inet.h>
+#include <gtest/gtest.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <numbers>
+#include <prehend/glove_devices/paced.hpp>
+#include <set>
+
+#include "listener.hpp"
+
+namespace prehend::glove {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+using Eigen::Vector3d;
+using testing::EmulatedDevice;
+using testing::Listener;
+
+/// A free port of this machine, as long as nobody takes it.
+std::string free_address() {
+  const int probe = ::socket(AF_INET, SOCK_DGRAM, 0);
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  socklen_t size = sizeof address;
+  EXPECT_EQ(::bind(probe, reinterpret_cast<const sockaddr*>(&address), size), 0);
+  EXPECT_EQ(::getsockname(probe, reinterpret_cast<sockaddr*>(&address), &size), 0);
+  ::close(probe);
+  return "127.0.0.1:" + std::to_string(ntohs(address.sin_port));
+}
+
+/// A hand that opens and closes twice a second and moves 10 cm to and fro, with five fingertips and
+/// all joints, 100 frames a second.
+class WavingHand final : public FrameSource {
+ public:
+  std::optional<Frame> frame(std::uint64_t n) const override {
+    const double t = 0.01 * static_cast<double>(n);
+    const double wave = std::sin(4 * std::numbers::pi * t);
+    std::array<double, model::finger_count> closure;
+    closure.fill(0.4 + 0.3 * wave);
+    const model::HumanPosture posture = model::HumanHand::posture(closure);
+    const Pose X_TH = make_pose(Vector3d(0.05 * wave, -0.45, 0.2),
+                                Eigen::Quaterniond(Eigen::AngleAxisd(0.4, Vector3d::UnitX())));
+    Frame frame;
+    frame.sequence = n;
+    frame.stamp = Time(seconds(t));
+    frame.readings.push_back(
+        {Site::back_of_hand, true, X_TH.translation(), Eigen::Quaterniond(X_TH.linear())});
+    const auto tips = model::HumanHand(1).fingertip_poses(posture);
+    for (std::size_t f = 0; f < tips.size(); ++f) {
+      const Pose X_TF = X_TH * tips[f];
+      frame.readings.push_back(
+          {static_cast<Site>(f + 1), true, X_TF.translation(), Eigen::Quaterniond(X_TF.linear())});
+    }
+    frame.joint_angles.assign(posture.begin(), posture.end());
+    return frame;
+  }
+};
+
+class EveryDevice : public ::testing::TestWithParam<DeviceKind> {
+ protected:
+  EveryDevice() {
+    const auto file =
+        "prehend_device_" + std::to_string(::getpid()) + "_" + std::string(GetParam().name);
+    options_.port = GetParam().line == Line::datagrams
+                        ? free_address()
+                        : (std::filesystem::temp_directory_path() / file).string();
+    options_.rate = 50;
+    options_.scene.X_WH = make_pose({0, 0, 0.25});
+    options_.file = std::filesystem::temp_directory_path() / (file + ".csv");
+  }
+
+  std::unique_ptr<Device> device() const {
+    auto made = GetParam().create(options_);
+    EXPECT_TRUE(made) << made.error().message();
+    return std::move(*made);
+  }
+  std::unique_ptr<EmulatedDevice> emulator(const FaultOptions& faults = {}) const {
+    EmulationOptions emulation = emulation_of(GetParam(), options_, options_.port);
+    emulation.rate = 50;
+    emulation.faults = faults;
+    return std::make_unique<EmulatedDevice>(std::move(emulation), source_);
+  }
+  bool has_line() const { return GetParam().line != Line::none; }
+
+  /// Of all frames so far. Arrivals were before now.
+  static void expect_sound(const std::vector<Frame>& frames) {
+    for (std::size_t n = 0; n < frames.size(); ++n) {
+      const Frame& frame = frames[n];
+      if (n > 0) {
+        ASSERT_GT(frame.stamp, frames[n - 1].stamp);
+        ASSERT_EQ(frame.sequence, frames[n - 1].sequence + 1);
+      }
+      ASSERT_LE(frame.stamp, system_now() + std::chrono::milliseconds(1));
+      std::set<Site> sites;
+      for (const Reading& reading : frame.readings) {
+        ASSERT_TRUE(sites.insert(reading.site).second) << "a site twice";
+        if (!reading.valid) continue;
+        ASSERT_TRUE(reading.p_TS.allFinite());
+        ASSERT_LE(reading.p_TS.cwiseAbs().maxCoeff(), 5);
+        const Eigen::Matrix3d R = reading.q_TS.toRotationMatrix();
+        ASSERT_LT((R * R.transpose() - Eigen::Matrix3d::Identity()).norm(), 1e-6);
+      }
+      ASSERT_TRUE(sites.contains(Site::back_of_hand));
+      if (frame.joint_angles.empty()) continue;
+      ASSERT_EQ(frame.joint_angles.size(), 20u);
+      const model::HumanPosture q =
+          Eigen::Map<const model::HumanPosture>(frame.joint_angles.data());
+      ASSERT_TRUE(q.allFinite());
+      ASSERT_EQ(q, model::HumanHand(1).clamp(q)) << "beyond what a hand can do";
+    }
+  }
+
+  DeviceOptions options_;
+  WavingHand source_;
+};
+
+TEST_P(EveryDevice, ThatHasALineHasAnEmulator) {
+  const std::set<std::string_view> without{"topic", "recording", "synthetic"};
+  EXPECT_EQ(has_line(), !without.contains(GetParam().name)) << "say what line the new one has";
+  EXPECT_EQ(GetParam().emulate != nullptr, has_line());
+  EXPECT_TRUE(GetParam().create);
+  EXPECT_FALSE(GetParam().help.empty());
+}
+
+// Frames must agree with the source where the hand is and, as all fingers move alike, at what time:
+// the hand's place tells the time to within a frame or two.
+TEST_P(EveryDevice, GivesSoundFrames) {
+  if (GetParam().by_topic) return;
+  if (GetParam().name == "recording") return;  // recording_test.cpp reads its files
+  const auto emulated = has_line() ? emulator() : nullptr;
+  Listener listener;
+  const auto driver = device();
+  driver->start(listener.sink());
+  ASSERT_TRUE(listener.frames(100));
+  const auto frames = listener.all();
+  expect_sound(frames);
+  if (!has_line()) return;
+  const double seconds_in_all = to_seconds(frames.back().stamp - frames.front().stamp);
+  EXPECT_NEAR(seconds_in_all, static_cast<double>(frames.size() - 1) / 50, 0.25);
+  EXPECT_TRUE(listener.drops().empty());
+}
+
+TEST_P(EveryDevice, SurvivesEveryFault) {
+  if (!has_line()) return;
+  const std::pair<const char*, FaultOptions> faults[] = {
+      {"noise and extreme points", {.noise = 0.0015, .extreme = 0.1}},
+      {"garbage", {.garbage = 0.2}},
+      {"dropped bytes", {.drop_bytes = 0.2}},
+      {"swapped bytes", {.swap_bytes = 0.2}},
+      {"all at once",
+       {.noise = 0.01, .extreme = 0.05, .garbage = 0.05, .drop_bytes = 0.05, .swap_bytes = 0.05}}};
+  for (const auto& [name, fault] : faults) {
+    SCOPED_TRACE(name);
+    const auto emulated = emulator(fault);
+    Listener listener;
+    const auto driver = device();
+    driver->start(listener.sink());
+    ASSERT_TRUE(listener.frames(30, 20));
+    expect_sound(listener.all());
+    if (fault.drop_bytes > 0.1 || fault.garbage > 0.1) {
+      EXPECT_FALSE(listener.drops().empty()) << "lost bytes are counted";
+    }
+  }
+}
+
+// Without power, too: it begins as when it was switched on.
+TEST_P(EveryDevice, ComesBackWithin2500MillisecondsOfReplugging) {
+  if (!has_line()) return;
+  constexpr double unplug_at = 3, unplug_for = 1, aim = 2.5;
+  const auto start = Clock::now();
+  const auto emulated = emulator({.unplug_at = unplug_at, .unplug_for = unplug_for});
+  Listener listener;
+  const auto driver = device();
+  driver->start(listener.sink());
+  ASSERT_TRUE(listener.frames(5));
+  while (listener.lines().empty())
+    ASSERT_LT(Clock::now() - start, std::chrono::seconds(10)) << "says nothing";
+  EXPECT_GT(Clock::now() - start, seconds(unplug_at));
+  ASSERT_TRUE(listener.frames(1));
+  const double after = to_seconds(Clock::now() - start) - unplug_at - unplug_for;
+  EXPECT_LT(after, aim);
+  RecordProperty("seconds_after_replugging", std::to_string(after));
+  std::cout << GetParam().name << ": frames " << after << " s after replugging\n";
+  ASSERT_TRUE(listener.frames(20));
+  expect_sound(listener.all());
+}
+
+TEST_P(EveryDevice, SaysWhenItFallsSilentAndComesBack) {
+  if (!has_line()) return;
+  const auto emulated = emulator({.silent_at = 2.5, .silent_for = 1});
+  Listener listener;
+  const auto driver = device();
+  driver->start(listener.sink());
+  ASSERT_TRUE(listener.frames(5));
+  ASSERT_TRUE(listener.says(GetParam().line == Line::serial ? "silent" : "no usable"));
+  ASSERT_TRUE(listener.frames(20));
+  expect_sound(listener.all());
+}
+
+TEST_P(EveryDevice, EndsAtOnce) {
+  if (GetParam().by_topic || GetParam().name == "recording") return;
+  Listener listener;
+  auto driver = device();
+  driver->start(listener.sink());
+  const auto start = Clock::now();
+  driver.reset();
+  EXPECT_LT(Clock::now() - start, std::chrono::seconds(2));
+}
+
+INSTANTIATE_TEST_SUITE_P(Registry, EveryDevice, ::testing::ValuesIn(device_kinds()),
+                         [](const auto& row) { return std::string(row.param.name); });
+
+}  // namespace
+}  // namespace prehend::glove

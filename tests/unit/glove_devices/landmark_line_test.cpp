@@ -1,0 +1,74 @@
+// The lines of hand tracking programs: what is documented is read, anything else has a reason.
+#include <gtest/gtest.h>
+
+#include <prehend/base/random.hpp>
+#include <prehend/glove_devices/landmark_line.hpp>
+
+namespace prehend::glove {
+namespace {
+
+LandmarkLine some_line() {
+  LandmarkLine line{.stamp = 1732200000.125, .left = false, .in_room = true, .points = {}};
+  const auto points =
+      landmarks_of(model::HumanHand(1), model::HumanHand::posture({0.2, 0.3, 0.4, 0.5, 0.6}));
+  for (std::size_t i = 0; i < points.size(); ++i)
+    line.points[i] = points[i] + Eigen::Vector3d(0.1, -0.4, 0.3);
+  return line;
+}
+
+std::string_view refusal(const std::string& text) {
+  const auto line = parse_landmarks(text);
+  return line ? "" : line.error();
+}
+
+std::string replaced(std::string text, const std::string& what, const std::string& by) {
+  const std::size_t at = text.find(what);
+  EXPECT_NE(at, std::string::npos) << what;
+  return text.replace(at, what.size(), by);
+}
+
+TEST(LandmarkLine, ReadsBothOrders) {
+  const LandmarkLine truth = some_line();
+  for (const bool webxr : {false, true}) {
+    const auto line = parse_landmarks(to_line(truth, webxr));
+    ASSERT_TRUE(line) << line.error();
+    EXPECT_EQ(line->points, truth.points) << "to the last bit: numbers are written in full";
+    EXPECT_EQ(line->stamp, truth.stamp);
+    EXPECT_TRUE(line->in_room);
+    EXPECT_FALSE(line->left);
+  }
+}
+
+// As the documentation has it, without the optional stamp.
+TEST(LandmarkLine, ReadsAWrittenLine) {
+  std::string points;
+  for (int i = 0; i < 21; ++i) points += (i ? ", [" : "[") + std::to_string(0.01 * i) + ", 0, 1]";
+  const auto line = parse_landmarks(
+      R"({"version": 1, "hand": "left", "origin": "hand", "points_m": [)" + points + "]}\r");
+  ASSERT_TRUE(line) << line.error();
+  EXPECT_TRUE(line->left);
+  EXPECT_FALSE(line->in_room);
+  EXPECT_FALSE(line->stamp);
+  EXPECT_NEAR(line->points[20].x(), 0.2, 1e-9);
+}
+
+TEST(LandmarkLine, SaysWhyItCannotBeUsed) {
+  const std::string good = to_line(some_line());
+  EXPECT_EQ(refusal(good), "");
+  EXPECT_EQ(refusal(""), "unreadable");
+  EXPECT_EQ(refusal("[1]"), "unreadable");
+  EXPECT_EQ(refusal(good.substr(0, good.size() / 2)), "unreadable");
+  EXPECT_EQ(refusal(replaced(good, "\"version\":1", "\"version\":2")), "unknown version");
+  EXPECT_EQ(refusal(replaced(good, "\"right\"", "\"both\"")), "unreadable");
+  EXPECT_EQ(refusal(replaced(good, "\"room\"", "\"moon\"")), "unreadable");
+  EXPECT_EQ(refusal(replaced(good, "1732200000.125", "\"now\"")), "unreadable");
+  EXPECT_EQ(refusal(replaced(good, "1732200000.125", "1e300")), "out of range");
+  EXPECT_EQ(refusal(replaced(good, "[[", "[[0,0,0],[")), "wrong count");
+  EXPECT_EQ(refusal(replaced(good, "[[", "[[null,0,0],[0,0,0],[0,0,0],[0,0,0],[")), "not finite");
+  EXPECT_EQ(refusal(replaced(good, "[[", "[[9,0,0],[0,0,0],[0,0,0],[0,0,0],[")), "out of range");
+  EXPECT_EQ(refusal(replaced(good, "[[", "[[NaN,0,0],[")), "unreadable") << "no JSON";
+  EXPECT_EQ(refusal(replaced(good, "[[", "[[1e999,0,0],[")), "unreadable");
+}
+
+}  // namespace
+}  // namespace prehend::glove

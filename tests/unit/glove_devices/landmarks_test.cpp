@@ -1,0 +1,155 @@
+// The landmarks device on a socket of this machine: all five fingertips, either hand, and what
+// hand trackers get wrong refused and counted by reason.
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <prehend/base/random.hpp>
+#include <prehend/glove_devices/datagrams.hpp>
+#include <prehend/glove_devices/landmark_line.hpp>
+#include <prehend/glove_devices/paced.hpp>
+
+#include "listener.hpp"
+
+namespace prehend::glove {
+namespace {
+
+using Eigen::Vector3d;
+using testing::Listener;
+
+/// A hand in the room, bent so much, at x.
+Landmarks hand_at(double x, double closure) {
+  const Pose X_TH = make_pose(
+      {x, -0.4, 0.2}, Eigen::Quaterniond(Eigen::AngleAxisd(0.3, Vector3d(1, 2, 3).normalized())));
+  Landmarks points =
+      landmarks_of(model::HumanHand(1),
+                   model::HumanHand::posture({closure, closure, closure, closure, closure}));
+  for (auto& point : points) point = X_TH * point;
+  return points;
+}
+
+class LandmarksTest : public ::testing::Test {
+ protected:
+  void start(bool left = false) {
+    DeviceOptions options;
+    options.left = left;
+    options.scene.X_WH = make_pose({0.3, 0.1, 0.25});
+    // Ports of a range of their own; another program may have taken one.
+    Random random(static_cast<std::uint64_t>(::getpid()));
+    for (int tries = 0; tries < 100; ++tries) {
+      options.port = "127.0.0.1:" + std::to_string(20000 + random.index(10000));
+      if (DatagramReceiver::bind(options.port)) break;
+    }
+    auto made = find_device("landmarks")->create(options);
+    ASSERT_TRUE(made) << made.error().message();
+    device_ = std::move(*made);
+    device_->start(listener_.sink());
+    sender_.emplace(*DatagramSender::create(options.port));
+    // Until it listens: what nobody hears is lost.
+    for (int n = 0; listener_.all().empty(); ++n) {
+      ASSERT_LT(n, 500) << "no frame comes";
+      send({.left = left, .in_room = true, .points = hand_at(0.001 * n, 0.5)});
+      listener_.frames(1, 0.02);
+    }
+  }
+  void send(const LandmarkLine& line) { sender_->write(to_line(line) + "\n"); }
+  double now() { return to_seconds(system_now().time_since_epoch()); }
+  /// Sent again and again until it has been counted.
+  bool refused(const std::string& reason, const std::string& text) {
+    for (int n = 0; n < 500; ++n) {
+      sender_->write(text);
+      if (listener_.drops()[reason] > 0) return true;
+      ::usleep(5000);
+    }
+    return false;
+  }
+
+  Listener listener_;
+  std::unique_ptr<Device> device_;
+  std::optional<DatagramSender> sender_;
+};
+
+TEST_F(LandmarksTest, GivesTheBackOfTheHandAndFiveFingertips) {
+  start();
+  const double stamp = now();
+  const Landmarks points = hand_at(0.1, 0.4);
+  send({.stamp = stamp, .in_room = true, .points = points});
+  ASSERT_TRUE(listener_.frame_with([&](const Frame& f) {
+    return std::abs(to_seconds(f.stamp.time_since_epoch()) - stamp) < 1e-6;
+  })) << "the sender's own stamp";
+  const Frame frame = listener_.all().back();
+  ASSERT_EQ(frame.readings.size(), 6u);
+  for (std::size_t f = 0; f < 5; ++f) {
+    EXPECT_EQ(frame.readings[f + 1].site, static_cast<Site>(f + 1));
+    EXPECT_LT((frame.readings[f + 1].p_TS - points[4 * f + 4]).norm(), 1e-9);
+  }
+  // H from landmarks leans by the slope from the wrist to the knuckle, 4 degrees, and by that of
+  // the knuckles' row.
+  EXPECT_LT((frame.readings[0].p_TS - Vector3d(0.1, -0.4, 0.2)).norm(), 0.02);
+  EXPECT_FALSE(frame.left);
+}
+
+TEST_F(LandmarksTest, HoldsAWebcamsHandWhereTheSceneHasIt) {
+  start();
+  Landmarks points = hand_at(0, 0.4);
+  for (auto& point : points) point = Vector3d(-point.y(), point.x(), point.z() + 1);
+  send({.stamp = now(), .in_room = false, .points = points});
+  ASSERT_TRUE(listener_.frame_with([&](const Frame& f) {
+    return (f.readings[0].p_TS - Vector3d(0.3, 0.1, 0.25)).norm() < 1e-9;
+  }));
+}
+
+// A left hand is the mirror image of a right one: mirrored landmarks give the same frame but for
+// the mirror through the table's x.
+TEST_F(LandmarksTest, MirrorsALeftHand) {
+  start(true);
+  Landmarks points = hand_at(0.1, 0.4);
+  for (auto& point : points) point.x() = -point.x();
+  send({.stamp = now(), .left = true, .in_room = true, .points = points});
+  ASSERT_TRUE(listener_.frame_with([&](const Frame& f) {
+    return f.left && (f.readings[1].p_TS - hand_at(0.1, 0.4)[4]).norm() < 1e-9;
+  }));
+  send({.stamp = now(), .in_room = true, .points = hand_at(0.1, 0.4)});
+  EXPECT_TRUE(refused("other hand", to_line({.in_room = true, .points = hand_at(0.1, 0.4)})));
+}
+
+TEST_F(LandmarksTest, RefusesAndCountsWhatTrackersGetWrong) {
+  start();
+  const auto line = [&](double age, double x) {
+    return to_line({.stamp = now() - age, .in_room = true, .points = hand_at(x, 0.5)});
+  };
+  const std::string good = line(0, 0.2);
+  EXPECT_TRUE(refused("repeated", good)) << "the same again and again";
+  EXPECT_TRUE(refused("stale", line(1, 0)));
+  EXPECT_TRUE(refused("from the future", line(-10, 0)));
+  const double stamp = now();
+  send({.stamp = stamp, .in_room = true, .points = hand_at(0.1, 0.5)});
+  EXPECT_TRUE(refused("second hand",
+                      to_line({.stamp = stamp, .in_room = true, .points = hand_at(-0.2, 0.5)})));
+  send({.stamp = now(), .in_room = true, .points = hand_at(0.1, 0.5)});
+  EXPECT_TRUE(refused("out of order", line(0.2, 0)));
+  EXPECT_TRUE(
+      refused("wrong count", R"({"version":1,"hand":"right","origin":"room","points_m":[]})"));
+  EXPECT_TRUE(refused("unreadable", "hello"));
+  EXPECT_TRUE(refused("unreadable", std::string("\xff\xfe\x00\x80", 4)));
+  Landmarks collapsed;
+  collapsed.fill(Vector3d(0.1, 0, 0));
+  EXPECT_TRUE(refused("not a hand", to_line({.in_room = true, .points = collapsed})));
+  // After all that a good line is a frame.
+  const std::size_t before = listener_.all().size();
+  send({.stamp = now(), .in_room = true, .points = hand_at(0.3, 0.5)});
+  EXPECT_TRUE(listener_.frame_with(
+      [&](const Frame& f) { return (f.readings[1].p_TS - hand_at(0.3, 0.5)[4]).norm() < 1e-9; }));
+  EXPECT_GT(listener_.all().size(), before);
+}
+
+TEST(Landmarks, RefusesAWrongAddress) {
+  for (const char* wrong : {"9870", "here:9870", "127.0.0.1:", "127.0.0.1:99999", "127.0.0.1:0"}) {
+    DeviceOptions options;
+    options.port = wrong;
+    EXPECT_FALSE(find_device("landmarks")->create(options)) << wrong;
+  }
+  EXPECT_TRUE(find_device("landmarks")->create({})) << "on this machine, unless told otherwise";
+}
+
+}  // namespace
+}  // namespace prehend::glove
