@@ -5,6 +5,7 @@ namespace {
 
 using Eigen::Vector3d;
 using model::HumanPosture;
+using Targets = std::array<std::optional<Vector3d>, model::finger_count>;
 
 constexpr int iterations = 20;
 constexpr double damping = 0.004;      // m/rad: a step of 0.1 rad must gain 0.4 mm
@@ -15,9 +16,7 @@ int first_dof(std::size_t finger) {
   return finger == 0 ? 16 : 4 * (static_cast<int>(finger) - 1);
 }
 
-HumanPosture fingers_from_tips(const model::HumanHand& hand,
-                               const std::array<std::optional<Vector3d>, model::finger_count>& p_HF,
-                               const HumanPosture& start) {
+HumanPosture descend(const model::HumanHand& hand, const Targets& p_HF, const HumanPosture& start) {
   HumanPosture q = hand.clamp(start);
   for (int n = 0; n < iterations; ++n) {
     const auto at = hand.fingertip_poses(q);
