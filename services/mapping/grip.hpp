@@ -12,6 +12,7 @@ namespace prehend::mapping {
 /// What the robot hand says of itself.
 struct RobotState {
   Time stamp;
+  // Of what slides, m, m/s and N stand for rad, rad/s and N m.
   Eigen::VectorXd dof;       // rad
   Eigen::VectorXd velocity;  // rad/s, of the joints
   Eigen::VectorXd torque;    // N m, of the joints
@@ -49,13 +50,13 @@ class Grip {
   Eigen::VectorXd squeeze(const Eigen::VectorXd& mapped);
 
   bool touching() const;
-  /// Contact posture of each DoF, rad; empty where there is none.
+  /// Contact posture of each DoF, rad or m; empty where there is none.
   const std::vector<std::optional<double>>& contacts() const { return contacts_; }
 
  private:
   struct Stop {
     Time since;
-    double dof = 0;  // rad, at that time
+    double dof = 0;  // rad or m, at that time
   };
   bool pushing(std::size_t dof, const RobotState& state, const Eigen::VectorXd& commanded) const;
 

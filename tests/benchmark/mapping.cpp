@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <chrono>
 #include <map>
-#include <prehend/base/random.hpp>
 #include <prehend/mapping/mapping.hpp>
 #include <prehend/model/placement.hpp>
+#include <prehend/test_models/random_model.hpp>
 #include <prehend/test_support/hands.hpp>
 #include <stdexcept>
 #include <vector>
@@ -18,44 +18,12 @@ namespace {
 using namespace prehend;
 using namespace prehend::mapping;
 
-MappingNetwork network(const model::HandModel& model, model::ShapeKind shape) {
-  Random random(1);
-  const int inputs = feature_count + (shape == model::ShapeKind::unknown ? 0 : 1);
-  const auto outputs = static_cast<Eigen::Index>(model.dofs().size());
-  learning::Layer hidden(12, inputs + 1), last(outputs, 13);
-  for (learning::Layer* layer : {&hidden, &last})
-    for (double& weight : layer->reshaped()) weight = random.normal();
-  Eigen::VectorXd low = Eigen::VectorXd::Constant(inputs, -0.2), high = -low;
-  Eigen::VectorXd lower(outputs), upper(outputs);
-  for (Eigen::Index i = 0; i < outputs; ++i) {
-    lower[i] = model.dofs()[static_cast<std::size_t>(i)].lower;
-    upper[i] = model.dofs()[static_cast<std::size_t>(i)].upper;
-  }
-  return {shape,
-          *learning::Network::create({hidden, last}),
-          *learning::Scaling::create(low, high),
-          *learning::Scaling::create(lower, upper),
-          {}};
-}
-
-ModelTraits plain_traits(const model::HandModel& model) {
-  const auto dofs = static_cast<Eigen::Index>(model.dofs().size());
-  ModelTraits traits{"random", "none", SizeInput::characteristic, Eigen::VectorXd(dofs),
-                     Eigen::VectorXd(dofs)};
-  for (Eigen::Index i = 0; i < dofs; ++i) {
-    traits.lower[i] = model.dofs()[static_cast<std::size_t>(i)].lower;
-    traits.upper[i] = model.dofs()[static_cast<std::size_t>(i)].upper;
-  }
-  return traits;
-}
-
 /// A hand near nine objects that closes and opens, a frame every 33 ms.
 void frames(benchmark::State& state, const std::string& name, FingerMode fingers,
             bool intelligent) {
   const model::HandModel& model = test::hand(name);
-  const MappingModel networks = *MappingModel::create(
-      model, plain_traits(model),
-      {network(model, model::ShapeKind::unknown), network(model, model::ShapeKind::cylinder)});
+  constexpr int hidden = 12;  // as trained ones have
+  const MappingModel networks = test::random_model(model, 1, hidden);
   Mapping mapping = *Mapping::create(
       model, networks, {.fingers = fingers, .intelligent = intelligent, .place = intelligent});
   const model::Shape thin{model::ShapeKind::cylinder, {0.015, 0.015, 0.145}};

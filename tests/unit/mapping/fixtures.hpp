@@ -5,6 +5,7 @@
 #include <prehend/mapping/mapping.hpp>
 #include <prehend/mapping/mapping_model.hpp>
 #include <prehend/model/human_hand.hpp>
+#include <prehend/test_models/random_model.hpp>
 #include <prehend/test_support/hands.hpp>
 
 namespace prehend::mapping {
@@ -23,48 +24,14 @@ inline Fingertips tips(const std::array<double, model::finger_count>& closure) {
   return result;
 }
 
-/// A network of random weights over the range of hand features: whatever it answers, the mapping
-/// around it must keep its promises. shape unknown: direct.
-inline MappingNetwork random_network(model::ShapeKind shape, std::uint64_t seed,
-                                     const model::HandModel& hand = barrett()) {
-  Random random(seed);
-  const auto outputs = static_cast<Eigen::Index>(hand.dofs().size());
-  Eigen::VectorXd lower(outputs), upper(outputs);
-  for (Eigen::Index i = 0; i < outputs; ++i) {
-    lower[i] = hand.dofs()[static_cast<std::size_t>(i)].lower;
-    upper[i] = hand.dofs()[static_cast<std::size_t>(i)].upper;
-  }
-  const int inputs = feature_count + (shape == model::ShapeKind::unknown ? 0 : 1);
-  learning::Layer hidden(8, inputs + 1), last(outputs, 9);
-  for (learning::Layer* layer : {&hidden, &last})
-    for (Eigen::Index row = 0; row < layer->rows(); ++row)
-      for (Eigen::Index col = 0; col < layer->cols(); ++col) (*layer)(row, col) = random.normal();
-  Eigen::VectorXd low = Eigen::VectorXd::Constant(inputs, -0.2), high = -low;
-  if (inputs > feature_count) low[feature_count] = 0.01, high[feature_count] = 0.08;
-  return {shape,
-          *learning::Network::create({hidden, last}),
-          *learning::Scaling::create(low, high),
-          *learning::Scaling::create(lower, upper),
-          {}};
-}
+using test::plain_traits;
 
-/// Traits of a model that keeps to the hand's own limits.
-inline ModelTraits plain_traits(const model::HandModel& hand) {
-  const auto dofs = static_cast<Eigen::Index>(hand.dofs().size());
-  ModelTraits traits{"random", "none", SizeInput::characteristic, Eigen::VectorXd(dofs),
-                     Eigen::VectorXd(dofs)};
-  for (Eigen::Index i = 0; i < dofs; ++i) {
-    traits.lower[i] = hand.dofs()[static_cast<std::size_t>(i)].lower;
-    traits.upper[i] = hand.dofs()[static_cast<std::size_t>(i)].upper;
-  }
-  return traits;
+inline MappingNetwork random_network(model::ShapeKind shape, std::uint64_t seed) {
+  return test::random_network(barrett(), shape, seed);
 }
 
 inline MappingModel random_model(std::uint64_t seed, const model::HandModel& hand = barrett()) {
-  return *MappingModel::create(hand, plain_traits(hand),
-                               {random_network(model::ShapeKind::unknown, seed, hand),
-                                random_network(model::ShapeKind::cylinder, seed + 1, hand),
-                                random_network(model::ShapeKind::box, seed + 2, hand)});
+  return test::random_model(hand, seed);
 }
 
 /// Closes the Barrett hand by 1.8 rad, whatever it is asked.
