@@ -87,7 +87,8 @@ Mapping::Mapping(const model::HandModel& hand, const MappingModel& model,
       options_(options),
       arbitration_(options.ramp),
       grip_(hand, options.grip),
-      arrival_(hand) {}
+      arrival_(hand),
+      right_of_way_(hand) {}
 
 Expected<void> Mapping::on_detection(const Detection& detection) {
   if (!is_valid(detection.shape)) return fail("detection without a shape");
@@ -302,11 +303,13 @@ void Mapping::move_toward(const Eigen::VectorXd& dof, const Pose& X_WB, double t
   double slowest = 1;
   for (Eigen::Index i = 0; i < change.size(); ++i)
     if (closes(i)) slowest = std::min(slowest, speed(i) * t / std::abs(change[i]));
+  Eigen::VectorXd next = command_.dof;
   for (Eigen::Index i = 0; i < change.size(); ++i) {
     const double most = speed(i) * t;
     const double alone = std::clamp(change[i], -most, most);
-    command_.dof[i] += closes(i) ? alone + together * (slowest * change[i] - alone) : alone;
+    next[i] += closes(i) ? alone + together * (slowest * change[i] - alone) : alone;
   }
+  command_.dof = right_of_way_.go(command_.dof, next);
   command_.X_WB =
       limit_step(command_.X_WB, X_WB, options_.base_speed * t, options_.base_turn_speed * t);
 }
@@ -365,12 +368,13 @@ Expected<Command> Mapping::on_posture(const Posture& posture, Time now) {
     }
   }
   command_.mode = command_.object.empty() ? Mode::direct : Mode::intelligent;
-  dof = hand_.clamp(dof);
+  dof = model_.limited(dof);
   command_.grasp_type =
       mapping::grasp_type(mean_closing(dof), X_WG, model_.is_precision(*features));
 
   const Pose X_WB = corrected(X_WG, seen, elapsed) * hand_.X_BG().inverse();
-  move_toward(grip_.squeeze(dof), X_WB, options_.intelligent ? command_.weight : 0, elapsed);
+  move_toward(model_.limited(grip_.squeeze(dof)), X_WB, options_.intelligent ? command_.weight : 0,
+              elapsed);
   command_.stamp = posture.stamp;
   command_.origin = posture.origin;
   last_answer_ = now;

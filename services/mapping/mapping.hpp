@@ -18,6 +18,7 @@
 #include "grasp_type.hpp"
 #include "grip.hpp"
 #include "mapping_model.hpp"
+#include "right_of_way.hpp"
 
 namespace prehend::mapping {
 
@@ -58,7 +59,7 @@ enum class Mode { hold, direct, intelligent };
 struct Command {
   Time stamp;                  // of the posture; of the tick when holding
   std::optional<Time> origin;  // of the glove frame; none when holding
-  Eigen::VectorXd dof;         // rad
+  Eigen::VectorXd dof;         // rad, or m of what slides
   Pose X_WB = Pose::Identity();
   Mode mode = Mode::hold;
   double weight = 0;   // of the intelligent answer
@@ -158,6 +159,7 @@ class Mapping {
   Arbitration arbitration_;
   Grip grip_;
   Arrival arrival_;
+  RightOfWay right_of_way_;
   std::map<std::uint32_t, Track> tracks_;
   std::optional<Candidate> engaged_;         // the object that the weight is for
   double trust_ = 0;                         // in the engaged object; moves like the weight

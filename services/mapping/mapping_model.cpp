@@ -204,9 +204,8 @@ Expected<void> MappingModel::save(const std::filesystem::path& file,
   return proto::write_sealed(file, kind, message.SerializeAsString());
 }
 
-Answer MappingModel::limited(Answer answer) const {
-  answer.dof = answer.dof.cwiseMax(traits_.lower).cwiseMin(traits_.upper);
-  return answer;
+Eigen::VectorXd MappingModel::limited(const Eigen::VectorXd& dof) const {
+  return dof.cwiseMax(traits_.lower).cwiseMin(traits_.upper);
 }
 
 bool MappingModel::is_precision(const Features& features) const {
@@ -219,7 +218,9 @@ bool MappingModel::is_precision(const Features& features) const {
 }
 
 Answer MappingModel::direct(const Features& features) const {
-  return limited(answer(networks_.front(), features));
+  Answer made = answer(networks_.front(), features);
+  made.dof = limited(made.dof);
+  return made;
 }
 
 std::optional<Answer> MappingModel::intelligent(const Features& features, const model::Shape& shape,
@@ -228,7 +229,9 @@ std::optional<Answer> MappingModel::intelligent(const Features& features, const 
     if (network.shape == shape.kind && shape.kind != model::ShapeKind::unknown) {
       Eigen::VectorXd input(feature_count + size_count(traits_.size_input, shape.kind));
       input << features, size_numbers(traits_.size_input, shape, X_OG);
-      return limited(answer(network, input));
+      Answer made = answer(network, input);
+      made.dof = limited(made.dof);
+      return made;
     }
   return std::nullopt;
 }

@@ -70,13 +70,14 @@ class MappingModel {
   std::optional<Answer> intelligent(const Features& features, const model::Shape& shape,
                                     const Pose& X_OG) const;
   bool knows(model::ShapeKind shape) const;
+  /// The nearest posture within the scheme's limits; answers are already.
+  Eigen::VectorXd limited(const Eigen::VectorXd& dof) const;
   /// Whether these fingers, above an object, make a precision grasp rather than a circular sphere.
   /// Not learnt: whether the little finger stays out of it.
   bool is_precision(const Features& features) const;
 
  private:
   MappingModel() = default;
-  Answer limited(Answer answer) const;
   ModelTraits traits_;
   std::vector<MappingNetwork> networks_;
 };
