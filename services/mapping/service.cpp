@@ -6,6 +6,7 @@
 #include <prehend/dds/convert.hpp>
 #include <prehend/dds/topics.hpp>
 
+#include "live_modes.hpp"
 #include "mapping.hpp"
 #include "mapping_model.hpp"
 #include "posture_message.hpp"
@@ -63,11 +64,13 @@ Expected<RobotState> from_message(const v1::HandState& message) {
 /// The topics' side of a Mapping. Lives as long as the shell runs.
 class Service {
  public:
-  Service(service::Shell& shell, const model::HandModel& hand, Mapping mapping)
+  Service(service::Shell& shell, const model::HandModel& hand, Mapping mapping, LiveModes modes)
       : shell_(shell),
         mapping_(std::move(mapping)),
+        modes_(modes),
         hand_name_(shell.config().text("mapping.hand_name")),
-        output_(shell.publish(dds::robot_command)) {
+        output_(shell.publish(dds::robot_command)),
+        replies_(shell.publish(dds::operator_reply)) {
     message_.hand(hand_name_);
     message_.model(hand.name());
     shell.subscribe(dds::hand_posture,
@@ -76,6 +79,8 @@ class Service {
                     Handler<v1::ObjectDetection>([this](auto& s, auto& i) { on_detection(s, i); }));
     shell.subscribe(dds::robot_state,
                     Handler<v1::HandState>([this](auto& s, auto& i) { on_state(s, i); }));
+    shell.subscribe(dds::operator_command,
+                    Handler<v1::OperatorCommand>([this](auto& s, auto& i) { on_order(s, i); }));
     shell.on_tick(std::chrono::milliseconds(20), [this](Time now) {
       if (const auto command = mapping_.tick(now)) {
         shell_.status().count("hold commands");
@@ -121,6 +126,35 @@ class Service {
     if (!taken) shell_.status().drop(taken.error().what);
   }
 
+  /// «Set mode», for us or for all; other orders are not ours.
+  void on_order(const v1::OperatorCommand& message, const dds::SampleInfo& info) {
+    const std::string target = message.target().to_string();
+    if (info.gone || message.action() != v1::ACTION_SET_MODE) return;
+    if (!target.empty() && target != "mapping") return;
+    const auto obeyed =
+        changed(modes_, message.argument().to_string()).and_then([this](const LiveModes& modes) {
+          return use(modes);
+        });
+    if (!obeyed) shell_.status().drop("order not understood");
+    v1::OperatorReply reply;
+    reply.id(message.id());
+    reply.stamp_ns(to_ns(shell_.now()));
+    reply.service("mapping");
+    reply.done(obeyed.has_value());
+    // Long enough for every reason that there is.
+    reply.message((obeyed ? to_string(modes_) : obeyed.error().message()).substr(0, 255));
+    replies_.publish(reply);
+  }
+
+  Expected<void> use(const LiveModes& modes) {
+    auto used =
+        mapping_.use(modes.fingers, modes.intelligent, modes.intelligent && modes.placement);
+    if (!used) return used;
+    modes_ = modes;
+    log::info("mode: {}", to_string(modes));
+    return {};
+  }
+
   void publish(const Command& command) {
     message_.sequence_number(sequence_number_++);
     message_.stamp_ns(to_ns(command.stamp));
@@ -137,8 +171,10 @@ class Service {
 
   service::Shell& shell_;
   Mapping mapping_;
+  LiveModes modes_;
   std::string hand_name_;
   service::Shell::Output<v1::HandCommand> output_;
+  service::Shell::Output<v1::OperatorReply> replies_;
   v1::HandCommand message_;  // reused, so that a command costs no allocation
   std::uint64_t sequence_number_ = 0;
 };
@@ -151,22 +187,25 @@ Expected<int> run(service::Shell& shell) {
   if (!hand) return tl::unexpected(hand.error());
   const auto model = MappingModel::load(config.path("mapping.model"), *hand);
   if (!model) return tl::unexpected(model.error());
-  MappingOptions options;
+  LiveModes modes;
   const auto fingers = finger_mode_from_string(config.text("mapping.mode"));
   if (!fingers) {
     log::error("mapping.mode: there is no «{}» (joints, cartesian, combined or retargeting)",
                config.text("mapping.mode"));
     return 2;
   }
-  options.fingers = *fingers;
-  options.intelligent = config.flag("mapping.intelligent");
-  options.place = options.intelligent && config.flag("mapping.placement");
+  modes.fingers = *fingers;
+  modes.intelligent = config.flag("mapping.intelligent");
+  modes.placement = config.flag("mapping.placement");
+  MappingOptions options;
+  options.fingers = modes.fingers;
+  options.intelligent = modes.intelligent;
+  options.place = modes.intelligent && modes.placement;
   auto mapping = Mapping::create(*hand, *model, options);
   if (!mapping) return tl::unexpected(mapping.error());
 
-  const Service service(shell, *hand, std::move(*mapping));
-  log::info("{}, {}, fingers by {}{}", hand->name(), model->traits().scheme,
-            to_string(options.fingers), options.intelligent ? "" : ", whatever the object");
+  const Service service(shell, *hand, std::move(*mapping), modes);
+  log::info("{}, {}, {}", hand->name(), model->traits().scheme, to_string(modes));
   shell.status().running();
   return shell.run();
 }
