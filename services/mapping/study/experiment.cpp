@@ -37,7 +37,8 @@ std::vector<Experiment> experiments() {
           wrong_depth(),
           small_cube(),
           scalings(),
-          size_inputs()};
+          size_inputs(),
+          real_hands()};
 }
 
 std::uint64_t repetition_seed(std::uint64_t study_seed, std::string_view figure,

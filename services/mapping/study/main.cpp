@@ -66,7 +66,9 @@ int main(int argc, char** argv) {
   log::set_name("study");
   StudyOptions options;
   std::vector<std::string> only;
-  std::string out;
+  std::string out, recordings;
+  if (const char* data = std::getenv("PREHEND_SHARED_DATA"))
+    recordings = std::string(data) + "/leap_hand_recordings";
   unsigned threads = 0;
   bool json = false;
   std::vector<Experiment> chosen = experiments();
@@ -85,6 +87,9 @@ int main(int argc, char** argv) {
       ->check(CLI::IsMember(figures));
   app.add_option("--seed", options.seed, "of people and first weights")->capture_default_str();
   app.add_option("--out", out, "folder for report.html and a CSV and PNG a figure");
+  app.add_option("--recordings", recordings,
+                 "Leap recordings of real hands, a folder; default: leap_hand_recordings in\n"
+                 "PREHEND_SHARED_DATA. Without any, figure «real» is left out");
   app.add_option("--threads", threads, "0: one a core; the answer is the same")
       ->capture_default_str()
       ->check(CLI::Range(0, 1024));
@@ -105,10 +110,20 @@ int main(int argc, char** argv) {
 
   const auto begin = std::chrono::steady_clock::now();
   const bool grasping = asked(benchmark_name);
+  auto takes = load_real_takes(recordings);
+  if (!takes) {
+    const auto left_out = std::erase_if(chosen, [](const Experiment& one) { return one.live; });
+    if (left_out > 0)
+      log::warning("figure «real» is left out: {}",
+                   recordings.empty() ? "give --recordings" : takes.error().message());
+  }
+  const bool live =
+      std::any_of(chosen.begin(), chosen.end(), [](const Experiment& one) { return one.live; });
   auto hands = hands_of(chosen);
   if (grasping) hands.assign(benchmark_hands.begin(), benchmark_hands.end());
-  const auto parts = load_parts(hands, grasping);
+  auto parts = load_parts(hands, grasping || live);
   if (!parts) return refuse(parts.error());
+  if (live) parts->real_takes = std::move(*takes);
   const auto studied = study(*parts, chosen, options, [&](std::size_t count, const auto& work) {
     prehend::Progress progress("repeating the experiments");
     share_work(count, threads, work, [&](std::size_t done) { progress.show(done, count); });

@@ -1,5 +1,7 @@
 #include "parts.hpp"
 
+#include <algorithm>
+#include <filesystem>
 #include <prehend/base/paths.hpp>
 #include <tuple>
 
@@ -9,7 +11,7 @@ Expected<Parts> load_parts(const std::vector<std::string>& hands, bool with_mode
   const auto share = share_directory();
   auto catalogue = model::Catalogue::load(share / "models" / "objects" / "catalogue.toml");
   if (!catalogue) return tl::unexpected(catalogue.error());
-  Parts parts{std::move(*catalogue), {}};
+  Parts parts{std::move(*catalogue), {}, {}};
   for (const std::string& name : hands) {
     auto hand = model::HandModel::load(model::hand_directory(name));
     if (!hand) return tl::unexpected(hand.error());
@@ -27,6 +29,19 @@ Expected<Parts> load_parts(const std::vector<std::string>& hands, bool with_mode
                                           std::move(model)});
   }
   return parts;
+}
+
+Expected<std::vector<RealTake>> load_real_takes(const std::filesystem::path& folder) {
+  std::error_code error;
+  std::vector<std::filesystem::path> files;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, error))
+    if (entry.path().extension() == ".csv") files.push_back(entry.path());
+  std::sort(files.begin(), files.end());
+  std::vector<RealTake> takes;
+  for (const auto& file : files)
+    if (auto take = load_real_take(file)) takes.push_back(std::move(*take));
+  if (takes.empty()) return fail("holds no Leap recordings of right hands", folder.string());
+  return takes;
 }
 
 std::vector<const RobotGrasp*> grasps_of(const Parts& parts, const std::string& hand,

@@ -11,6 +11,8 @@
 #include <string>
 #include <vector>
 
+#include "real_take.hpp"
+
 namespace prehend::mapping {
 
 /// A hand with its scheme, how it grasps the catalogue, and its trained mapping if that is needed.
@@ -25,6 +27,7 @@ struct StudiedHand {
 struct Parts {
   model::Catalogue catalogue;
   std::map<std::string, StudiedHand> hands;
+  std::vector<RealTake> real_takes;  // none where there are no recordings
 
   const StudiedHand& hand(const std::string& name) const { return hands.at(name); }
 };
@@ -32,6 +35,10 @@ struct Parts {
 /// Loads hands, schemes, and grasps as the build has closed them; `with_models`, also the trained
 /// mappings.
 Expected<Parts> load_parts(const std::vector<std::string>& hands, bool with_models);
+
+/// The right hands among the Leap recordings (CSV) of a folder, by name; what is no such recording
+/// is left out. Fails where there is no folder or none in it.
+Expected<std::vector<RealTake>> load_real_takes(const std::filesystem::path& folder);
 
 /// The hand's best grasp of this type on each object of that shape that it can grasp so, in the
 /// catalogue's order: held before not held, then by epsilon.

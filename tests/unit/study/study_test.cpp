@@ -92,6 +92,38 @@ TEST(Study, IsTheSameForASeedHoweverTheWorkIsDivided) {
   EXPECT_NE(one, findings("--seed 2"));
 }
 
+// The fingers of real hands, on which nobody was trained: the robot hand closes where they close.
+TEST(Study, FollowsRealFingers) {
+  const std::string recordings = PREHEND_SHARED_DATA "/leap_hand_recordings";
+  if (!std::filesystem::exists(recordings)) GTEST_SKIP() << "no " << recordings;
+  const auto folder = scratch();
+  const Answer answer =
+      run("--quick --json --only real --recordings " + recordings + " --out " + folder.string());
+  ASSERT_EQ(answer.code, 0);
+  EXPECT_EQ(Json::parse(answer.out).at("findings").size(), 6u);
+  std::istringstream csv(text_of(folder / "real.csv"));
+  std::string line;
+  std::getline(csv, line);
+  int series = 0;
+  while (std::getline(csv, line)) {
+    char measure[64] = "";
+    double mean = 0;
+    ASSERT_EQ(std::sscanf(line.c_str(), "%*[^,],%63[^,],%lf", measure, &mean), 2) << line;
+    EXPECT_LE(mean, 1) << line;  // shares and correlations
+    if (std::string(measure) != "grab") continue;
+    EXPECT_GT(mean, 0.5) << line;
+    ++series;
+  }
+  EXPECT_EQ(series, 6);  // three hands, direct and intelligent
+  std::filesystem::remove_all(folder);
+}
+
+TEST(Study, LeavesRealFingersOutWhereThereAreNone) {
+  const Answer answer = run("--quick --json --only real --recordings /nowhere");
+  EXPECT_EQ(answer.code, 0);
+  EXPECT_TRUE(Json::parse(answer.out).at("findings").empty());
+}
+
 TEST(Study, RefusesWrongUse) {
   EXPECT_EQ(run("--only 7.1").code, 2);
   EXPECT_EQ(run("--threads many").code, 2);

@@ -1,0 +1,132 @@
+#include "real_take.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <fstream>
+#include <map>
+#include <optional>
+#include <string_view>
+
+namespace prehend::mapping {
+
+namespace {
+
+using Eigen::Vector3d;
+
+/// Fastest that frames are kept, a tracker's rate.
+constexpr double period = 1 / 30.;  // s
+
+/// A line's cells by the names in the first line; a number that is missing or unreadable spoils it.
+class Row {
+ public:
+  using Columns = std::map<std::string, std::size_t, std::less<>>;
+  Row(const Columns& columns, const std::string& line) : columns_(columns) {
+    for (std::size_t begin = 0; begin <= line.size();) {
+      const std::size_t end = std::min(line.find(',', begin), line.size());
+      cells_.push_back(std::string_view(line).substr(begin, end - begin));
+      begin = end + 1;
+    }
+  }
+  std::string_view text(std::string_view name) {
+    const auto column = columns_.find(name);
+    if (column != columns_.end() && column->second < cells_.size()) return cells_[column->second];
+    good_ = false;
+    return {};
+  }
+  double number(std::string_view name) {
+    const std::string_view cell = text(name);
+    double value = 0;
+    const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
+    good_ =
+        good_ && error == std::errc() && end == cell.data() + cell.size() && std::isfinite(value);
+    return value;
+  }
+  Vector3d vector(const std::string& name) {
+    const double x = number(name + "_x"), y = number(name + "_y"), z = number(name + "_z");
+    return {x, y, z};
+  }
+  bool good() const { return good_; }
+
+ private:
+  const Columns& columns_;
+  std::vector<std::string_view> cells_;
+  bool good_ = true;
+};
+
+/// A frame whose fingertips are taken from the middle knuckle, along the axes of H.
+std::optional<RealTake::Frame> read(Row& row) {
+  constexpr double mm = 1e-3;
+  static const std::array<std::string, model::finger_count> fingers{"thumb", "index", "middle",
+                                                                    "ring", "pinky"};
+  RealTake::Frame frame;
+  frame.time = 1e-6 * row.number("t_us");
+  frame.grab = row.number("grabStrength");
+  frame.pinch = row.number("pinchStrength");
+  const Vector3d forward = row.vector("dir"), out = -row.vector("normal");
+  const Vector3d knuckle = row.vector("middle_mcp");
+  const Vector3d y = out.cross(forward);
+  if (!row.good() || row.text("hand") != "right" || y.norm() < 1e-3) return std::nullopt;
+  Eigen::Matrix3d R_RH;
+  R_RH.col(0) = forward.normalized();
+  R_RH.col(1) = y.normalized();
+  R_RH.col(2) = R_RH.col(0).cross(R_RH.col(1));
+  for (std::size_t f = 0; f < fingers.size(); ++f)
+    frame.fingertips[f] = {true,
+                           mm * (R_RH.transpose() * (row.vector(fingers[f] + "_tip") - knuckle))};
+  if (!row.good()) return std::nullopt;
+  return frame;
+}
+
+/// How much further this finger reaches from the knuckle than that of an average open hand.
+double scale_of(const RealTake& take, model::Finger finger, const Vector3d& p_HKnuckle) {
+  const auto f = static_cast<std::size_t>(finger);
+  double furthest = 0;
+  for (const RealTake::Frame& frame : take.frames)
+    furthest = std::max(furthest, frame.fingertips[f].p_HF.norm());
+  const auto open = model::HumanHand(1).fingertip_poses(model::HumanHand::open_posture());
+  return furthest / (open[f].translation() - p_HKnuckle).norm();
+}
+
+}  // namespace
+
+Expected<RealTake> load_real_take(const std::filesystem::path& csv) {
+  std::ifstream file(csv);
+  std::string line;
+  if (!std::getline(file, line)) return fail("the recording cannot be read", csv.string());
+  Row::Columns columns;
+  for (std::size_t begin = 0, i = 0; begin <= line.size(); ++i) {
+    const std::size_t end = std::min(line.find_first_of(",\r", begin), line.size());
+    columns.emplace(line.substr(begin, end - begin), i);
+    begin = end + 1;
+  }
+  RealTake take{csv.stem().string(), 1, {}};
+  double last = -period;
+  std::optional<double> first;
+  while (std::getline(file, line)) {
+    if (!line.empty() && line.back() == '\r') line.pop_back();
+    Row row(columns, line);
+    auto frame = read(row);
+    if (!frame) continue;
+    if (!first) first = frame->time;
+    frame->time -= *first;
+    constexpr double rounding = 1e-6;  // s
+    if (frame->time < last + period - rounding) continue;
+    last = frame->time;
+    take.frames.push_back(*frame);
+  }
+  constexpr std::size_t least = 10;
+  if (take.frames.size() < least)
+    return fail(fmt::format("has {} good rows of a right hand", take.frames.size()), csv.string(),
+                "choose a Leap recording");
+  const Vector3d p_HKnuckle(0.0557, 0.0, -0.013);  // of an average hand, as the glove has it
+  take.hand_scale = 0.5 * (scale_of(take, model::Finger::index, p_HKnuckle) +
+                           scale_of(take, model::Finger::little, p_HKnuckle));
+  for (RealTake::Frame& frame : take.frames)
+    for (Fingertip& tip : frame.fingertips) tip.p_HF += take.hand_scale * p_HKnuckle;
+  return take;
+}
+
+}  // namespace prehend::mapping
