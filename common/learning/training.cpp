@@ -12,6 +12,8 @@
 #include <mutex>
 #include <utility>
 
+#include "rprop.hpp"
+
 namespace prehend::learning {
 
 namespace {
@@ -129,10 +131,11 @@ class Judge {
         options_(options),
         progress_(progress) {}
 
+  double best_error() const { return best_error_; }
+
   /// False when there is no point in training on.
-  bool look(const fann& network, int epoch) {
+  bool look(Expected<Network> now, int epoch) {
     epochs_ = epoch;
-    auto now = to_network(network);
     if (!now) return false;  // diverged; the best so far stands
     const double error = squared_error(*now, validated_ ? validation_ : training_);
     if (options_.curve)
@@ -167,16 +170,6 @@ class Judge {
   std::vector<Look> curve_;
 };
 
-void train_epochs(fann& network, fann_train_data& data, const TrainingOptions& options,
-                  Judge& judge) {
-  for (int epoch = 1;; ++epoch) {
-    fann_train_epoch(&network, &data);
-    if ((epoch % options.check_every == 0 || epoch == options.epochs) &&
-        !judge.look(network, epoch))
-      return;
-  }
-}
-
 void train_cascade(fann& network, fann_train_data& data, const TrainingOptions& options,
                    Judge& judge) {
   struct Growing {
@@ -190,13 +183,54 @@ void train_cascade(fann& network, fann_train_data& data, const TrainingOptions& 
                     [](fann* now, fann_train_data*, unsigned, unsigned, float, unsigned epochs) {
                       auto& seen = *static_cast<Growing*>(fann_get_user_data(now));
                       seen.epochs = epochs;
-                      seen.ended = !seen.judge.look(*now, static_cast<int>(epochs));
+                      seen.ended = !seen.judge.look(to_network(*now), static_cast<int>(epochs));
                       return seen.ended ? -1 : 0;
                     });
   fann_cascadetrain_on_data(&network, &data, static_cast<unsigned>(options.hidden), 1, 0);
   // Outputs have been trained once more after the last neuron, in epochs that FANN does not tell.
-  if (!growing.ended) judge.look(network, static_cast<int>(growing.epochs));
+  if (!growing.ended) judge.look(to_network(network), static_cast<int>(growing.epochs));
 }
+
+/// A network while it is trained. FANN makes its first weights and trains it, but for RPROP, which
+/// our own does faster.
+class Run {
+ public:
+  Run(FannNetwork network, fann_train_data& data, const Samples& training,
+      const TrainingOptions& options, Judge judge)
+      : network_(std::move(network)), data_(data), options_(options), judge_(std::move(judge)) {
+    if (options.method == TrainingMethod::rprop)
+      rprop_.emplace(to_network(*network_)->layers(), training);
+  }
+
+  /// Until so many epochs are done, or there is no point in training on. Cascade trains to its end.
+  void train_until(int epochs) {
+    if (options_.method == TrainingMethod::cascade) {
+      if (!ended_) train_cascade(*network_, data_, options_, judge_);
+      ended_ = true;
+    }
+    while (!ended_ && epoch_ < epochs) {
+      if (rprop_)
+        rprop_->epoch();
+      else
+        fann_train_epoch(network_.get(), &data_);
+      ++epoch_;
+      if (epoch_ % options_.check_every == 0 || epoch_ == options_.epochs)
+        ended_ = !judge_.look(rprop_ ? Network::create(rprop_->layers()) : to_network(*network_),
+                              epoch_);
+    }
+  }
+  double best_error() const { return judge_.best_error(); }
+  Expected<TrainingResult> result() { return judge_.result(); }
+
+ private:
+  FannNetwork network_;
+  fann_train_data& data_;
+  const TrainingOptions& options_;
+  Judge judge_;
+  std::optional<Rprop> rprop_;
+  int epoch_ = 0;
+  bool ended_ = false;
+};
 
 Expected<void> check(const Samples& samples, std::string_view which) {
   if (samples.inputs.cols() != samples.outputs.cols())
@@ -240,22 +274,38 @@ Expected<TrainingResult> train(const Samples& training, const Samples& validatio
   if (validated && (validation.inputs.rows() != training.inputs.rows() ||
                     validation.outputs.rows() != training.outputs.rows()))
     return fail("sizes differ from those of the training samples", "validation samples");
-  if (options.hidden < 1 || options.epochs < 1 || options.check_every < 1)
-    return fail("hidden neurons, epochs and check_every must be at least 1", "training options");
-
-  std::unique_lock lock(rand_mutex());
-  const FannNetwork network = make_fann(static_cast<int>(training.inputs.rows()),
-                                        static_cast<int>(training.outputs.rows()), options);
-  if (!draws_while_training(options.method)) lock.unlock();
+  if (options.hidden < 1 || options.epochs < 1 || options.check_every < 1 || options.restarts < 1)
+    return fail("hidden neurons, epochs, check_every and restarts must be at least 1",
+                "training options");
   const FannData data = to_fann(training);
-  if (!network || !data) return fail("no memory for a network", "training");
+  if (!data) return fail("no memory for the samples", "training");
 
-  Judge judge(training, validation, options, progress);
-  if (options.method == TrainingMethod::cascade)
-    train_cascade(*network, *data, options, judge);
-  else
-    train_epochs(*network, *data, options, judge);
-  return judge.result();
+  const bool draws = draws_while_training(options.method);
+  const int heat = draws || options.restarts == 1 ? options.epochs : options.heat;
+  const double all = heat * (options.restarts - 1.0) + options.epochs;
+  double done = 0;  // epochs of the runs before
+  const std::function<void(double)> tell = [&](double share) {
+    if (progress) progress(std::min(1.0, (done + share * options.epochs) / all));
+  };
+  std::vector<Run> runs;
+  for (int restart = 0; restart < options.restarts; ++restart) {
+    TrainingOptions own = options;
+    own.seed += static_cast<std::uint32_t>(restart);
+    std::unique_lock lock(rand_mutex());
+    FannNetwork network = make_fann(static_cast<int>(training.inputs.rows()),
+                                    static_cast<int>(training.outputs.rows()), own);
+    if (!network) return fail("no memory for a network", "training");
+    if (!draws) lock.unlock();
+    runs.emplace_back(std::move(network), *data, training, options,
+                      Judge(training, validation, options, tell));
+    runs.back().train_until(heat);
+    done = heat * std::min(restart + 1.0, options.restarts - 1.0);
+  }
+  Run& best = *std::min_element(runs.begin(), runs.end(), [](const Run& one, const Run& other) {
+    return one.best_error() < other.best_error();
+  });
+  best.train_until(options.epochs);
+  return best.result();
 }
 
 }  // namespace prehend::learning

@@ -34,6 +34,8 @@ struct TrainingOptions {
   int check_every = 10;        // epochs between looks at the errors; cascade looks at each neuron
   int patience = 200;          // epochs without a better validation error before it stops
   std::uint32_t seed = 1;      // of the first weights
+  int restarts = 1;            // first weights that are tried, with the seeds seed, seed + 1, …
+  int heat = 200;              // epochs after which only the best of them goes on
   bool curve = false;          // keep the errors of every look
 };
 
@@ -50,16 +52,17 @@ struct TrainingResult {
   Network network;              // the best one seen, by validation error
   double training_error = 0;    // squared_error of it
   double validation_error = 0;  // the same on the validation samples; on the training ones without
-  int epochs = 0;               // that were trained
+  int epochs = 0;               // that it was trained
   std::vector<Look> curve;      // if it was asked for
 };
 
 /// Trains a network with one hidden layer, or by cascade one that grows neuron by neuron, each
 /// seeing all before it. Stops early when the error on `validation` (may be empty: then the
-/// training error) no longer improves, and returns the best network seen. The same samples, options
-/// and seed give the same network bit for bit. Several threads may train at once; SARPROP and
-/// cascade, which draw from the C library's rand() on their way, then take turns. `progress` is
-/// told the share of epochs done, 0 to 1.
+/// training error) no longer improves, and returns the best network seen. Of several first weights
+/// the one with the least such error after `heat` epochs is trained to the end; SARPROP and
+/// cascade, which draw from the C library's rand() on their way, train each to the end. The same
+/// samples, options and seed give the same network bit for bit. Several threads may train at once;
+/// those two methods then take turns. `progress` is told the share of epochs done, 0 to 1.
 Expected<TrainingResult> train(const Samples& training, const Samples& validation,
                                const TrainingOptions& options,
                                const std::function<void(double)>& progress = {});

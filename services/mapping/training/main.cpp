@@ -181,6 +181,7 @@ int main(int argc, char** argv) {
     trainer.network.seed = static_cast<std::uint32_t>(people.seed);
     SetOptions others = people;
     others.users = 3;
+    others.grasps = static_cast<int>(grasps->size());
     sets.training = demonstrate(*hand, *scheme, *grasps, people);
     others.seed = people.seed + 1;
     sets.validation = demonstrate(*hand, *scheme, *grasps, others);
@@ -196,7 +197,10 @@ int main(int argc, char** argv) {
     trainer.precision = precision_discriminant(*catalogue, hand->reach(), people);
     Steps steps;
     const double before = since_begin();
-    const auto model = train_mapping(*hand, *scheme, sets, trainer, std::ref(steps));
+    const auto model = train_mapping(
+        *hand, *scheme, sets, trainer,
+        [](std::size_t count, const auto& work) { share_work(count, 0, work, [](std::size_t) {}); },
+        std::ref(steps));
     if (!model) return refuse(model.error());
     document["training_seconds"] = since_begin() - before;
     if (auto saved = model->save(out, *hand); !saved) return refuse(saved.error());

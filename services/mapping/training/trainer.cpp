@@ -3,7 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <optional>
+#include <mutex>
+#include <numeric>
 #include <prehend/proto/sealed_file.hpp>
 #include <set>
 #include <utility>
@@ -75,6 +76,15 @@ std::uint64_t seed_of(const SetOptions& options, int person) {
   return options.seed * 1000003 + static_cast<std::uint64_t>(person);
 }
 
+/// So many of the numbers below `count`, or all, in rising order.
+std::vector<std::size_t> drawn(std::size_t count, int wanted, Random& random) {
+  std::vector<std::size_t> numbers(count);
+  std::iota(numbers.begin(), numbers.end(), std::size_t{0});
+  while (numbers.size() > static_cast<std::size_t>(wanted))
+    numbers.erase(numbers.begin() + static_cast<std::ptrdiff_t>(random.index(numbers.size())));
+  return numbers;
+}
+
 /// Name of pairs between the open hand and a posture.
 const std::string on_the_way_to = "on the way to ";
 
@@ -92,16 +102,9 @@ Expected<MappingNetwork> train_network(const Sets& sets, model::ShapeKind shape,
       learning::Scaling::fit(training.outputs, learning::ScalingKind::each_feature, output_margin);
   if (!output) return tl::unexpected(output.error());
 
-  std::optional<learning::TrainingResult> best;
-  for (int restart = 0; restart < options.restarts; ++restart) {
-    learning::TrainingOptions network = options.network;
-    network.seed += static_cast<std::uint32_t>(restart);
-    auto result = learning::train(
-        scaled(training, *input, *output), scaled(validation, *input, *output), network,
-        [&](double share) { progress((restart + share) / options.restarts); });
-    if (!result) return tl::unexpected(result.error());
-    if (!best || result->validation_error < best->validation_error) best = std::move(*result);
-  }
+  auto best = learning::train(scaled(training, *input, *output),
+                              scaled(validation, *input, *output), options.network, progress);
+  if (!best) return tl::unexpected(best.error());
   MappingNetwork made{shape, std::move(best->network), std::move(*input), std::move(*output), {}};
   made.errors = {error(made, training), error(made, validation),
                  error(made, columns(sets.test, shape, options.size_input))};
@@ -120,7 +123,6 @@ learning::TrainingSet demonstrate(const model::HandModel& hand, const Scheme& sc
 
   const std::vector<SchemePosture> postures = scheme.posture_set(options.postures);
   const SchemePosture& open = scheme.open;
-  std::size_t turn = 0;  // of the basic postures
   for (int person = 0; person < options.users; ++person) {
     const std::uint64_t seed = seed_of(options, person);
     Demonstrator demonstrator(fmt::format("person {}-{}", options.seed, person), seed,
@@ -149,13 +151,14 @@ learning::TrainingSet demonstrate(const model::HandModel& hand, const Scheme& sc
           set.pairs.push_back(pair);
         }
       };
-      for (const RobotGrasp& grasp : grasps) {
+      for (const std::size_t g : drawn(grasps.size(), options.grasps, random)) {
+        const RobotGrasp& grasp = grasps[g];
         pair.object = grasp.object;
         pair.shape = model::to_string(grasp.shape.kind);
         pair.size = grasp.shape.size;
         pair.X_OG = grasp.X_OG;
         for (int i = 0; i < options.beside; ++i) {
-          const SchemePosture& posture = postures[turn++ % postures.size()];
+          const SchemePosture& posture = postures[random.index(postures.size())];
           show(posture.name, demonstrator.repeat(posture.human), posture.splay, posture.robot, 1.0);
         }
         // None: this person's hand does not fit around it.
@@ -202,7 +205,7 @@ Eigen::VectorXd precision_discriminant(const model::Catalogue& catalogue, const 
 
 Expected<MappingModel> train_mapping(const model::HandModel& hand, const Scheme& scheme,
                                      const Sets& sets, const TrainerOptions& options,
-                                     const Progress& progress) {
+                                     const grasping::ForEach& for_each, const Progress& progress) {
   for (const learning::TrainingSet* set : {&sets.training, &sets.validation, &sets.test}) {
     if (auto ok = learning::check(*set); !ok) return tl::unexpected(ok.error());
     if (set->hand != hand.name())
@@ -217,12 +220,19 @@ Expected<MappingModel> train_mapping(const model::HandModel& hand, const Scheme&
                     [&](const auto& pair) { return pair.shape == model::to_string(kind); }))
       kinds.push_back(kind);
 
+  std::vector<Expected<MappingNetwork>> trained(kinds.size(), fail("not trained"));
+  std::vector<double> shares(kinds.size());
+  std::mutex mutex;  // of the shares
+  for_each(kinds.size(), [&](std::size_t i) {
+    trained[i] = train_network(sets, kinds[i], options, [&](double share) {
+      const std::lock_guard lock(mutex);
+      shares[i] = share;
+      progress("training", std::accumulate(shares.begin(), shares.end(), 0.0) /
+                               static_cast<double>(shares.size()));
+    });
+  });
   std::vector<MappingNetwork> networks;
-  for (const model::ShapeKind kind : kinds) {
-    const std::string step = kind == model::ShapeKind::unknown
-                                 ? "training direct"
-                                 : fmt::format("training {}", model::to_string(kind));
-    auto network = train_network(sets, kind, options, [&](double share) { progress(step, share); });
+  for (auto& network : trained) {
     if (!network) return tl::unexpected(network.error());
     networks.push_back(std::move(*network));
   }

@@ -18,14 +18,17 @@
 
 namespace prehend::mapping {
 
-/// Told which step is being done and how much of it, 0 to 1.
+/// Told which step is being done and how much of it, 0 to 1; one call at a time.
 using Progress = std::function<void(std::string_view step, double share)>;
 
 struct SetOptions {
-  int users = 20;      // of synthetic people
+  int users = 60;  // of synthetic people
+  /// Each shows so many grasps in a take, drawn anew; all where there are fewer. A network learns
+  /// more of many people who show a little than of a few who show everything.
+  int grasps = 8;
   int takes = 1;       // each puts the glove on so often
   int postures = 7;    // basic ones: 4, 7, 10 or 13 (see Scheme::posture_set)
-  int beside = 1;      // basic postures that are shown with each grasp; they take turns
+  int beside = 1;      // basic postures that are shown with each grasp, drawn anew
   int on_the_way = 1;  // pairs between the open hand and each posture shown
   /// Share of a person's closing on an object at which the robot hand is closed. Takes differ in
   /// how far the fingers bend around the same object; the robot must grip in all of them.
@@ -37,10 +40,10 @@ struct SetOptions {
   DemonstratorOptions demonstrator;
 };
 
-/// What synthetic people show: in each take every grasp, and with it some of the scheme's postures
-/// (which have nothing to do with the object, but its network must know them).
-/// Between the open hand (the scheme's first posture) and each of them lie pairs in proportion: a
-/// network that knows the ends alone jumps somewhere between them.
+/// What synthetic people show: in each take some grasps, and with each some of the scheme's
+/// postures (which have nothing to do with the object, but its network must know them). Between the
+/// open hand (the scheme's first posture) and each of them lie pairs in proportion: a network that
+/// knows the ends alone jumps somewhere between them.
 learning::TrainingSet demonstrate(const model::HandModel& hand, const Scheme& scheme,
                                   const std::vector<RobotGrasp>& grasps, const SetOptions& options);
 
@@ -52,8 +55,8 @@ Eigen::VectorXd precision_discriminant(const model::Catalogue& catalogue, const 
                                        const SetOptions& options);
 
 struct TrainerOptions {
-  learning::TrainingOptions network{.hidden = 12, .epochs = 1200, .patience = 150};
-  int restarts = 3;  // first weights that are tried; the best by validation error is kept
+  learning::TrainingOptions network{
+      .hidden = 12, .epochs = 1200, .patience = 150, .restarts = 3, .heat = 150};
   SizeInput size_input = SizeInput::seen;
   learning::ScalingKind scaling = learning::ScalingKind::each_feature;  // of the inputs
   Eigen::VectorXd precision;                                            // see ModelTraits
@@ -65,10 +68,11 @@ struct Sets {
 };
 
 /// Trains direct mapping on all pairs without shape and size, and intelligent mapping for each
-/// shape among them on that shape's pairs with its size.
+/// shape among them on that shape's pairs with its size. The networks are the pieces of work that
+/// `for_each` divides; the model is the same however it does.
 Expected<MappingModel> train_mapping(const model::HandModel& hand, const Scheme& scheme,
                                      const Sets& sets, const TrainerOptions& options,
-                                     const Progress& progress);
+                                     const grasping::ForEach& for_each, const Progress& progress);
 
 /// eq. 5.1 of a model on the pairs of one shape, rad²: of its direct and of its intelligent
 /// answers. Grasps only, or postures as well.

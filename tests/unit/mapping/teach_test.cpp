@@ -160,7 +160,12 @@ TEST_F(TeachBarrett, TaughtPosturesTrainADirectMapping) {
   const learning::TrainingSet set = taught_set(barrett(), scheme_, teacher_.shown());
   TrainerOptions options;
   options.network.hidden = 4;
-  const auto model = train_mapping(barrett(), scheme_, {set, set, set}, options, [](auto, auto) {});
+  const auto model = train_mapping(
+      barrett(), scheme_, {set, set, set}, options,
+      [](std::size_t count, const auto& work) {
+        for (std::size_t i = 0; i < count; ++i) work(i);
+      },
+      [](auto, auto) {});
   ASSERT_TRUE(model) << model.error().message();
   EXPECT_EQ(model->networks().size(), 1u);
   for (const learning::TrainingPair& pair : set.pairs)

@@ -38,6 +38,7 @@ learning::TrainingSet people(std::uint64_t seed, int users, int takes) {
   options.seed = seed;
   options.users = users;
   options.takes = takes;
+  options.grasps = static_cast<int>(grasps().size());
   return demonstrate(barrett(), scheme(), grasps(), options);
 }
 
@@ -102,11 +103,9 @@ TEST(TrainingSet, HoldsPosturesAndGraspsOfEveryTake) {
     EXPECT_TRUE(barrett().clamp(pair.dof).isApprox(pair.dof, 1e-9));
   }
   EXPECT_EQ(users.size(), 2u);
-  // Basic postures take turns, one beside each grasp.
-  const auto basic = scheme().posture_set();
-  const int turns = 2 * 2 * static_cast<int>(grasps().size());
-  for (const SchemePosture& posture : basic)
-    EXPECT_NEAR(postures[posture.name], turns / static_cast<double>(basic.size()), 1);
+  // Each of the basic postures, beside some grasp.
+  for (const SchemePosture& posture : scheme().posture_set())
+    EXPECT_GT(postures[posture.name], 0) << posture.name;
   const int shown = postures["power wrap"] + postures["circular sphere"] + postures["precision"];
   EXPECT_GE(shown, 2 * 2 * static_cast<int>(grasps().size()) * 8 / 10);
   EXPECT_GT(postures["on the way to power wrap"], 0);
@@ -115,12 +114,20 @@ TEST(TrainingSet, HoldsPosturesAndGraspsOfEveryTake) {
   EXPECT_NE(learning::serialise(set), learning::serialise(people(6, 2, 2)));
 }
 
+/// One network after the other, in either order: how the work is divided must not matter.
+void in_turn(std::size_t count, const std::function<void(std::size_t)>& work) {
+  for (std::size_t i = 0; i < count; ++i) work(i);
+}
+void backwards(std::size_t count, const std::function<void(std::size_t)>& work) {
+  for (std::size_t i = count; i > 0; --i) work(i - 1);
+}
+
 TEST(Training, RepeatsBitForBit) {
   const Sets sets{people(1, 2, 1), people(2, 1, 1), people(3, 1, 1)};
   TrainerOptions options;
   options.network.epochs = 60;
-  const auto a = train_mapping(barrett(), scheme(), sets, options, [](auto, auto) {});
-  const auto b = train_mapping(barrett(), scheme(), sets, options, [](auto, auto) {});
+  const auto a = train_mapping(barrett(), scheme(), sets, options, in_turn, [](auto, auto) {});
+  const auto b = train_mapping(barrett(), scheme(), sets, options, backwards, [](auto, auto) {});
   ASSERT_TRUE(a && b);
   ASSERT_EQ(a->networks().size(), 3u);
   for (std::size_t i = 0; i < 3; ++i)
@@ -128,13 +135,35 @@ TEST(Training, RepeatsBitForBit) {
       EXPECT_EQ(a->networks()[i].network.layers()[layer], b->networks()[i].network.layers()[layer]);
 }
 
+TEST(TrainingSet, HoldsAsManyGraspsOfATakeAsAsked) {
+  SetOptions options;
+  options.users = 1;
+  options.grasps = 5;
+  std::set<std::string> shown;
+  for (std::uint64_t seed = 1; seed < 30; ++seed) {
+    options.seed = seed;
+    int count = 0;
+    for (const auto& pair : demonstrate(barrett(), scheme(), grasps(), options).pairs)
+      if (grasp_type_from_string(pair.posture)) {
+        ++count;
+        shown.insert(pair.object + pair.posture);
+      }
+    EXPECT_LE(count, 5);
+    EXPECT_GT(count, 0);
+  }
+  std::set<std::string> all;
+  for (const RobotGrasp& grasp : grasps())
+    all.insert(grasp.object + std::string(to_string(grasp.type)));
+  EXPECT_EQ(shown, all) << "in the end everything is shown";
+}
+
 TEST(Training, RefusesSetsThatDoNotFit) {
   Sets sets{people(1, 1, 1), people(2, 1, 1), people(3, 1, 1)};
   sets.validation.hand = "dlr";
-  EXPECT_FALSE(train_mapping(barrett(), scheme(), sets, {}, [](auto, auto) {}));
+  EXPECT_FALSE(train_mapping(barrett(), scheme(), sets, {}, in_turn, [](auto, auto) {}));
   sets.validation.hand = sets.training.hand;
   for (auto& pair : sets.training.pairs) pair.posture = "open";
-  EXPECT_FALSE(train_mapping(barrett(), scheme(), sets, {}, [](auto, auto) {}));
+  EXPECT_FALSE(train_mapping(barrett(), scheme(), sets, {}, in_turn, [](auto, auto) {}));
 }
 
 // The thesis's claim: knowing shape and size makes the grasp more exact, on takes not seen before.
