@@ -12,7 +12,7 @@ using Eigen::Index;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
 
-constexpr double step = 0.005;      // m, that a finger moves between two looks
+constexpr double step = 0.008;      // m, that a finger moves between two looks
 constexpr int most_steps = 32;      // of one command
 constexpr double rounding = 1e-6;   // m
 constexpr double part_of = 0.0025;  // m, by which a piece may stick out of one that stands for it
@@ -158,7 +158,7 @@ VectorXd RightOfWay::go(const VectorXd& before, const VectorXd& after) const {
     moved[i] = std::max((end[i].a - begin.lines[i].a).norm(), (end[i].b - begin.lines[i].b).norm());
 
   // Pairs that can meet on the way. Most cannot, as the balls around them say.
-  std::vector<Pair> close;
+  std::vector<Approach> close;
   bool free = true;
   for (const Pair& pair : pairs_) {
     const Line &one = end[pair.one], &other = end[pair.other];
@@ -168,49 +168,52 @@ VectorXd RightOfWay::go(const VectorXd& before, const VectorXd& after) const {
     if (0.25 * (one.a + one.b - other.a - other.b).squaredNorm() > reach * reach) continue;
     const double then = distance(pair, end);
     if (then > way) continue;
-    close.push_back(pair);
+    close.push_back({pair, distance(pair, begin.lines)});
     // A way as short as they are thick does not lead through each other.
-    free = free && way < thick && then >= std::min(distance(pair, begin.lines), 0.0) - rounding;
+    free = free && way < thick && then >= std::min(close.back().distance, 0.0) - rounding;
   }
   if (free) return after;
 
-  // Only these must look where they go; the others cannot meet any.
-  std::vector<const Group*> careful;
+  // Groups that none of these belong to just go.
   VectorXd reached = after;
-  for (const Group& group : groups_)
-    if (std::any_of(close.begin(), close.end(), [&](const Pair& p) { return moves(group, p); })) {
-      careful.push_back(&group);
-      for (const Index k : group.dofs) reached[k] = before[k];
-    }
+  std::vector<Careful> careful;
+  for (const Group& group : groups_) {
+    Careful one{&group, {}};
+    for (std::size_t i = 0; i < close.size(); ++i)
+      if (moves(group, close[i].pair)) one.approaches.push_back(i);
+    if (!one.approaches.empty()) careful.push_back(std::move(one));
+  }
   const double farthest = *std::max_element(moved.begin(), moved.end());
   const int steps = std::clamp(static_cast<int>(std::ceil(farthest / step)), 1, most_steps);
   const VectorXd change = (after - before) / steps;
   for (int i = 0; i < steps && creep(begin, careful, change, close); ++i) {
   }
-  for (const Group* group : careful)
-    for (const Index k : group->dofs) reached[k] = begin.dof[k];
+  for (const Careful& one : careful)
+    for (const Index k : one.group->dofs) reached[k] = begin.dof[k];
   return reached;
 }
 
 /// Moves each finger by this change that does not run into another one; false when none could.
-bool RightOfWay::creep(Placed& hand, const std::vector<const Group*>& groups,
-                       const VectorXd& change, const std::vector<Pair>& close) const {
+bool RightOfWay::creep(Placed& hand, const std::vector<Careful>& careful, const VectorXd& change,
+                       std::vector<Approach>& close) const {
   bool moved = false;
-  for (const Group* group : groups) {
+  std::vector<double> then;
+  for (const auto& [group, approaches] : careful) {
     const auto stays = [&](Index k) { return change[k] == 0; };
     if (std::all_of(group->dofs.begin(), group->dofs.end(), stays)) continue;
-    std::vector<double> now;
-    for (const Pair& pair : close)
-      if (moves(*group, pair)) now.push_back(distance(pair, hand.lines));
     for (const Index k : group->dofs) hand.dof[k] += change[k];
     move(hand, *group);
-    auto before = now.begin();
-    bool free = true;
-    for (const Pair& pair : close)
-      if (moves(*group, pair))
-        free = free && distance(pair, hand.lines) >= std::min(*before++, 0.0) - rounding;
-    moved = moved || free;
-    if (free) continue;
+    then.clear();
+    for (const std::size_t i : approaches) {
+      const double there = distance(close[i].pair, hand.lines);
+      if (there < std::min(close[i].distance, 0.0) - rounding) break;
+      then.push_back(there);
+    }
+    if (then.size() == approaches.size()) {
+      for (std::size_t i = 0; i < then.size(); ++i) close[approaches[i]].distance = then[i];
+      moved = true;
+      continue;
+    }
     for (const Index k : group->dofs) hand.dof[k] -= change[k];
     move(hand, *group);
   }

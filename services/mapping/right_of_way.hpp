@@ -17,7 +17,7 @@ class RightOfWay {
 
   /// As much of the way from `before` to `after` as every finger can go, m or rad. Fingers that
   /// overlap already come no deeper into each other. A way that may be blocked is
-  /// gone in steps of 5 mm.
+  /// gone in steps of 8 mm.
   Eigen::VectorXd go(const Eigen::VectorXd& before, const Eigen::VectorXd& after) const;
 
   /// Distance between the fingers that are nearest to each other, m, negative where they overlap;
@@ -43,6 +43,16 @@ class RightOfWay {
     std::vector<Eigen::Index> dofs;
     std::vector<std::size_t> joints, pieces;
   };
+  /// Pieces that may meet, and their distance now.
+  struct Approach {
+    Pair pair;
+    double distance = 0;
+  };
+  /// A group that must look where it goes, at these approaches by number.
+  struct Careful {
+    const Group* group = nullptr;
+    std::vector<std::size_t> approaches;
+  };
   /// A posture of the hand.
   struct Placed {
     Eigen::VectorXd dof;
@@ -54,8 +64,8 @@ class RightOfWay {
   void move(Placed& hand, const Group& group) const;
   double distance(const Pair& pair, const std::vector<Line>& lines) const;
   bool moves(const Group& group, const Pair& pair) const;
-  bool creep(Placed& hand, const std::vector<const Group*>& groups, const Eigen::VectorXd& change,
-             const std::vector<Pair>& close) const;
+  bool creep(Placed& hand, const std::vector<Careful>& careful, const Eigen::VectorXd& change,
+             std::vector<Approach>& close) const;
 
   const model::HandModel& hand_;
   std::vector<Piece> pieces_;

@@ -21,7 +21,7 @@ class SetMode : public Rig {
     orders_.emplace(participant_->writer(dds::operator_command).value());
   }
 
-  /// The same half closed hand, at the glove's rate.
+  /// The same slightly bent hand, at the glove's rate. No finger of it meets another.
   void publish() {
     v1::HandPosture message;
     message.glove("glove");
@@ -32,7 +32,7 @@ class SetMode : public Rig {
     message.quality(1);
     message.X_WH(dds::to_message(make_pose({0, 0, 0.4})));
     const auto tips =
-        model::HumanHand(1).fingertip_poses(model::HumanHand::posture({0.3, 0.6, 0.6, 0.2, 0.2}));
+        model::HumanHand(1).fingertip_poses(model::HumanHand::posture({0.1, 0.3, 0.3, 0.1, 0.1}));
     for (std::size_t f = 0; f < tips.size(); ++f) {
       message.fingertips()[f].valid(true);
       message.fingertips()[f].p_HF(dds::to_message(Eigen::Vector3d(tips[f].translation())));
