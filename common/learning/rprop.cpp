@@ -11,12 +11,12 @@ using Eigen::ArrayXXd;
 using Eigen::Index;
 using Eigen::MatrixXd;
 
-// As in FANN, whose results these must be.
+// As in FANN, whose results these must be; some of its numbers are floats.
 constexpr double steepness = 0.5;
-constexpr double first_step = 0.1, least_step = 0.0001, most_step = 50;
-constexpr double faster = 1.2, slower = 0.5;
+constexpr double first_step = 0.1f, least_step = 0.0001, most_step = 50;
+constexpr double faster = 1.2f, slower = 0.5;
 constexpr double most_weight = 1500;
-constexpr double flattest = 0.98;  // of an answer: beyond, the sigmoid's slope counts as there
+constexpr double flattest = 0.98f;  // of an answer: beyond, the sigmoid's slope counts as there
 constexpr double wrong = 0.9999999, most_wrong = 17;  // of a difference, and what it then counts
 
 ArrayXXd slope_of(const auto& answers) {
