@@ -183,6 +183,26 @@ TEST(TrainedModel, IntelligentErrorIsBelowDirectOnOtherPeople) {
   }
 }
 
+// The build trains every hand: its answers stay within the scheme's limits, and the open hand is
+// nearer to the scheme's open posture than to any closed one.
+TEST(TrainedModel, IsThereForEveryHand) {
+  for (const std::string name : {"barrett", "dlr", "robonaut", "rutgers", "parallel_jaw"}) {
+    const model::HandModel& hand = test::hand(name);
+    const auto model = MappingModel::load(PREHEND_TRAINED "/" + name + ".mapping", hand);
+    ASSERT_TRUE(model) << model.error().message();
+    EXPECT_GE(model->networks().size(), 2u) << name << ": some shape is known";
+    const Scheme made =
+        Scheme::load(PREHEND_SOURCE "/services/mapping/schemes/" + name + ".toml", hand).value();
+    const Eigen::VectorXd open = model->direct(*features(tips({}), 1)).dof;
+    EXPECT_TRUE(open.isApprox(open.cwiseMax(made.lower).cwiseMin(made.upper), 1e-12)) << name;
+    for (const SchemePosture& closed : made.closed)
+      if (closed.robot != made.open.robot) {
+        EXPECT_LT((open - made.open.robot).norm(), (open - closed.robot).norm())
+            << name << ", " << closed.name;
+      }
+  }
+}
+
 // An open human hand is an open robot hand: within 10 degrees a finger, whatever is there to grasp.
 TEST(TrainedModel, OpensWithTheHand) {
   const auto model = MappingModel::load(PREHEND_TRAINED "/barrett.mapping", barrett());
