@@ -38,6 +38,7 @@ std::vector<Experiment> experiments() {
           small_cube(),
           scalings(),
           size_inputs(),
+          untrained_sizes(),
           real_hands()};
 }
 

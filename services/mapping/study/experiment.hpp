@@ -47,7 +47,8 @@ struct Experiment {
   /// A row for the columns. Pure: several threads call it at once.
   std::function<Eigen::VectorXd(const Parts&, const Repetition&)> repeat;
   std::function<Outcome(const Table&)> judge;
-  bool live = false;  // needs the trained models and recordings of real hands
+  bool trained = false;     // needs the trained models
+  bool recordings = false;  // needs recordings of real hands
 };
 
 /// Figures 5.12 and 5.13: how the methods converge, and what error they come to.
@@ -71,7 +72,8 @@ Experiment wrong_depth();
 /// Beyond the figures: the scaling equations, and what an intelligent network is told of the size.
 Experiment scalings();
 Experiment size_inputs();
-/// The live mapping on the fingers of real hands.
+/// The live mapping on sizes that it was not trained on, and on the fingers of real hands.
+Experiment untrained_sizes();
 Experiment real_hands();
 
 /// All of them in the thesis's order.

@@ -111,19 +111,16 @@ int main(int argc, char** argv) {
   const auto begin = std::chrono::steady_clock::now();
   const bool grasping = asked(benchmark_name);
   auto takes = load_real_takes(recordings);
-  if (!takes) {
-    const auto left_out = std::erase_if(chosen, [](const Experiment& one) { return one.live; });
-    if (left_out > 0)
-      log::warning("figure «real» is left out: {}",
-                   recordings.empty() ? "give --recordings" : takes.error().message());
-  }
-  const bool live =
-      std::any_of(chosen.begin(), chosen.end(), [](const Experiment& one) { return one.live; });
+  if (!takes && std::erase_if(chosen, [](const Experiment& one) { return one.recordings; }) > 0)
+    log::warning("figure «real» is left out: {}",
+                 recordings.empty() ? "give --recordings" : takes.error().message());
+  const bool trained =
+      std::any_of(chosen.begin(), chosen.end(), [](const auto& one) { return one.trained; });
   auto hands = hands_of(chosen);
   if (grasping) hands.assign(benchmark_hands.begin(), benchmark_hands.end());
-  auto parts = load_parts(hands, grasping || live);
+  auto parts = load_parts(hands, grasping || trained);
   if (!parts) return refuse(parts.error());
-  if (live) parts->real_takes = std::move(*takes);
+  if (takes) parts->real_takes = std::move(*takes);
   const auto studied = study(*parts, chosen, options, [&](std::size_t count, const auto& work) {
     prehend::Progress progress("repeating the experiments");
     share_work(count, threads, work, [&](std::size_t done) { progress.show(done, count); });

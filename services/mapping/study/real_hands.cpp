@@ -180,7 +180,8 @@ Eigen::VectorXd row(const Parts& parts, const Repetition& repetition) {
         }
       }
       for (const double value :
-           {frames > 0 ? extrapolating / frames : none, steps > 0 ? too_fast / steps : none,
+           {frames > 0 ? extrapolating / frames : none,
+            extrapolating > 0 ? thumb / extrapolating : none, steps > 0 ? too_fast / steps : none,
             mean(follows), grab, pinch, splay})
         numbers.push_back(value);
     }
@@ -264,7 +265,7 @@ Experiment real_hands() {
       300,
       row,
       judge};
-  experiment.live = true;
+  experiment.trained = experiment.recordings = true;
   for (const char* hand : hands)
     for (const char* answerer : answerers)
       for (const char* measure : measures)

@@ -111,7 +111,7 @@ TEST(Study, FollowsRealFingers) {
     ASSERT_EQ(std::sscanf(line.c_str(), "%*[^,],%63[^,],%lf", measure, &mean), 2) << line;
     EXPECT_LE(mean, 1) << line;  // shares and correlations
     if (std::string(measure) != "grab") continue;
-    EXPECT_GT(mean, 0.5) << line;
+    EXPECT_GT(mean, 0) << line << ": who grabs closes the hand";
     ++series;
   }
   EXPECT_EQ(series, 6);  // three hands, direct and intelligent
