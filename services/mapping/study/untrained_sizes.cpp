@@ -123,7 +123,7 @@ Experiment untrained_sizes() {
       "other people make of it; beside it the build's model, which was trained with it",
       {hands.begin(), hands.end()},
       {},
-      15,
+      9,
       270,
       row,
       judge};
