@@ -186,7 +186,7 @@ std::string mutate_lines(Random& random, std::string text) {
 }
 
 std::string mutate_text(Random& random, std::string text,
-                        std::string (*mutate_structure)(Random&, std::string)) {
+                        const std::function<std::string(Random&, std::string)>& mutate_structure) {
   for (std::size_t i = 0, changes = 1 + random.index(3); i < changes; ++i)
     switch (random.index(5)) {
       case 0:

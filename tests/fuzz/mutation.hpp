@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <prehend/base/random.hpp>
 #include <string>
 
@@ -19,8 +20,8 @@ std::string mutate_xml(Random& random, std::string text);
 std::string mutate_lines(Random& random, std::string text);
 
 /// One to three of these: bytes, numbers (twice as often), and as often what changes the structure
-/// of this kind of text, mutate_xml or mutate_lines.
+/// of this kind of text, as mutate_xml or mutate_lines does.
 std::string mutate_text(Random& random, std::string text,
-                        std::string (*mutate_structure)(Random&, std::string));
+                        const std::function<std::string(Random&, std::string)>& mutate_structure);
 
 }  // namespace prehend::fuzz

@@ -15,28 +15,15 @@ types::Library contract() {
 
 std::string mutate_type_text(Random& random, std::string text,
                              const std::vector<std::string>& pieces) {
-  for (std::size_t i = 0, changes = 1 + random.index(3); i < changes; ++i)
-    switch (random.index(8)) {
-      case 0:
-        text = mutate_bytes(random, std::move(text));
-        break;
-      case 1:
-      case 2:
-        text = mutate_number(random, std::move(text));
-        break;
-      case 3: {
-        const std::string& piece = pieces[random.index(pieces.size())];
-        const std::size_t at = random.index(text.size() + 1);
-        const std::size_t times = random.index(10) == 0 ? 50'000 : 1 + random.index(3);
-        std::string many;
-        for (std::size_t k = 0; k < times; ++k) many += piece;
-        text.insert(at, many);
-        break;
-      }
-      default:
-        text = mutate_lines(random, std::move(text));
-    }
-  return text;
+  return mutate_text(random, std::move(text), [&](Random&, std::string structured) {
+    if (random.index(5) > 0) return mutate_lines(random, std::move(structured));
+    const std::string& piece = pieces[random.index(pieces.size())];
+    const std::size_t at = random.index(structured.size() + 1);
+    const std::size_t times = random.index(10) == 0 ? 50'000 : 1 + random.index(3);
+    std::string many;
+    for (std::size_t k = 0; k < times; ++k) many += piece;
+    return structured.insert(at, many);
+  });
 }
 
 void decode_some(const types::Structure& type) {

@@ -194,11 +194,8 @@ TEST_F(Recording, OnAFullDiskItEndsCleanlyAndSaysSo) {
     auto process = record("disk/full.mcap", {"--keep-free", "0", "--compression", "none"});
     auto images = writer(dds::camera_image);
     meet(images);
-    v1::CameraImage image;
-    image.camera("camera");
-    image.data(std::vector<std::uint8_t>(60'000, 7));
     ASSERT_TRUE(eventually(20, [&] {
-      images.write(image);
+      images.write(image(60'000));
       std::this_thread::sleep_for(std::chrono::milliseconds(10));
       return process.exit().has_value();
     }));
@@ -222,11 +219,8 @@ TEST_F(Recording, ASplitRecordingBeginsWithWhatALateReaderWouldGet) {
   auto process = record("split.mcap", {"--split-size", "0.05", "--compression", "none"});
   auto images = writer(dds::camera_image);
   meet(images);
-  v1::CameraImage image;
-  image.camera("camera");
-  image.data(std::vector<std::uint8_t>(10'000, 7));
   ASSERT_TRUE(eventually(20, [&] {
-    images.write(image);
+    images.write(image(10'000));
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
     return std::filesystem::exists(file("split_2.mcap"));
   }));

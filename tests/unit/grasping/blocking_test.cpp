@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <prehend/grasping/blocking.hpp>
+#include <prehend/test_support/hands.hpp>
 
 namespace {
 
@@ -119,10 +120,8 @@ TEST(Blocking, RefusesNonsense) {
 }
 
 TEST(Blocking, AnOpenBarrettIsFree) {
-  const auto hand =
-      model::HandModel::load(std::string(PREHEND_SOURCE) + "/common/models/hands/barrett");
-  ASSERT_TRUE(hand);
-  const auto found = find_blocking(*hand, hand->joint_angles(hand->postures().at("open")));
+  const model::HandModel& hand = test::hand("barrett");
+  const auto found = find_blocking(hand, hand.joint_angles(hand.postures().at("open")));
   ASSERT_TRUE(found);
   EXPECT_TRUE(found->blocked.empty());
   EXPECT_EQ(found->order, (std::vector<int>{0, 1, 2}));

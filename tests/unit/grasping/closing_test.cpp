@@ -4,6 +4,7 @@
 
 #include <limits>
 #include <prehend/grasping/closing.hpp>
+#include <prehend/test_support/hands.hpp>
 
 namespace {
 
@@ -14,9 +15,7 @@ using Eigen::VectorXd;
 using model::ShapeKind;
 
 const model::HandModel& barrett() {
-  static const model::HandModel hand =
-      *model::HandModel::load(std::string(PREHEND_SOURCE) + "/common/models/hands/barrett");
-  return hand;
+  return test::hand("barrett");
 }
 
 /// Object's z along x of G (held from the side) or against z of G (held from above).

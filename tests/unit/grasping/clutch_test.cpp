@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <prehend/grasping/world.hpp>
+#include <prehend/test_support/hands.hpp>
 
 namespace {
 
@@ -13,9 +14,7 @@ using Eigen::Vector3d;
 using Eigen::VectorXd;
 
 const model::HandModel& barrett() {
-  static const model::HandModel hand =
-      *model::HandModel::load(std::string(PREHEND_SOURCE) + "/common/models/hands/barrett");
-  return hand;
+  return test::hand("barrett");
 }
 
 int joint_named(const std::string& name) {

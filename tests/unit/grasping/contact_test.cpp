@@ -4,6 +4,7 @@
 
 #include <prehend/analysis/materials.hpp>
 #include <prehend/grasping/world.hpp>
+#include <prehend/test_support/hands.hpp>
 
 namespace {
 
@@ -24,10 +25,8 @@ TEST(SoftFinger, RubberHasTorsionAndNothingElseHas) {
 }
 
 TEST(SoftFinger, ContactsInTheWorldCarryWhatTheWorldUses) {
-  const auto hand =
-      model::HandModel::load(std::string(PREHEND_SOURCE) + "/common/models/hands/barrett");
-  ASSERT_TRUE(hand);
-  auto world = std::move(*World::create(*hand, make_pose(Vector3d(0, 0, 1)), VectorXd::Zero(4),
+  const model::HandModel& hand = test::hand("barrett");
+  auto world = std::move(*World::create(hand, make_pose(Vector3d(0, 0, 1)), VectorXd::Zero(4),
                                         {.table = false, .gravity_W = Vector3d::Zero()}));
   world->set_object_damping(20);
   const Body ball{"ball", {model::ShapeKind::sphere, Vector3d::Constant(0.03)}, 0.1, "wood", {}};

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <prehend/grasping/hold_test.hpp>
+#include <prehend/test_support/hands.hpp>
 
 namespace {
 
@@ -12,9 +13,7 @@ using Eigen::Vector3d;
 using Eigen::VectorXd;
 
 const model::HandModel& barrett() {
-  static const model::HandModel hand =
-      *model::HandModel::load(std::string(PREHEND_SOURCE) + "/common/models/hands/barrett");
-  return hand;
+  return test::hand("barrett");
 }
 
 Body cylinder(double radius, double height, double mass) {

@@ -9,6 +9,7 @@
 #include <fstream>
 #include <limits>
 #include <prehend/grasping/mesh_body.hpp>
+#include <prehend/test_support/hands.hpp>
 
 namespace {
 
@@ -192,9 +193,7 @@ TEST(ConvexPartsOf, MorePartsComeNearerToACurvedHollow) {
 }
 
 const model::HandModel& barrett() {
-  static const model::HandModel hand =
-      *model::HandModel::load(std::string(PREHEND_SOURCE) + "/common/models/hands/barrett");
-  return hand;
+  return test::hand("barrett");
 }
 
 TEST_F(MeshFile, ABodyRestsOnTheTableWithItsHollowFree) {

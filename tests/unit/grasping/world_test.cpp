@@ -5,6 +5,7 @@
 #include <limits>
 #include <prehend/grasping/hold_test.hpp>
 #include <prehend/grasping/world.hpp>
+#include <prehend/test_support/hands.hpp>
 
 namespace {
 
@@ -14,9 +15,7 @@ using Eigen::Vector3d;
 using Eigen::VectorXd;
 
 const model::HandModel& barrett() {
-  static const model::HandModel hand =
-      *model::HandModel::load(std::string(PREHEND_SOURCE) + "/common/models/hands/barrett");
-  return hand;
+  return test::hand("barrett");
 }
 
 const Body talc{"Talc", {model::ShapeKind::cylinder, {0.024, 0.024, 0.105}}, 0.15, "plastic", {}};

@@ -122,7 +122,7 @@ TEST(Lockstep, AMissingServiceIsNamed) {
   std::random_device device;
   auto participant = dds::Participant::create({.name = "test",
                                                .domain = static_cast<int>(device() % 200),
-                                               .rig = "empty",
+                                               .rig = "empty-" + std::to_string(getpid()),
                                                .lockstep = true});
   auto conductor = Conductor::create(*participant, {"nobody"});
   const auto stepped = conductor->step(from_ns(1), 50ms);

@@ -5,6 +5,7 @@
 #include <limits>
 #include <prehend/model/hand_model.hpp>
 #include <prehend/simulation/simulation.hpp>
+#include <prehend/test_support/hands.hpp>
 
 namespace {
 
@@ -18,9 +19,7 @@ constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 const Time start = from_ns(1'700'000'000'000'000'000);
 
 const model::HandModel& barrett() {
-  static const model::HandModel hand =
-      *model::HandModel::load(std::string(PREHEND_SOURCE) + "/common/models/hands/barrett");
-  return hand;
+  return test::hand("barrett");
 }
 
 const grasping::Body talc{

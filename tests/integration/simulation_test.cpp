@@ -1,0 +1,116 @@
+// The simulation alone over real DDS: commands at 30 Hz reach for an object that was only seen,
+// close and lift; the report comes while the world goes on, and commands that cannot be followed
+// are counted.
+#include <prehend/dds/convert.hpp>
+#include <prehend/test_support/hands.hpp>
+
+#include "rig.hpp"
+
+namespace prehend::integration {
+namespace {
+
+using Eigen::Vector3d;
+
+/// Where the palm is, and how far the fingers have closed, rad.
+v1::HandCommand command(const Vector3d& p_WG, double closure) {
+  Eigen::Matrix3d R;  // palm along y, its x axis up
+  R.col(0) = Vector3d::UnitZ();
+  R.col(2) = Vector3d::UnitY();
+  R.col(1) = R.col(2).cross(R.col(0));
+  v1::HandCommand message;
+  message.hand("hand");
+  message.model("barrett");
+  message.stamp_ns(now_ns());
+  message.origin_ns(now_ns());
+  message.dof({0, closure, closure, closure});
+  message.X_WB(dds::to_message(make_pose(p_WG, R) * test::hand("barrett").X_BG().inverse()));
+  message.mode(v1::MODE_DIRECT);
+  return message;
+}
+
+class Simulation : public Rig {
+ protected:
+  template <class P>
+  dds::Writer<typename P::type> writer(const dds::Topic<P>& topic) {
+    auto made = participant_->writer(topic);
+    if (!made) throw std::runtime_error(made.error().message());
+    return std::move(*made);
+  }
+};
+
+TEST_F(Simulation, GraspsWhatWasSeenAndReportsIt) {
+  auto commands = writer(dds::robot_command);
+  auto detections = writer(dds::object_detection);
+  auto states = reader(dds::robot_state);
+  auto objects = reader(dds::object_state);
+  auto reports = reader(dds::grasp_report);
+  auto statuses = reader(dds::service_status);
+  auto process = start("simulation");
+  ASSERT_TRUE(hear<v1::HandState>(states, 20, [](auto&) { return true; }));
+
+  v1::ObjectDetection detection;
+  detection.name("Talc");
+  detection.shape(v1::SHAPE_CYLINDER);
+  detection.size(dds::to_message(Vector3d(0.024, 0.024, 0.105)));
+  detection.X_WO(dds::to_message(make_pose(Vector3d(0, 0, 0.05))));
+  detection.stamp_ns(now_ns());
+  ASSERT_TRUE(detections.write(detection));
+  ASSERT_TRUE(hear<v1::ObjectState>(objects, 20, [](auto&) { return true; }));
+
+  std::optional<v1::GraspReport> report;
+  double height = 0;  // of the object in the living world
+  const auto send = [&](double y, double z, double closure) {
+    commands.write(command({0, y, z}, closure));
+    std::this_thread::sleep_for(std::chrono::milliseconds(33));
+    for (auto& sample : reports.take())
+      if (!report) report = sample.data;
+    for (auto& sample : objects.take())
+      if (!sample.info.gone) height = sample.data.X_WO().position().z();
+  };
+  for (double to_go = 0.25; to_go > 0; to_go -= 0.007) send(-to_go, 0.06, 0);
+  for (double closure = 0; closure < 1.4; closure += 0.06) send(0, 0.06, closure);
+  ASSERT_TRUE(eventually(20, [&] {
+    send(0, 0.06, 1.4);
+    return report.has_value();
+  })) << "no grasp/report";
+  EXPECT_EQ(report->object().to_string(), "Talc");
+  EXPECT_TRUE(report->held()) << report->reason().to_string();
+  EXPECT_TRUE(report->force_closure());
+  EXPECT_GT(report->epsilon(), 0);
+  EXPECT_GE(report->contacts().size(), 3u);
+
+  for (double lift = 0; lift < 0.12; lift += 0.005) send(0, 0.06 + lift, 1.4);
+  EXPECT_TRUE(eventually(20, [&] {
+    send(0, 0.18, 1.4);
+    return height > 0.12;
+  })) << "the living world has not lifted it";
+
+  // Nonsense is counted; again and again, since of commands only the newest is read.
+  bool wrong_length = false, not_finite = false, has_latency = false;
+  EXPECT_TRUE(eventually(
+      20,
+      [&] {
+        auto wrong = command({0, 0, 0.18}, 1.4);
+        wrong.dof({0, 0});
+        commands.write(wrong);
+        std::this_thread::sleep_for(std::chrono::milliseconds(10));
+        wrong = command({0, 0, std::nan("")}, 1.4);
+        commands.write(wrong);
+        send(0, 0.18, 1.4);
+        for (auto& sample : statuses.take()) {
+          for (const auto& drop : sample.data.drops()) {
+            wrong_length |= drop.reason().to_string() == "command of wrong length";
+            not_finite |= drop.reason().to_string() == "command not finite";
+          }
+          for (const auto& stage : sample.data.latency())
+            has_latency |= stage.stage().to_string() == "glove to accepted" && stage.count() > 0;
+        }
+        return wrong_length && not_finite && has_latency;
+      }))
+      << wrong_length << not_finite << has_latency;
+  EXPECT_GT(height, 0.12) << "it must be held still";
+  EXPECT_EQ(process.stop(seconds(10)).code, 0);
+}
+
+}  // namespace
+}  // namespace prehend::integration
