@@ -10,11 +10,9 @@
 #include <termios.h>
 #include <unistd.h>
 
-#include <atomic>
 #include <csignal>
 #include <fstream>
 #include <map>
-#include <mutex>
 #include <nlohmann/json.hpp>
 #include <prehend/mcap/reader.hpp>
 #include <random>
@@ -139,20 +137,13 @@ TEST_F(Recording, KilledAtAnyMomentItsFileIsReadableButForTheLastSecond) {
   std::mt19937 random(std::random_device{}());
   // Volatile: a late recorder of a topic that keeps all is first given what was before.
   auto postures = writer(dds::hand_posture);
-  std::atomic<bool> stop = false;
-  std::mutex mutex;
-  std::map<std::uint64_t, std::int64_t> sent;  // number: when
-  std::thread source([&] {
-    for (std::uint64_t i = 0; !stop; ++i) {
+  const std::jthread source([&](const std::stop_token& stop) {
+    for (std::uint64_t i = 0; !stop.stop_requested(); ++i) {
       v1::HandPosture posture;
       posture.glove("glove");
       posture.sequence_number(i);
       posture.stamp_ns(now_ns());
       postures.write(posture);
-      {
-        const std::scoped_lock lock(mutex);
-        sent[i] = posture.stamp_ns();
-      }
       std::this_thread::sleep_for(std::chrono::milliseconds(2));
     }
   });
@@ -181,8 +172,6 @@ TEST_F(Recording, KilledAtAnyMomentItsFileIsReadableButForTheLastSecond) {
     EXPECT_GT(last, killed - 1'000'000'000) << "more than a second is gone";
     std::filesystem::remove(file(name));
   }
-  stop = true;
-  source.join();
 }
 
 TEST_F(Recording, OnAFullDiskItEndsCleanlyAndSaysSo) {
