@@ -26,7 +26,7 @@ const std::vector<ConfigKey>& config_keys() {
       {"glove.user", Text("anyone"), "who wears the glove"},
       {"glove.hand", Text("right"), "right, or left, which is mirrored into a right one"},
       {"glove.hand_scale", 1.0, "length of the user's hand, 1 = average adult"},
-      {"glove.port", Text(""), "serial port of the tracker"},
+      {"glove.port", Text(""), "serial port, or host:port where landmarks come"},
       {"glove.baud", std::int64_t{115200}, "bits per second on that port"},
       {"glove.sites", Names{"back_of_hand", "thumb", "index", "little"},
        "where the tracker's sensors sit, in the order of their addresses"},

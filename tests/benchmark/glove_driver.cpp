@@ -1,11 +1,12 @@
-// The bird driver at 100 Hz and four sensors, with both records that carry a whole pose well:
-//  - its processor time, alone in a process, as a share of one core (aim: below 1 %)
+// The drivers of gloves at 100 Hz, the tracker with four sensors and both records that carry a
+// whole pose well:
+//  - a driver's processor time, alone in a process, as a share of one core (aim: below 1 %)
 //  - from the last byte of a frame on the line until the service has published the posture, against
-//    a floor in the same run: a process that reads the same bytes from a bare pseudo-terminal and
+//    a floor in the same run: a process that reads as many bytes from a bare pseudo-terminal and
 //    writes a posture to DDS (aim: at most twice that)
-// All three hang on pseudo-terminals of this process, which is the tracker, and are served in turn,
-// so that a machine that changes its speed changes all of them. A sample's source time stamp tells
-// when it was published.
+// All three hang on lines of this process, which is the glove, and are served in turn, so that a
+// machine that changes its speed changes all of them. A sample's source time stamp tells when it
+// was published.
 //
 //   benchmark_glove_driver [--json] [--seconds S]
 #include <fcntl.h>
@@ -19,7 +20,6 @@
 #include <nlohmann/json.hpp>
 #include <prehend/base/paths.hpp>
 #include <prehend/dds/participant.hpp>
-#include <prehend/glove_devices/bird_emulator.hpp>
 #include <prehend/glove_devices/device.hpp>
 #include <prehend/glove_devices/paced.hpp>
 #include <prehend/glove_devices/pseudo_terminal.hpp>
@@ -31,10 +31,8 @@ namespace prehend {
 namespace {
 
 using namespace std::chrono_literals;
-using glove::bird::Emulator;
 
 constexpr double rate = 100;
-constexpr std::size_t sensors = 4;
 
 template <class T>
 T must(Expected<T> made) {
@@ -72,12 +70,17 @@ int floor(const std::string& port, int domain, const std::string& rig, std::size
   }
 }
 
-/// The driver, and nobody who listens.
-int driver(const std::string& port, const std::string& format) {
+glove::DeviceOptions device_options(const std::string& port, const std::string& format) {
   glove::DeviceOptions options;
   options.port = port;
   options.format = format;
-  const auto device = must(must(glove::find_device("nest_of_birds")).create(options));
+  options.rate = rate;
+  return options;
+}
+
+/// The driver, and nobody who listens.
+int driver(const std::string& kind, const std::string& port, const std::string& format) {
+  const auto device = must(must(glove::find_device(kind)).create(device_options(port, format)));
   device->start({.frame = [](const glove::Frame&) {},
                  .degraded = [](const std::string&) {},
                  .drop = [](std::string_view, std::uint64_t) {}});
@@ -97,13 +100,62 @@ double cpu_time(pid_t pid) {
   return (user + system) / static_cast<double>(::sysconf(_SC_CLK_TCK));
 }
 
-/// A line with a tracker at this end.
-struct TrackerLine {
-  glove::PseudoTerminal terminal = must(glove::PseudoTerminal::open({}));
-  Emulator tracker{{}};
+/// A line with a device at this end.
+class DeviceLine {
+ public:
+  DeviceLine(const glove::DeviceKind& kind, const std::string& format)
+      : datagrams_(kind.line == glove::Line::datagrams) {
+    const std::string address =
+        datagrams_ ? fmt::format("127.0.0.1:{}", 20000 + std::random_device{}() % 10000) : "";
+    const auto emulation = glove::emulation_of(kind, device_options(address, format), {});
+    plug_ = must(emulation.plug_in());
+    device_ = emulation.device();
+  }
 
-  void listen(Duration now) { terminal.write(tracker.receive(terminal.read(0ns), now)); }
+  std::string where() const { return plug_->where(); }
+  void listen(Duration now) {
+    const std::string answer = device_->receive(plug_->read(0ns), now);
+    if (!answer.empty()) plug_->write(answer);
+  }
+  /// Sends all but the last byte. False: the device has nothing to say.
+  bool begin(const glove::Frame& frame, Duration now) {
+    rest_.clear();
+    for (const std::string& record : device_->measure(frame, now)) rest_ += record;
+    sent_ += rest_.size();
+    if (rest_.empty() || datagrams_) return !rest_.empty();
+    plug_->write(std::string_view(rest_).substr(0, rest_.size() - 1));
+    rest_.erase(0, rest_.size() - 1);
+    return true;
+  }
+  void finish() {
+    if (!rest_.empty()) plug_->write(rest_);
+  }
+  std::size_t sent() const { return sent_; }
+
+ private:
+  bool datagrams_;
+  std::unique_ptr<glove::Plug> plug_;
+  std::unique_ptr<glove::Emulator> device_;
+  std::string rest_;
+  std::size_t sent_ = 0;
 };
+
+/// A hand that opens and closes and moves to and fro.
+glove::Frame hand(int n) {
+  const double wave = std::sin(0.02 * n);
+  const double closure = 0.4 + 0.3 * wave;
+  const auto posture = model::HumanHand::posture({closure, closure, closure, closure, closure});
+  const Pose X_TH = make_pose({0.05 * wave, -0.4, 0.02});
+  glove::Frame frame;
+  frame.readings.push_back(
+      {glove::Site::back_of_hand, true, X_TH.translation(), Eigen::Quaterniond::Identity()});
+  const auto tips = model::HumanHand(1).fingertip_poses(posture);
+  for (std::size_t f = 0; f < tips.size(); ++f)
+    frame.readings.push_back({static_cast<glove::Site>(f + 1), true, X_TH * tips[f].translation(),
+                              Eigen::Quaterniond::Identity()});
+  frame.joint_angles.assign(posture.begin(), posture.end());
+  return frame;
+}
 
 struct Figures {
   double driver_cpu = 0, service_cpu = 0;  // share of a core
@@ -118,25 +170,14 @@ double median(std::vector<double> values) {
   return values[values.size() / 2];
 }
 
-Figures measure(const std::string& format, double length, const std::string& self) {
+Figures measure(const std::string& kind, const std::string& format, double length,
+                const std::string& self) {
   const int domain = static_cast<int>(std::random_device{}() % 200);
   const std::string rig = fmt::format("glove-driver-{}", ::getpid());
-  TrackerLine driver_line, service_line;
+  const auto row = must(glove::find_device(kind));
+  DeviceLine driver_line(row, format), service_line(row, format);
   auto floor_line = must(glove::PseudoTerminal::open({}));
-
-  glove::Frame frame;
-  for (std::size_t s = 0; s < sensors; ++s)
-    frame.readings.push_back({glove::usual_sites()[s], true,
-                              Eigen::Vector3d(0.03 * static_cast<double>(s), -0.4, 0.02),
-                              Eigen::Quaterniond::Identity()});
-  // Without a wave every frame would be the same.
-  const auto waving = [&](int n) {
-    glove::Frame moved = frame;
-    for (auto& reading : moved.readings) reading.p_TS.x() += 0.05 * std::sin(0.02 * n);
-    return moved;
-  };
-  const std::size_t bytes =
-      sensors * (glove::bird::info(*glove::bird::format_of_name(format)).length + 1);
+  constexpr std::size_t bytes = 100;  // as four sensors' matrices have
 
   auto participant = join(domain, rig, "watcher");
   auto reader = must(participant.reader(dds::hand_posture));
@@ -144,13 +185,14 @@ Figures measure(const std::string& format, double length, const std::string& sel
   const auto spawn = [&](std::vector<std::string> command) {
     return must(service::Process::start({.command = std::move(command), .log = log}));
   };
-  auto driver_process = spawn({self, "--driver", driver_line.terminal.path(), format});
+  auto driver_process = spawn({self, "--driver", kind, driver_line.where(), format});
   auto floor_process = spawn(
       {self, "--floor", floor_line.path(), std::to_string(domain), rig, std::to_string(bytes)});
   auto service_process =
       spawn({(program_directory() / "prehend-glove").string(), "--set", "lab.rig=" + rig, "--set",
-             "lab.domain=" + std::to_string(domain), "--set", "glove.device=nest_of_birds", "--set",
-             "glove.port=" + service_line.terminal.path(), "--set", "glove.format=" + format});
+             "lab.domain=" + std::to_string(domain), "--set", "glove.device=" + kind, "--set",
+             "glove.port=" + service_line.where(), "--set", "glove.format=" + format, "--set",
+             fmt::format("glove.rate={}", rate)});
 
   Figures figures;
   std::vector<double> floors, services;
@@ -174,25 +216,17 @@ Figures measure(const std::string& format, double length, const std::string& sel
       std::this_thread::sleep_for(
           std::min<Duration>(1ms, std::max<Duration>(0ns, due - elapsed())));
     }
-    const auto joined = [](const std::vector<std::string>& records) {
-      std::string all;
-      for (const std::string& record : records) all += record;
-      return all;
-    };
-    const std::string to_driver = joined(driver_line.tracker.measure(waving(n), elapsed()));
-    const std::string to_service = joined(service_line.tracker.measure(waving(n), elapsed()));
+    const glove::Frame frame = hand(n);
+    if (driver_line.begin(frame, elapsed())) driver_line.finish();
+    const bool any = service_line.begin(frame, elapsed());
     const std::string to_floor(bytes, 'x');
-    driver_line.terminal.write(to_driver);
-    // All but the last byte, so that only its way is measured.
     floor_line.write(std::string_view(to_floor).substr(1));
-    service_line.terminal.write(
-        std::string_view(to_service).substr(0, to_service.size() - !to_service.empty()));
     std::this_thread::sleep_for(2ms);
     floor_sent = glove::system_now();
     floor_line.write("x");
     std::this_thread::sleep_for(2ms);
     service_sent = glove::system_now();
-    if (!to_service.empty()) service_line.terminal.write(to_service.substr(to_service.size() - 1));
+    if (any) service_line.finish();
     std::this_thread::sleep_for(2ms);
     for (const auto& sample : reader.take()) {
       if (sample.info.gone || cpu_begin == 0) continue;
@@ -207,7 +241,7 @@ Figures measure(const std::string& format, double length, const std::string& sel
   figures.floor_us = median(floors);
   figures.service_us = median(services);
   figures.samples = services.size();
-  if (services.empty()) {
+  if (services.empty() || driver_line.sent() == 0) {
     std::cerr << "no postures: " << service::last_lines(log, 5) << "\n";
     std::exit(3);
   }
@@ -218,9 +252,14 @@ Figures measure(const std::string& format, double length, const std::string& sel
 
 int run(bool json, double length, const std::string& self) {
   nlohmann::json rows = nlohmann::json::array();
-  for (const char* format : {"position_quaternion", "position_matrix"}) {
-    const Figures f = measure(format, length, self);
-    rows.push_back({{"format", format},
+  const std::pair<const char*, const char*> devices[] = {{"nest_of_birds", "position_quaternion"},
+                                                         {"nest_of_birds", "position_matrix"},
+                                                         {"joint_glove", "-"},
+                                                         {"landmarks", "-"}};
+  for (const auto& [kind, format] : devices) {
+    const Figures f = measure(kind, *format == '-' ? "position_matrix" : format, length, self);
+    rows.push_back({{"device", kind},
+                    {"format", format},
                     {"driver_cpu_percent", 100 * f.driver_cpu},
                     {"service_cpu_percent", 100 * f.service_cpu},
                     {"floor_us", f.floor_us},
@@ -229,10 +268,10 @@ int run(bool json, double length, const std::string& self) {
                     {"samples", f.samples}});
     if (!json)
       fmt::print(
-          "{}: driver {:.2f} % of a core, the whole service {:.2f} %; last byte to published: "
+          "{} {}: driver {:.2f} % of a core, the whole service {:.2f} %; last byte to published: "
           "floor "
           "{:.0f} us, service {:.0f} us, ratio of medians {:.2f} ({} frames)\n",
-          format, 100 * f.driver_cpu, 100 * f.service_cpu, f.floor_us, f.service_us,
+          kind, format, 100 * f.driver_cpu, 100 * f.service_cpu, f.floor_us, f.service_us,
           f.service_us / f.floor_us, f.samples);
   }
   if (json) std::cout << rows.dump() << "\n";
@@ -245,7 +284,7 @@ int run(bool json, double length, const std::string& self) {
 int main(int argc, char** argv) {
   using namespace prehend;
   const std::string_view role = argc > 1 ? argv[1] : "";
-  if (role == "--driver" && argc == 4) return driver(argv[2], argv[3]);
+  if (role == "--driver" && argc == 5) return driver(argv[2], argv[3], argv[4]);
   if (role == "--floor" && argc == 6)
     return floor(argv[2], std::atoi(argv[3]), argv[4], std::strtoul(argv[5], nullptr, 10));
   bool json = false;
