@@ -58,6 +58,8 @@ class JointGlove final : public Device {
       : path_(options.port),
         baud_(options.baud),
         rate_(options.rate),
+        left_(options.left),
+        left_to_right_T_(left_to_right(options.X_WT)),
         gains_(options.joint_gains),
         wrist_(tracker ? std::make_unique<Wrist>(std::move(tracker)) : nullptr) {
     const Pose X_TH = options.X_WT.inverse() * options.scene.X_WH;
@@ -154,6 +156,9 @@ class JointGlove final : public Device {
     const model::HumanPosture posture =
         joint_angles(std::vector<double>(counts.begin(), counts.end()), gains_);
     frame.joint_angles.assign(posture.begin(), posture.end());
+    // Joint angles are those of either hand; a tracker's pose is mirrored, the scene's is not.
+    if (left_ && wrist_) frame = mirrored(std::move(frame), left_to_right_T_);
+    frame.left = left_;
     thread_.well();
     sink_.frame(std::move(frame));
   }
@@ -161,6 +166,8 @@ class JointGlove final : public Device {
   std::string path_;
   int baud_;
   double rate_;
+  bool left_;
+  Eigen::Vector3d left_to_right_T_;
   JointGains gains_;
   Reading resting_{};
   DeviceSink sink_;

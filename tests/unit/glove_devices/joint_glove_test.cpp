@@ -100,6 +100,38 @@ TEST(JointGlove, TakesTheHandFromATracker) {
   EXPECT_GT(listener.all().size(), before);
 }
 
+// The scene says where the right hand is that a left one becomes; only a tracker's pose is
+// mirrored.
+TEST(JointGlove, MirrorsALeftHandsTracker) {
+  DeviceOptions options;
+  options.left = true;
+  options.port = link_path("left");
+  options.scene.X_WH = make_pose({0.2, 0, 0.25});
+  const StillHand hand(half_closed());
+  const EmulatedDevice glove(emulation("joint_glove", options, options.port), hand);
+  {
+    Listener listener;
+    const auto device = make(options);
+    device->start(listener.sink());
+    ASSERT_TRUE(listener.frames(3));
+    const Frame frame = listener.all().back();
+    EXPECT_TRUE(frame.left);
+    EXPECT_LT((frame.readings[0].p_TS - Eigen::Vector3d(0.2, 0, 0.25)).norm(), 1e-12);
+  }
+  options.wrist_port = link_path("leftwrist");
+  DeviceOptions one = options;
+  one.sites = {Site::back_of_hand};
+  const EmulatedDevice tracker(emulation("nest_of_birds", one, options.wrist_port), hand);
+  Listener listener;
+  const auto device = make(options);
+  device->start(listener.sink());
+  ASSERT_TRUE(listener.frame_with([](const Frame& f) { return f.readings[0].valid; }));
+  const Frame frame = listener.all().back();
+  EXPECT_TRUE(frame.left);
+  EXPECT_LT((frame.readings[0].p_TS - Eigen::Vector3d(-0.1, -0.3, 0.2)).norm(), 3e-4);
+  EXPECT_NEAR(frame.joint_angles[1], half_closed().joint_angles[1], 0.0134);
+}
+
 TEST(JointGlove, RefusesAWrongConfiguration) {
   const auto kind = find_device("joint_glove");
   DeviceOptions options;
