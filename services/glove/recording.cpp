@@ -141,7 +141,7 @@ Expected<Recording> Recording::parse(std::string_view text, std::string_view nam
   for (const Hand& hand : hands) left += hand.bare.left;
   made.left_ = left > 0 && left == hands.size();
   const Pose X_TH = options.X_WT.inverse() * options.X_WH;
-  std::optional<double> first, last;
+  std::optional<double> first;
   for (Hand& hand : hands) {
     if (hand.bare.left && !made.left_) {
       ++made.other_hand_;
@@ -149,16 +149,20 @@ Expected<Recording> Recording::parse(std::string_view text, std::string_view nam
     }
     if (hand.bare.left) mirror(hand.bare, Vector3d::UnitX());
     auto frame = sensors_on(hand.bare, options.hand_scale, X_TH);
-    // Two hands of the same kind in one picture: the second is a false one. Days later: nonsense.
-    const bool in_time = !last || (hand.time > *last && hand.time - *first < 1e6);
-    if (!frame || !in_time) {
+    // Days before or later: nonsense.
+    const double since = hand.time - first.value_or(hand.time);
+    if (!frame || !(std::abs(since) < 1e6)) {
       ++made.unreadable_;
       continue;
     }
-    last = hand.time;
+    frame->stamp = Time(seconds(since));
+    // Two hands of the same kind in one picture: the second is a false one.
+    if (!made.frames_.empty() && frame->stamp <= made.frames_.back().stamp) {
+      ++made.unreadable_;
+      continue;
+    }
     if (!first) first = hand.time;
     frame->sequence = made.frames_.size();
-    frame->stamp = Time(seconds(hand.time - *first));
     made.frames_.push_back(std::move(*frame));
   }
   if (made.frames_.empty())

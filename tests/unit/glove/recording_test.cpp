@@ -191,6 +191,16 @@ TEST(Recording, SkipsWhatIsNoHand) {
   EXPECT_EQ(recording->unreadable(), 4u);
 }
 
+// Found by fuzzing: times that differ by less than the nanosecond of a stamp made two equal stamps.
+TEST(Recording, RefusesTwoTimesWithinANanosecond) {
+  std::string second = leap(0, false);
+  second.replace(second.find(",0,"), 3, ",0.0001,");  // t_us
+  const auto recording = Recording::parse(leap_header() + leap(0, false) + second, "close", room);
+  ASSERT_TRUE(recording);
+  EXPECT_EQ(recording->size(), 1u);
+  EXPECT_EQ(recording->unreadable(), 1u);
+}
+
 TEST(Recording, RefusesOtherFiles) {
   EXPECT_FALSE(Recording::load("/nowhere/to/be/found.csv", room));
   EXPECT_FALSE(Recording::load("/", room));
