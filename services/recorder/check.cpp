@@ -70,12 +70,18 @@ struct RecordedLab {
   std::map<std::string, std::string> configuration;
   std::string scene;
 };
+bool is_setting(const std::string& name) {
+  const auto& keys = service::config_keys();
+  return std::any_of(keys.begin(), keys.end(), [&](const auto& key) { return key.name == name; });
+}
+/// Settings that there were when it was made and are no more are left out.
 RecordedLab recorded_lab(const mcap::Reader& reader) {
   RecordedLab lab;
   for (const auto& index : reader.contents().metadata)
     if (index.name == recording::configuration_record)
       if (const auto record = reader.metadata(index))
-        for (const auto& [key, value] : record->metadata) lab.configuration[key] = value;
+        for (const auto& [key, value] : record->metadata)
+          if (is_setting(key)) lab.configuration[key] = value;
   for (const auto& index : reader.contents().attachments)
     if (index.name == recording::scene_attachment) {
       mcap::Bytes buffer;
