@@ -1,5 +1,9 @@
 #include "processor.hpp"
 
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
 #include "features.hpp"
 
 namespace prehend::glove {
@@ -7,17 +11,25 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double farthest = 5;           // m from the transmitter, twice what any tracker reaches
-constexpr double longest_finger = 0.28;  // m from H to a fingertip of an average hand, with margin
+constexpr double farthest = 5;  // m from the transmitter, twice what any tracker reaches
+
+/// A fingertip is at most its bones' lengths from where its finger begins; who has not been
+/// measured may be a third longer, and sensors sit somewhat off.
+constexpr double longer = 1.35, off = 0.03;  // off in m
 
 /// rad, that a glove's joint angle may lie outside of what joints do: fingers bend further and
 /// calibrations are worse than the average; more is a broken sensor.
 constexpr double beyond_limits = 0.7;
 
 /// The end of a unit axis moves as far as the angle turns: 300 rad/s², 15 rad/s, 0.1 rad of noise.
-constexpr GateOptions turning{.noise = 0.1, .acceleration = 300, .agreement = 15};
+constexpr GateOptions turning{
+    .noise = 0.1, .onset = 300, .acceleration = 300, .farthest = 2, .agreement = 15};
 /// Relative to the hand, fingers are slower than the arm.
-constexpr GateOptions bending{.noise = 0.015, .acceleration = 25, .agreement = 1.5};
+constexpr GateOptions bending{.acceleration = 25, .agreement = 1.5};
+
+/// m, that a finger may have gone on meanwhile when its last place is still given.
+constexpr double carried_past = 0.002;
+constexpr double speed_memory = 0.05;  // s
 
 /// The pose of a reading; `reason` says why there is none.
 std::optional<Pose> checked(const Reading& reading, std::string_view& reason) {
@@ -49,7 +61,14 @@ Processor::Processor(const ProcessorOptions& options)
       x_gate_(turning),
       z_gate_(turning),
       hand_filter_(OneEuroOptions{}),
-      hand_rotation_(OneEuroOptions{.slope = 5}) {}
+      hand_rotation_(OneEuroOptions{.slope = 5}) {
+  for (std::size_t f = 0; f < fingers_.size(); ++f) {
+    const auto which = static_cast<model::Finger>(f);
+    const auto bones = options.hand.bones(which);
+    fingers_[f].base = options.hand.base(which);
+    fingers_[f].reach = longer * std::accumulate(bones.begin(), bones.end(), 0.0) + off;
+  }
+}
 
 Processor::Finger::Finger() : gate(bending), filter(OneEuroOptions{}) {}
 
@@ -64,10 +83,14 @@ Processed Processor::process(const Frame& frame, Time now) {
     result.rejects.push_back("out of order");
     return result;
   }
+  before_ = last_;
   last_ = frame.stamp;
 
   const std::optional<Pose> X_TH = back_of_hand(frame, result);
   if (!X_TH) return result;
+  if (std::count_if(frame.readings.begin(), frame.readings.end(),
+                    [](const Reading& reading) { return reading.site == Site::back_of_hand; }) > 1)
+    result.rejects.push_back("second hand");
 
   const auto q = angles(frame, result);
   Posture posture;
@@ -85,15 +108,17 @@ Processed Processor::process(const Frame& frame, Time now) {
     ++sensors;
     Finger& finger = fingers_[f];
     if (p_HF && follow(finger, frame.stamp, *p_HF, result)) ++good;
-    posture.fingertips[f].valid =
-        finger.seen && to_seconds(frame.stamp - *finger.seen) <= options_.carry;
+    posture.fingertips[f].valid = can_be_carried(finger, frame.stamp);
     if (posture.fingertips[f].valid) posture.fingertips[f].p_HF = finger.p_HF;
   };
   for (const Reading& reading : frame.readings) {
     const auto which = finger_of(reading.site);
     if (!which) continue;
     const auto f = static_cast<std::size_t>(*which);
-    if (!done[f]) take(f, sensed(reading, *X_TH, result));  // a site counts once
+    if (done[f])
+      result.rejects.push_back("second hand");  // a site counts once
+    else
+      take(f, sensed(reading, *X_TH, result));
   }
   if (!frame.joint_angles.empty()) {
     const auto tips = options_.hand.fingertip_poses(q.value_or(model::HumanPosture::Zero()));
@@ -103,6 +128,12 @@ Processed Processor::process(const Frame& frame, Time now) {
   posture.quality = static_cast<double>(good) / sensors;
   result.posture = std::move(posture);
   return result;
+}
+
+bool Processor::can_be_carried(const Finger& finger, Time stamp) const {
+  if (!finger.seen) return false;
+  const double unseen = to_seconds(stamp - *finger.seen);
+  return unseen <= options_.carry && finger.speed * unseen <= carried_past;
 }
 
 std::optional<Pose> Processor::back_of_hand(const Frame& frame, Processed& result) {
@@ -160,16 +191,24 @@ std::optional<model::HumanPosture> Processor::angles(const Frame& frame, Process
 }
 
 bool Processor::follow(Finger& finger, Time stamp, const Vector3d& p_HF, Processed& result) {
-  if (p_HF.norm() > longest_finger * options_.hand.scale()) {
+  if ((p_HF - finger.base).norm() > finger.reach) {
     result.rejects.push_back("extreme point");
     return false;
   }
   const PointGate::Verdict verdict = finger.gate.check(stamp, p_HF);
   if (verdict != PointGate::Verdict::good) {
     result.rejects.push_back(reason_of(verdict));
+    // Elsewhere, and not seen in the frame before either: the finger may well have gone.
+    if (finger.seen != before_) finger.seen.reset();
     return false;
   }
-  finger.p_HF = finger.filter(stamp, p_HF);
+  const Vector3d p_HF_filtered = finger.filter(stamp, p_HF);
+  if (finger.seen) {
+    const double dt = to_seconds(stamp - *finger.seen);
+    finger.speed = std::max((p_HF_filtered - finger.p_HF).norm() / dt,
+                            finger.speed * std::exp(-dt / speed_memory));
+  }
+  finger.p_HF = p_HF_filtered;
   finger.seen = stamp;
   return true;
 }
