@@ -25,6 +25,7 @@ const std::vector<ConfigKey>& config_keys() {
        "topic, nest_of_birds, joint_glove, landmarks, recording or synthetic"},
       {"glove.user", Text("anyone"), "who wears the glove"},
       {"glove.hand", Text("right"), "right, or left, which is mirrored into a right one"},
+      {"glove.calibration", Text(""), "the user's file from prehend glove calibrate; empty: none"},
       {"glove.hand_scale", 1.0, "length of the user's hand, 1 = average adult"},
       {"glove.port", Text(""), "serial port, or host:port where landmarks come"},
       {"glove.baud", std::int64_t{115200}, "bits per second on that port"},

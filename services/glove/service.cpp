@@ -1,6 +1,7 @@
 #include "service.hpp"
 
 #include <prehend/base/log.hpp>
+#include <prehend/glove_calibration/user_file.hpp>
 
 #include "options.hpp"
 
@@ -22,32 +23,50 @@ Expected<std::unique_ptr<Service>> Service::create(service::Shell& shell, int& e
     log::info("in lockstep, frames come on glove/frame; {} is left alone", kind->name);
     kind = find_device("topic");
   }
-  const std::string& hand = shell.config().text("glove.hand");
-  if (hand != "right" && hand != "left")
-    return fail("'" + hand + "' is no hand", "glove.hand", "choose right or left");
-  if (hand == "left" && kind->name == "synthetic")
+  const std::string& side = shell.config().text("glove.hand");
+  if (side != "right" && side != "left")
+    return fail("'" + side + "' is no hand", "glove.hand", "choose right or left");
+  if (side == "left" && kind->name == "synthetic")
     return fail("the synthetic hand is a right one", "glove.hand", "choose right");
   exit_code = 3;
   const auto options = device_options(shell.config());
   if (!options) return tl::unexpected(options.error());
+  const std::string& user = shell.config().text("glove.user");
+  UserCalibration wearer{.user = user, .scale = options->hand_scale};
+  model::HumanHand hand(options->hand_scale);
+  if (const auto file = shell.config().path("glove.calibration"); !file.empty()) {
+    const auto loaded = load_user(file);
+    if (!loaded) return tl::unexpected(loaded.error());
+    wearer = *loaded;
+    hand = wearer.hand();
+    log::info("{}'s hand, scale {:.2f}, from {}", wearer.user, wearer.scale, file.string());
+  }
   auto device = kind->create(*options);
   if (!device) return tl::unexpected(device.error());
   exit_code = 0;
-  std::unique_ptr<Service> made(new Service(shell, *kind, *options));
+  std::unique_ptr<Service> made(
+      new Service(shell, *kind, *options, {wearer.user, wearer.scale}, hand));
+  if (shell.config().text("glove.calibration").empty() && kind->name != "synthetic")
+    log::warning(
+        "{} has not been calibrated: a hand of scale {:.2f} is assumed (prehend glove "
+        "calibrate)",
+        wearer.user, wearer.scale);
   made->connect(std::move(*device));
   return made;
 }
 
-Service::Service(service::Shell& shell, const DeviceKind& kind, const DeviceOptions& options)
+Service::Service(service::Shell& shell, const DeviceKind& kind, const DeviceOptions& options,
+                 Wearer wearer, const model::HumanHand& hand)
     : shell_(shell),
       kind_(kind),
       glove_(shell.config().text("glove.name")),
       left_to_right_T_(left_to_right(options.X_WT)),
-      wearer_{shell.config().text("glove.user"), options.hand_scale},
-      processor_({.X_WT = options.X_WT, .hand = model::HumanHand(options.hand_scale)}),
+      wearer_(std::move(wearer)),
+      processor_({.X_WT = options.X_WT, .hand = hand}),
       postures_(shell.publish(dds::hand_posture)),
       started_(shell.now()) {
-  if (kind.name == "synthetic") wearer_.user = options.scene.demonstrator.user;
+  if (kind.name == "synthetic" && shell.config().text("glove.calibration").empty())
+    wearer_.user = options.scene.demonstrator.user;
   if (kind.by_topic)
     shell.subscribe(dds::glove_frame, std::function([this](const v1::GloveFrame& message,
                                                            const dds::SampleInfo& info) {

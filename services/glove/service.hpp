@@ -18,7 +18,8 @@ class Service {
   static Expected<std::unique_ptr<Service>> create(service::Shell& shell, int& exit_code);
 
  private:
-  Service(service::Shell& shell, const DeviceKind& kind, const DeviceOptions& options);
+  Service(service::Shell& shell, const DeviceKind& kind, const DeviceOptions& options,
+          Wearer wearer, const model::HumanHand& hand);
   void connect(std::unique_ptr<Device> device);
   void on_frame(const Frame& frame);
   void on_tick(Time now);

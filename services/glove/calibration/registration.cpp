@@ -1,0 +1,100 @@
+#include "registration.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/SVD>
+#include <algorithm>
+#include <cmath>
+
+namespace prehend::glove {
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Matrix3Xd;
+using Eigen::Vector3d;
+
+constexpr double least_spread = 0.03;  // m
+constexpr double most_off = 0.03;      // m
+
+Matrix3Xd columns(const std::vector<Vector3d>& points) {
+  Matrix3Xd matrix(3, static_cast<Eigen::Index>(points.size()));
+  for (std::size_t i = 0; i < points.size(); ++i)
+    matrix.col(static_cast<Eigen::Index>(i)) = points[i];
+  return matrix;
+}
+
+/// RMS distance of centred points from the line that fits them best, m.
+double spread_across(const Matrix3Xd& centred) {
+  const Eigen::JacobiSVD<Matrix3Xd> svd(centred);
+  return svd.singularValues()[1] / std::sqrt(static_cast<double>(centred.cols()));
+}
+
+std::string_view trimmed(std::string_view line) {
+  const auto first = line.find_first_not_of(" \t");
+  return first == std::string_view::npos ? std::string_view() : line.substr(first);
+}
+
+}  // namespace
+
+Expected<Registration> register_tracker(const std::vector<Vector3d>& p_W,
+                                        const std::vector<Vector3d>& p_T) {
+  if (p_W.size() != p_T.size() || p_W.size() < 3)
+    return fail("at least three points are needed", "registration", "touch four that span an area");
+  const Matrix3Xd W = columns(p_W), T = columns(p_T);
+  if (!W.allFinite() || !T.allFinite()) return fail("a point is not finite", "registration");
+  const Vector3d mean_W = W.rowwise().mean(), mean_T = T.rowwise().mean();
+  const Matrix3Xd centred_W = W.colwise() - mean_W, centred_T = T.colwise() - mean_T;
+  if (spread_across(centred_W) < least_spread || spread_across(centred_T) < least_spread)
+    return fail("the points lie nearly on one line or on each other", "registration",
+                "choose points that span an area");
+  const Eigen::JacobiSVD<Matrix3d> svd(centred_W * centred_T.transpose(),
+                                       Eigen::ComputeFullU | Eigen::ComputeFullV);
+  Vector3d proper = Vector3d::Ones();
+  proper.z() = (svd.matrixU() * svd.matrixV().transpose()).determinant() < 0 ? -1 : 1;
+  const Matrix3d R = svd.matrixU() * proper.asDiagonal() * svd.matrixV().transpose();
+  Registration result{make_pose(mean_W - R * mean_T, R), 0, 0};
+  for (std::size_t i = 0; i < p_W.size(); ++i) {
+    const double off = (result.X_WT * p_T[i] - p_W[i]).norm();
+    result.residual += off * off / static_cast<double>(p_W.size());
+    result.worst = std::max(result.worst, off);
+  }
+  result.residual = std::sqrt(result.residual);
+  if (result.worst > most_off)
+    return fail(fmt::format("a point is {:.0f} mm off: what was touched is not the figure that is "
+                            "known",
+                            1000 * result.worst),
+                "registration", "touch the points in their order");
+  return result;
+}
+
+std::string x_wt_line(const Pose& X_WT) {
+  const Vector3d p = X_WT.translation();
+  const Eigen::Quaterniond q(X_WT.linear());
+  return fmt::format("X_WT = [{:.5f}, {:.5f}, {:.5f}, {:.6f}, {:.6f}, {:.6f}, {:.6f}]", p.x(),
+                     p.y(), p.z(), q.w(), q.x(), q.y(), q.z());
+}
+
+std::string with_x_wt(std::string_view lab_toml, const std::string& line) {
+  std::string result;
+  bool in_tracker = false, done = false;
+  while (!lab_toml.empty()) {
+    const std::size_t end = lab_toml.find('\n');
+    const std::string_view old = lab_toml.substr(0, end);
+    lab_toml.remove_prefix(end == std::string_view::npos ? lab_toml.size() : end + 1);
+    const std::string_view text = trimmed(old);
+    const bool header = text.starts_with('[');
+    const bool replaced = in_tracker && !header && text.starts_with("X_WT");
+    result += replaced ? (done ? std::string() : line) : std::string(old);
+    result += '\n';
+    done = done || replaced;
+    if (header) in_tracker = text.starts_with("[tracker]");
+  }
+  if (done) return result;
+  // No such line yet: right behind the table's header, which may have to be made.
+  const std::size_t table = ("\n" + result).find("\n[tracker]");
+  if (table == std::string::npos) return result + "\n[tracker]\n" + line + '\n';
+  result.insert(result.find('\n', table) + 1, line + '\n');
+  return result;
+}
+
+}  // namespace prehend::glove

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <prehend/base/error.hpp>
+#include <prehend/glove/frame.hpp>
+#include <prehend/service/arguments.hpp>
+#include <vector>
+
+namespace prehend::glove {
+
+/// A glove's frames for a tool: those that come on glove/frame, or those of a recording.
+class FrameInput {
+ public:
+  /// Takes part in the lab; hears the glove `glove.name`.
+  static Expected<FrameInput> live(const service::Config& config);
+  /// A recording of topics (MCAP) with glove/frame, or a hand recording (CSV).
+  static Expected<FrameInput> recorded(const std::filesystem::path& file);
+  FrameInput(FrameInput&&) noexcept;
+  FrameInput& operator=(FrameInput&&) noexcept;
+  ~FrameInput();
+
+  /// What has come since the last call; of a recording everything.
+  std::vector<Frame> poll();
+  bool live() const;
+
+ private:
+  struct State;
+  explicit FrameInput(std::unique_ptr<State> state);
+  std::unique_ptr<State> state_;
+};
+
+/// The last key that was entered on standard input, 0 where there is none. Does not wait.
+char entered_key();
+
+}  // namespace prehend::glove

@@ -1,0 +1,81 @@
+#include <algorithm>
+#include <cctype>
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <prehend/glove_calibration/calibrator.hpp>
+
+#include "asking.hpp"
+#include "tool.hpp"
+
+namespace prehend::glove {
+namespace {
+
+struct Arguments {
+  service::LabArguments lab;
+  std::string user, from, out;
+  double limit = 300;
+  bool json = false;
+};
+
+int calibrate(const Arguments& arguments) {
+  const auto config = arguments.lab.load();
+  if (!config) return service::complain(config.error(), service::exit_wrong_use);
+  const std::string user = arguments.user.empty() ? config->text("glove.user") : arguments.user;
+  const bool plain =
+      !user.empty() && user[0] != '.' && std::all_of(user.begin(), user.end(), [](unsigned char c) {
+        return std::isalnum(c) || c == '_' || c == '-' || c == '.';
+      });
+  if (!plain)
+    return service::complain({"a name of letters, digits, - _ . is needed", user, "give --user"},
+                             service::exit_wrong_use);
+  auto input =
+      arguments.from.empty() ? FrameInput::live(*config) : FrameInput::recorded(arguments.from);
+  if (!input) return service::complain(input.error(), service::exit_broken);
+
+  Calibrator calibrator;
+  const bool shown = ask(
+      *input, calibrator, arguments.limit, [](ShownPose pose) { return instruction(pose); },
+      [](const Shown& taken) {
+        return fmt::format("{} taken, moved {:.1f} mm", to_string(taken.pose), 1000 * taken.wobble);
+      });
+  if (!shown) return service::exit_no;
+  const auto result = calibrator.result(user);
+  if (!result) return service::complain(result.error(), service::exit_no);
+  const std::string out = arguments.out.empty() ? "users/" + user + ".toml" : arguments.out;
+  if (const auto saved = save(out, *result); !saved)
+    return service::complain(saved.error(), service::exit_broken);
+  log::info("hand scale {:.3f} ± {:.3f}; the poses fit within {:.1f} mm; {}", result->scale,
+            result->scale_sd, 1000 * result->residual, out);
+  log::info("use it: --set glove.calibration={}", out);
+  if (arguments.json)
+    std::cout << nlohmann::ordered_json{{"output", out},
+                                        {"user", user},
+                                        {"hand_scale", result->scale},
+                                        {"hand_scale_sd", result->scale_sd},
+                                        {"bones_m", result->bones},
+                                        {"range_m", result->range},
+                                        {"residual_m", result->residual}}
+                     .dump()
+              << '\n';
+  return service::exit_done;
+}
+
+}  // namespace
+
+void add_calibrate(CLI::App& app, int& exit_code) {
+  auto* command = app.add_subcommand(
+      "calibrate", "measure a user's hand: open hand, fist, pinch; the glove must be running");
+  const auto a = std::make_shared<Arguments>();
+  a->lab.add_to(*command);
+  command->add_option("--user", a->user, "who wears the glove; default: glove.user");
+  command->add_option("-o,--out", a->out, "file to write; default: users/USER.toml");
+  command->add_option("--from", a->from, "a recording instead of a running glove (MCAP or CSV)");
+  command->add_option("--limit", a->limit, "s after which it gives up")
+      ->check(CLI::Range(1.0, 1e6))
+      ->capture_default_str();
+  command->add_flag("--json", a->json, "print the outcome as one JSON document");
+  command->callback([a, &exit_code] { exit_code = calibrate(*a); });
+}
+
+}  // namespace prehend::glove
