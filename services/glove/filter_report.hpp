@@ -26,6 +26,7 @@ struct FilterFigures {
   double noise_out = 0;  // ... and error of the published one, below slow_speed
   double lag = 0;       // s, the delay that explains the published fingertip best, above fast_speed
   double moved = 0;     // m, furthest that extreme points moved a published fingertip
+  std::size_t far = 0;  // fingertips that they moved further than moved_aim
   double withheld = 0;  // share of the fingertips that extreme points kept from being published
 };
 inline constexpr double slow_speed = 0.05, fast_speed = 0.20;  // m/s

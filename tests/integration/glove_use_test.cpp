@@ -112,7 +112,7 @@ TEST_F(GloveUse, WhatIsWrongIsCountedByReason) {
       for (const v1::Drop& drop : sample.data.drops()) missing.erase(drop.reason().to_string());
     return missing.empty();
   })) << testing::PrintToString(missing);
-  EXPECT_GT(heard, 20);
+  EXPECT_GE(heard, 10) << "one each round of nine frames";
   EXPECT_LT(worst, 1e-6) << "none of it moves a fingertip";
 }
 
@@ -156,6 +156,9 @@ TEST_F(GloveUse, AUserIsCalibratedAndTheServiceKnowsTheHand) {
   const auto ended = tool.wait(seconds(10));
   ASSERT_TRUE(ended);
   EXPECT_EQ(ended->code, 0);
+  // Nobody vanishes at once: the recording may lag behind what the tool has seen.
+  for (int n = 0; n < 15; ++n)
+    publish(frame(place_, glove::posture_of(glove::ShownPose::pinch), scale));
   recorder.signal(SIGINT);
   ASSERT_TRUE(recorder.wait(seconds(10)));
   const auto user = glove::load_user(file);
