@@ -144,6 +144,12 @@ TEST_F(GloveUse, AUserIsCalibratedAndTheServiceKnowsTheHand) {
   service::Process tool =
       start_program("prehend-glove-tool",
                     with_lab({"calibrate", "--user", "anna", "--out", file, "--limit", "60"}));
+  // The recorder hears the person from the beginning.
+  ASSERT_TRUE(eventually(20, [&] {
+    eprosima::fastdds::dds::PublicationMatchedStatus matched;
+    writer_->raw().get_publication_matched_status(matched);
+    return matched.current_count >= 2;
+  }));
   for (const auto pose : glove::shown_poses) {
     const std::string next = pose == glove::ShownPose::pinch
                                  ? "hand scale"
@@ -156,9 +162,6 @@ TEST_F(GloveUse, AUserIsCalibratedAndTheServiceKnowsTheHand) {
   const auto ended = tool.wait(seconds(10));
   ASSERT_TRUE(ended);
   EXPECT_EQ(ended->code, 0);
-  // Nobody vanishes at once: the recording may lag behind what the tool has seen.
-  for (int n = 0; n < 15; ++n)
-    publish(frame(place_, glove::posture_of(glove::ShownPose::pinch), scale));
   recorder.signal(SIGINT);
   ASSERT_TRUE(recorder.wait(seconds(10)));
   const auto user = glove::load_user(file);

@@ -103,17 +103,22 @@ model::HumanPosture posture_of(ShownPose pose) {
 }
 
 Expected<void> check_pose(ShownPose pose, const Fingertips& tips, const Fingertips& open) {
-  constexpr double bent = 0.03, open_gap = 0.05, pinched = 0.035;  // m
-  const auto refuse = [&] {
-    return fail(fmt::format("this is no {}", to_string(pose)), {}, std::string(instruction(pose)));
-  };
-  if (pose == ShownPose::open && thumb_to_index(tips) < open_gap) return refuse();
-  if (pose == ShownPose::pinch && thumb_to_index(tips) > pinched) return refuse();
-  if (pose == ShownPose::fist)
-    for (std::size_t f = 1; f < tips.size(); ++f)
-      if (tips[f].valid && open[f].valid && (tips[f].p_HF - open[f].p_HF).norm() < bent)
-        return refuse();
-  return {};
+  // Sensors on two nails are up to 4 cm apart when the pads meet. Tips along x of the hand: a small
+  // hand's stretched fingers reach further than a big one's fist, and half-bent fingers are no
+  // fist.
+  constexpr double stretched = 0.075, open_gap = 0.05, pinched = 0.045;  // m
+  constexpr double bent = 0.4;  // of where the stretched finger's tip was
+  bool shown = true;
+  if (pose == ShownPose::open) shown = !(thumb_to_index(tips) < open_gap);
+  if (pose == ShownPose::pinch) shown = !(thumb_to_index(tips) > pinched);
+  for (std::size_t f = 1; f < tips.size(); ++f) {
+    if (!tips[f].valid) continue;
+    if (pose == ShownPose::open && tips[f].p_HF.x() < stretched) shown = false;
+    if (pose == ShownPose::fist && open[f].valid && tips[f].p_HF.x() > bent * open[f].p_HF.x())
+      shown = false;
+  }
+  if (shown) return {};
+  return fail(fmt::format("this is no {}", to_string(pose)), {}, std::string(instruction(pose)));
 }
 
 Expected<HandFit> fit_hand(const std::array<Fingertips, poses>& shown) {

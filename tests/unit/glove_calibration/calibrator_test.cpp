@@ -137,6 +137,28 @@ TEST(Calibrator, TakesOnlyWhatIsAskedFor) {
   EXPECT_TRUE(calibrator.result("x"));
 }
 
+// Regression: a fist passed for an open hand and a pinch for a fist, so that who was late with the
+// first pose was calibrated from the wrong ones. Holds for every size and glove.
+TEST(Calibrator, TellsThePosesApart) {
+  Random random(13);
+  for (int n = 0; n < 200; ++n) {
+    Person person(random);
+    person.three_fingers = n % 2 == 0;
+    std::array<Fingertips, shown_poses.size()> shown;
+    for (std::size_t pose = 0; pose < shown.size(); ++pose)
+      for (const Reading& reading :
+           person.frame(0, Person::shown(shown_poses[pose], random), Pose::Identity(), 0, random)
+               .readings)
+        if (const auto finger = finger_of(reading.site))
+          shown[pose][static_cast<std::size_t>(*finger)] = {true, reading.p_TS};
+    for (std::size_t asked = 0; asked < shown.size(); ++asked)
+      for (std::size_t pose = 0; pose < shown.size(); ++pose)
+        EXPECT_EQ(check_pose(shown_poses[asked], shown[pose], shown[0]).has_value(), asked == pose)
+            << n << ": asked for " << to_string(shown_poses[asked]) << ", shown "
+            << to_string(shown_poses[pose]);
+  }
+}
+
 TEST(Calibrator, NeverTakesAMovingOrAnUnseenHand) {
   Random random(9);
   const Person person(random);
