@@ -114,6 +114,8 @@ Expected<void> check_pose(ShownPose pose, const Fingertips& tips, const Fingerti
   for (std::size_t f = 1; f < tips.size(); ++f) {
     if (!tips[f].valid) continue;
     if (pose == ShownPose::open && tips[f].p_HF.x() < stretched) shown = false;
+    if (pose == ShownPose::pinch && f == 1 && tips[f].p_HF.x() < bent / 2 * open[f].p_HF.x())
+      shown = false;
     if (pose == ShownPose::fist && open[f].valid && tips[f].p_HF.x() > bent * open[f].p_HF.x())
       shown = false;
   }
