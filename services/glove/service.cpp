@@ -29,7 +29,7 @@ Expected<std::unique_ptr<Service>> Service::create(service::Shell& shell, int& e
   if (side == "left" && kind->name == "synthetic")
     return fail("the synthetic hand is a right one", "glove.hand", "choose right");
   exit_code = 3;
-  const auto options = device_options(shell.config());
+  auto options = device_options(shell.config());
   if (!options) return tl::unexpected(options.error());
   const std::string& user = shell.config().text("glove.user");
   UserCalibration wearer{.user = user, .scale = options->hand_scale};
@@ -39,6 +39,7 @@ Expected<std::unique_ptr<Service>> Service::create(service::Shell& shell, int& e
     if (!loaded) return tl::unexpected(loaded.error());
     wearer = *loaded;
     hand = wearer.hand();
+    options->joint_gains = {wearer.gain, wearer.offset};
     log::info("{}'s hand, scale {:.2f}, from {}", wearer.user, wearer.scale, file.string());
   }
   auto device = kind->create(*options);

@@ -203,6 +203,19 @@ TEST_F(GloveUse, ANewUserWorksWithAWarning) {
   EXPECT_THAT(text_of(service.log()), HasSubstr("has not been calibrated"));
 }
 
+// Guards: the gains in a user's file reach the joint-angle glove's driver.
+TEST_F(GloveUse, GainsOfAnotherGloveAreRefused) {
+  const std::string file = (folder_ / "anna.toml").string();
+  glove::UserCalibration anna{.user = "anna", .gain = {0.01, 0.01}, .offset = {0, 0}};
+  for (auto& bones : anna.bones) bones = {0.04, 0.03, 0.02};
+  ASSERT_TRUE(glove::save(file, anna));
+  auto arguments = lab_arguments(
+      {"glove.device=joint_glove", "glove.port=" + file, "glove.calibration=" + file});
+  const Answer answer = run("prehend-glove", arguments, 20);
+  EXPECT_EQ(answer.exit_code, 3) << answer.log;
+  EXPECT_NE(answer.log.find("18 or 22"), std::string::npos) << answer.log;
+}
+
 TEST_F(GloveUse, TheTrackerIsRegisteredByTouch) {
   const std::string lab = (folder_ / "lab.toml").string();
   std::ofstream(lab) << "[lab]\nrig = \"x\"\n\n[tracker]\nX_WT = [0, 0, 0, 1, 0, 0, 0]\n";
