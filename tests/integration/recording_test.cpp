@@ -3,11 +3,7 @@
 // late reader would get; orders come by topic, key and signal; what is chosen is recorded, and what
 // was lost is counted.
 #include <gmock/gmock.h>
-#include <poll.h>
-#include <pty.h>
 #include <sys/mount.h>
-#include <sys/wait.h>
-#include <termios.h>
 #include <unistd.h>
 
 #include <csignal>
@@ -19,6 +15,7 @@
 #include <set>
 
 #include "recorder_rig.hpp"
+#include "terminal.hpp"
 
 namespace prehend::integration {
 namespace {
@@ -63,73 +60,6 @@ class Recording : public RecorderRig {
     EXPECT_TRUE(dds::decode(topic, one.sample, message));
     return message;
   }
-};
-
-/// A program on a terminal of its own.
-class Terminal {
- public:
-  Terminal(const std::string& program, const Strings& arguments) {
-    std::vector<char*> pointers{const_cast<char*>(program.c_str())};
-    for (const std::string& each : arguments) pointers.push_back(const_cast<char*>(each.c_str()));
-    pointers.push_back(nullptr);
-    pid_ = ::forkpty(&descriptor_, nullptr, nullptr, nullptr);
-    if (pid_ == 0) {
-      ::execv(program.c_str(), pointers.data());
-      ::_exit(127);
-    }
-  }
-  ~Terminal() {
-    if (!ended_) {
-      ::kill(pid_, SIGKILL);
-      ::waitpid(pid_, nullptr, 0);
-    }
-    ::close(descriptor_);
-  }
-  Terminal(const Terminal&) = delete;
-  Terminal& operator=(const Terminal&) = delete;
-
-  void press(char key) { EXPECT_EQ(::write(descriptor_, &key, 1), 1); }
-  /// Until it shows the text; what it showed before does not count again.
-  bool shows(const std::string& text) {
-    return eventually(20, [&] {
-      take();
-      const auto at = shown_.find(text);
-      if (at == std::string::npos) return false;
-      shown_.erase(0, at + text.size());
-      return true;
-    });
-  }
-  /// Its exit code; -1: it did not end.
-  int end() {
-    int status = 0;
-    ended_ = eventually(20, [&] {
-      take();  // a terminal that nobody reads would hold it up
-      return ::waitpid(pid_, &status, WNOHANG) == pid_;
-    });
-    return ended_ && WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-  }
-  bool waits_for_enter() const {
-    termios now{};
-    ::tcgetattr(descriptor_, &now);
-    return (now.c_lflag & ICANON) != 0;
-  }
-  const std::string& shown() const { return shown_; }
-
- private:
-  void take() {
-    pollfd input{descriptor_, POLLIN, 0};
-    char bytes[4096];
-    while (::poll(&input, 1, 0) == 1 && (input.revents & POLLIN) != 0) {
-      const ssize_t count = ::read(descriptor_, bytes, sizeof bytes);
-      if (count <= 0) return;
-      shown_.append(bytes, static_cast<std::size_t>(count));
-    }
-  }
-
-  pid_t pid_ = -1;
-  int descriptor_ = -1;
-  bool ended_ = false;
-  std::string shown_;
 };
 
 TEST_F(Recording, KilledAtAnyMomentItsFileIsReadableButForTheLastSecond) {
