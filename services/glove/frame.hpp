@@ -34,6 +34,7 @@ struct Frame {
   Time stamp{};                // acquisition
   std::vector<Reading> readings;
   std::vector<double> joint_angles;  // rad, order of model::HumanPosture; empty: not measured
+  std::vector<double> joint_counts;  // what these were made of, for calibration; never published
   bool left = false;                 // a left hand that the device mirrored into a right one
 };
 

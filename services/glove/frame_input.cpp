@@ -3,14 +3,18 @@
 #include <poll.h>
 #include <unistd.h>
 
+#include <mutex>
 #include <optional>
+#include <prehend/base/log.hpp>
 #include <prehend/dds/participant.hpp>
 #include <prehend/dds/raw.hpp>
 #include <prehend/glove/filter_report.hpp>
 #include <prehend/glove/recording.hpp>
+#include <prehend/glove_devices/device.hpp>
 #include <prehend/mcap/reader.hpp>
 
 #include "messages.hpp"
+#include "options.hpp"
 
 namespace prehend::glove {
 
@@ -19,6 +23,9 @@ struct FrameInput::State {
   std::optional<dds::Reader<v1::GloveFrame>> reader;
   std::string glove;
   std::vector<Frame> recorded;
+  std::mutex mutex;  // of what the device's thread has brought
+  std::vector<Frame> driven;
+  std::unique_ptr<Device> device;  // last: its thread ends before the rest goes
 };
 
 FrameInput::FrameInput(std::unique_ptr<State> state) : state_(std::move(state)) {}
@@ -38,6 +45,26 @@ Expected<FrameInput> FrameInput::live(const service::Config& config) {
   if (!reader) return tl::unexpected(reader.error());
   state->reader.emplace(std::move(*reader));
   state->glove = config.text("glove.name");
+  return FrameInput(std::move(state));
+}
+
+Expected<FrameInput> FrameInput::driven(const service::Config& config) {
+  const auto kind = find_device(config.text("glove.device"));
+  if (!kind) return tl::unexpected(kind.error());
+  const auto options = device_options(config);
+  if (!options) return tl::unexpected(options.error());
+  auto device = kind->create(*options);
+  if (!device) return tl::unexpected(device.error());
+  auto state = std::make_unique<State>();
+  state->device = std::move(*device);
+  State& shared = *state;
+  shared.device->start({.frame =
+                            [&shared](Frame frame) {
+                              const std::scoped_lock lock(shared.mutex);
+                              shared.driven.push_back(std::move(frame));
+                            },
+                        .degraded = [](const std::string& line) { log::warning("{}", line); },
+                        .drop = [](std::string_view, std::uint64_t) {}});
   return FrameInput(std::move(state));
 }
 
@@ -70,6 +97,10 @@ Expected<FrameInput> FrameInput::recorded(const std::filesystem::path& file) {
 
 std::vector<Frame> FrameInput::poll() {
   if (!live()) return std::exchange(state_->recorded, {});
+  if (state_->device) {
+    const std::scoped_lock lock(state_->mutex);
+    return std::exchange(state_->driven, {});
+  }
   std::vector<Frame> frames;
   for (const auto& sample : state_->reader->take())
     if (!sample.info.gone && sample.data.glove().to_string() == state_->glove)
@@ -78,7 +109,7 @@ std::vector<Frame> FrameInput::poll() {
 }
 
 bool FrameInput::live() const {
-  return state_->reader.has_value();
+  return state_->reader.has_value() || state_->device;
 }
 
 char entered_key() {

@@ -9,11 +9,14 @@
 
 namespace prehend::glove {
 
-/// A glove's frames for a tool: those that come on glove/frame, or those of a recording.
+/// A glove's frames for a tool: those that come on glove/frame, those of a device that the tool
+/// drives itself, or those of a recording.
 class FrameInput {
  public:
   /// Takes part in the lab; hears the glove `glove.name`.
   static Expected<FrameInput> live(const service::Config& config);
+  /// Drives the configured device, which no service may be doing meanwhile.
+  static Expected<FrameInput> driven(const service::Config& config);
   /// A recording of topics (MCAP) with glove/frame, or a hand recording (CSV).
   static Expected<FrameInput> recorded(const std::filesystem::path& file);
   FrameInput(FrameInput&&) noexcept;

@@ -93,8 +93,8 @@ void Service::connect(std::unique_ptr<Device> device) {
                         if (left && !frame.left)
                           frame = mirrored(std::move(frame), left_to_right_T_);
                         shell_.exclusively([this, &frame] {
+                          on_frame(frame);  // first: somebody's hand waits for it
                           frames_.publish(to_message(frame, glove_, std::string(kind_.name)));
-                          on_frame(frame);
                         });
                       },
                   .degraded =

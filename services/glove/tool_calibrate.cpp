@@ -1,9 +1,10 @@
 #include <algorithm>
 #include <cctype>
+#include <filesystem>
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
-#include <prehend/glove_calibration/calibrator.hpp>
+#include <prehend/glove_calibration/joint_calibrator.hpp>
 
 #include "asking.hpp"
 #include "tool.hpp"
@@ -18,6 +19,49 @@ struct Arguments {
   bool json = false;
 };
 
+/// Such a glove's topic has angles, not what its sensors say: its driver is run here instead. What
+/// an earlier calibration found out about the hand's bones is kept.
+int calibrate_joints(const service::Config& config, const std::string& user, const std::string& out,
+                     const Arguments& arguments) {
+  UserCalibration result;
+  if (std::filesystem::exists(out)) {
+    const auto before = load_user(out);
+    if (!before) return service::complain(before.error(), service::exit_broken);
+    result = *before;
+  } else {
+    result.scale = config.number("glove.hand_scale");
+    const model::HumanHand hand(result.scale);
+    for (std::size_t f = 0; f < model::finger_count; ++f)
+      result.bones[f] = hand.bones(static_cast<model::Finger>(f));
+  }
+  auto input = FrameInput::driven(config);
+  if (!input) return service::complain(input.error(), service::exit_broken);
+  JointCalibrator calibrator;
+  const bool shown = ask(
+      *input, calibrator, arguments.limit, [](ShownPose pose) { return instruction(pose); },
+      [](const Shown& taken) {
+        return fmt::format("{} taken, moved {:.1f} counts", to_string(taken.pose), taken.wobble);
+      });
+  if (!shown) return service::exit_no;
+  const auto gains = calibrator.result();
+  if (!gains) return service::complain(gains.error(), service::exit_no);
+  result.user = user;
+  result.gain = gains->gain;
+  result.offset = gains->offset;
+  if (const auto saved = save(out, result); !saved)
+    return service::complain(saved.error(), service::exit_broken);
+  log::info("gains and offsets of {} sensors; use them: --set glove.calibration={}",
+            result.gain.size(), out);
+  if (arguments.json)
+    std::cout << nlohmann::ordered_json{{"output", out},
+                                        {"user", user},
+                                        {"gain_rad", result.gain},
+                                        {"offset_rad", result.offset}}
+                     .dump()
+              << '\n';
+  return service::exit_done;
+}
+
 int calibrate(const Arguments& arguments) {
   const auto config = arguments.lab.load();
   if (!config) return service::complain(config.error(), service::exit_wrong_use);
@@ -29,6 +73,10 @@ int calibrate(const Arguments& arguments) {
   if (!plain)
     return service::complain({"a name of letters, digits, - _ . is needed", user, "give --user"},
                              service::exit_wrong_use);
+  const std::string out = arguments.out.empty() ? "users/" + user + ".toml" : arguments.out;
+  if (arguments.from.empty() && config->text("glove.device") == "joint_glove")
+    return calibrate_joints(*config, user, out, arguments);
+
   auto input =
       arguments.from.empty() ? FrameInput::live(*config) : FrameInput::recorded(arguments.from);
   if (!input) return service::complain(input.error(), service::exit_broken);
@@ -42,7 +90,6 @@ int calibrate(const Arguments& arguments) {
   if (!shown) return service::exit_no;
   const auto result = calibrator.result(user);
   if (!result) return service::complain(result.error(), service::exit_no);
-  const std::string out = arguments.out.empty() ? "users/" + user + ".toml" : arguments.out;
   if (const auto saved = save(out, *result); !saved)
     return service::complain(saved.error(), service::exit_broken);
   log::info("hand scale {:.3f} ± {:.3f}; the poses fit within {:.1f} mm; {}", result->scale,
@@ -64,8 +111,10 @@ int calibrate(const Arguments& arguments) {
 }  // namespace
 
 void add_calibrate(CLI::App& app, int& exit_code) {
-  auto* command = app.add_subcommand(
-      "calibrate", "measure a user's hand: open hand, fist, pinch; the glove must be running");
+  auto* command = app.add_subcommand("calibrate",
+                                     "measure a user's hand: open hand, fist, pinch; the glove "
+                                     "must be running (a joint_glove must "
+                                     "not)");
   const auto a = std::make_shared<Arguments>();
   a->lab.add_to(*command);
   command->add_option("--user", a->user, "who wears the glove; default: glove.user");

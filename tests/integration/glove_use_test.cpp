@@ -3,6 +3,7 @@
 // glove service takes its frames by topic from the test, which plays the person.
 #include <gmock/gmock.h>
 
+#include <atomic>
 #include <fstream>
 #include <iterator>
 #include <nlohmann/json.hpp>
@@ -10,6 +11,8 @@
 #include <prehend/dds/topics.hpp>
 #include <prehend/glove_calibration/hand_fit.hpp>
 #include <prehend/glove_calibration/user_file.hpp>
+#include <prehend/glove_devices/device.hpp>
+#include <prehend/glove_devices/emulation.hpp>
 #include <prehend/service/config.hpp>
 #include <set>
 
@@ -191,6 +194,64 @@ TEST_F(GloveUse, AUserIsCalibratedAndTheServiceKnowsTheHand) {
       run("prehend-glove", lab_arguments({"glove.device=topic", "glove.calibration=/none"}), 20)
           .exit_code,
       3);
+}
+
+/// A person who shows the pose asked for, to an emulated glove.
+class ShowingHand : public glove::FrameSource {
+ public:
+  std::optional<glove::Frame> frame(std::uint64_t n) const override {
+    const model::HumanPosture q = glove::posture_of(pose);
+    glove::Frame frame;
+    frame.stamp = from_ns(static_cast<std::int64_t>(n) * 10'000'000);
+    frame.readings.emplace_back();
+    frame.joint_angles.assign(q.begin(), q.end());
+    return frame;
+  }
+  std::atomic<glove::ShownPose> pose = glove::ShownPose::open;
+};
+
+TEST_F(GloveUse, AJointAngleGloveIsCalibratedThroughItsDriver) {
+  const std::string port = (folder_ / "glove").string(), file = (folder_ / "anna.toml").string();
+  glove::DeviceOptions worn;
+  worn.joint_gains = *glove::typical_gains(22);
+  for (double& gain : worn.joint_gains.gain) gain *= 1.1;
+  auto emulation = glove::emulation_of(*glove::find_device("joint_glove"), worn, port);
+  emulation.rate = 100;
+  ShowingHand hand;
+  const std::jthread glove([&](const std::stop_token& stop) {
+    EXPECT_TRUE(glove::emulate(emulation, hand, [&] { return stop.stop_requested(); }));
+  });
+  ASSERT_TRUE(eventually(20, [&] { return std::filesystem::exists(port); }));
+  service::Process tool =
+      start_program("prehend-glove-tool",
+                    with_lab({"calibrate", "--user", "anna", "--out", file, "--limit", "60",
+                              "--set", "glove.device=joint_glove", "--set", "glove.port=" + port}));
+  for (const auto pose : glove::shown_poses) {
+    hand.pose = pose;
+    const std::string taken = std::string(glove::to_string(pose)) + " taken";
+    EXPECT_TRUE(eventually(30, [&] {
+      return text_of(tool.log()).find(taken) != std::string::npos;
+    })) << taken;
+  }
+  const auto ended = tool.wait(seconds(10));
+  ASSERT_TRUE(ended);
+  EXPECT_EQ(ended->code, 0) << text_of(tool.log());
+  const auto user = glove::load_user(file);
+  ASSERT_TRUE(user) << user.error().message();
+  ASSERT_EQ(user->gain.size(), 22u);
+  // Index finger's first joint; 2 % is the rounding to whole counts.
+  EXPECT_NEAR(user->gain[4] / worn.joint_gains.gain[4], 1, 0.02);
+
+  // The service takes the file, and the fist is a fist.
+  auto frames = reader(dds::glove_frame);
+  hand.pose = glove::ShownPose::fist;
+  auto service = start(
+      "glove", {"glove.device=joint_glove", "glove.port=" + port, "glove.calibration=" + file});
+  const model::HumanPosture fist = model::HumanHand::fist_posture();
+  EXPECT_TRUE(hear<v1::GloveFrame>(frames, 20, [&](const v1::GloveFrame& message) {
+    return message.joint_angles().size() == 20 &&
+           std::abs(message.joint_angles()[1] - fist[1]) < 0.03;
+  }));
 }
 
 TEST_F(GloveUse, ANewUserWorksWithAWarning) {

@@ -8,17 +8,18 @@
 
 namespace prehend::glove {
 
+/// Lengths are in the unit of the points.
 struct StillOptions {
   Duration still_for = std::chrono::milliseconds(500);
-  double still_within = 0.004;  // m, of every point from its mean meanwhile
-  double apart = 0.015;         // m, that some point must have moved since the last taken
+  double still_within = 0.004;  // of every point from its mean meanwhile
+  double apart = 0.015;         // that some point must have moved since the last taken
   int least_samples = 8;        // in that time
 };
 
 /// Points of a hand that kept still.
 struct Held {
-  Eigen::VectorXd mean;  // three coordinates a point, m
-  double wobble = 0;     // m, furthest of a point from its mean
+  Eigen::VectorXd mean;  // three coordinates a point
+  double wobble = 0;     // furthest of a point from its mean
 };
 
 /// Waits until a hand keeps still somewhere else than before. Pure: time comes with the samples.

@@ -153,8 +153,8 @@ class JointGlove final : public Device {
     frame.sequence = sequence_++;
     frame.stamp = clock_.stamp(now);
     frame.readings.push_back(wrist_ ? wrist_->now() : resting_);
-    const model::HumanPosture posture =
-        joint_angles(std::vector<double>(counts.begin(), counts.end()), gains_);
+    frame.joint_counts.assign(counts.begin(), counts.end());
+    const model::HumanPosture posture = joint_angles(frame.joint_counts, gains_);
     frame.joint_angles.assign(posture.begin(), posture.end());
     // Joint angles are those of either hand; a tracker's pose is mirrored, the scene's is not.
     if (left_ && wrist_) frame = mirrored(std::move(frame), left_to_right_T_);
