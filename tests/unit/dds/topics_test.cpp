@@ -16,6 +16,7 @@ std::map<std::string, std::vector<std::string>> documented() {
   std::ifstream file(PREHEND_SOURCE "/idl/README.md");
   std::map<std::string, std::vector<std::string>> rows;
   for (std::string line; std::getline(file, line);) {
+    if (!rows.empty() && !line.starts_with("|")) break;  // the page's first table
     if (!line.starts_with("| `")) continue;
     std::vector<std::string> cells;
     std::istringstream stream(line.substr(1));
