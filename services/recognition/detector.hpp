@@ -3,11 +3,11 @@
 #include <array>
 #include <optional>
 #include <prehend/model/catalogue.hpp>
+#include <prehend/recognition_learning/object_models.hpp>
 #include <string>
 #include <vector>
 
 #include "localise.hpp"
-#include "object_models.hpp"
 #include "scan.hpp"
 
 namespace prehend::recognition {

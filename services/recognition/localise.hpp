@@ -1,8 +1,8 @@
 #pragma once
 
 #include <optional>
+#include <prehend/recognition_descriptor/palette.hpp>
 
-#include "palette.hpp"
 #include "silhouette.hpp"
 
 namespace prehend::recognition {

@@ -2,10 +2,10 @@
 
 #include <map>
 #include <prehend/model/scene.hpp>
+#include <prehend/recognition_picture/picture.hpp>
 #include <string>
 
 #include "camera_model.hpp"
-#include "picture.hpp"
 #include "texture.hpp"
 
 namespace prehend::recognition {

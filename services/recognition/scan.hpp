@@ -1,8 +1,7 @@
 #pragma once
 
+#include <prehend/recognition_learning/object_models.hpp>
 #include <vector>
-
-#include "object_models.hpp"
 
 namespace prehend::recognition {
 

@@ -7,11 +7,11 @@
 #include <prehend/dds/convert.hpp>
 #include <prehend/dds/topics.hpp>
 #include <prehend/recognition_cameras/camera.hpp>
+#include <prehend/recognition_learning/model_file.hpp>
+#include <prehend/recognition_picture/picture_file.hpp>
 #include <thread>
 
 #include "detector.hpp"
-#include "model_file.hpp"
-#include "picture_file.hpp"
 #include "tracker.hpp"
 
 namespace prehend::recognition {

@@ -8,10 +8,10 @@
 #include <nlohmann/json.hpp>
 #include <prehend/base/log.hpp>
 #include <prehend/base/paths.hpp>
+#include <prehend/recognition_learning/dataset.hpp>
+#include <prehend/recognition_learning/model_file.hpp>
+#include <prehend/recognition_picture/picture_file.hpp>
 
-#include "dataset.hpp"
-#include "model_file.hpp"
-#include "picture_file.hpp"
 #include "tool.hpp"
 #include "training_views.hpp"
 

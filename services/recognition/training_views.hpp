@@ -1,8 +1,8 @@
 #pragma once
 
 #include <cstdint>
+#include <prehend/recognition_learning/object_models.hpp>
 
-#include "object_models.hpp"
 #include "renderer.hpp"
 
 namespace prehend::recognition {

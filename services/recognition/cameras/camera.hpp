@@ -4,7 +4,7 @@
 #include <prehend/base/error.hpp>
 #include <prehend/model/scene.hpp>
 #include <prehend/recognition/camera_model.hpp>
-#include <prehend/recognition/picture.hpp>
+#include <prehend/recognition_picture/picture.hpp>
 #include <string>
 
 namespace prehend::recognition {

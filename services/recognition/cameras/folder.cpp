@@ -1,4 +1,4 @@
-#include <prehend/recognition/picture_file.hpp>
+#include <prehend/recognition_picture/picture_file.hpp>
 
 #include "sources.hpp"
 

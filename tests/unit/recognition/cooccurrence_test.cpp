@@ -4,9 +4,9 @@
 
 #include <cmath>
 #include <prehend/base/random.hpp>
-#include <prehend/recognition/cooccurrence.hpp>
-#include <prehend/recognition/object_models.hpp>
-#include <prehend/recognition/palette.hpp>
+#include <prehend/recognition_descriptor/cooccurrence.hpp>
+#include <prehend/recognition_descriptor/palette.hpp>
+#include <prehend/recognition_learning/object_models.hpp>
 
 namespace prehend::recognition {
 namespace {

@@ -6,7 +6,7 @@
 #include <fstream>
 #include <iterator>
 #include <prehend/base/random.hpp>
-#include <prehend/recognition/model_file.hpp>
+#include <prehend/recognition_learning/model_file.hpp>
 
 #include "fixture.hpp"
 

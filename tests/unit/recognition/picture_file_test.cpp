@@ -5,8 +5,8 @@
 #include <filesystem>
 #include <fstream>
 #include <prehend/base/random.hpp>
-#include <prehend/recognition/picture_file.hpp>
 #include <prehend/recognition_cameras/camera.hpp>
+#include <prehend/recognition_picture/picture_file.hpp>
 
 #include "fixture.hpp"
 

@@ -1,8 +1,7 @@
 #include "dataset.hpp"
 
 #include <algorithm>
-
-#include "picture_file.hpp"
+#include <prehend/recognition_picture/picture_file.hpp>
 
 namespace prehend::recognition {
 

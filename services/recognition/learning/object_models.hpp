@@ -2,11 +2,10 @@
 
 #include <cstdint>
 #include <prehend/base/error.hpp>
+#include <prehend/recognition_descriptor/cooccurrence.hpp>
+#include <prehend/recognition_descriptor/palette.hpp>
 #include <string>
 #include <vector>
-
-#include "cooccurrence.hpp"
-#include "palette.hpp"
 
 namespace prehend::recognition {
 

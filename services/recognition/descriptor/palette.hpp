@@ -3,9 +3,8 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstdint>
+#include <prehend/recognition_picture/picture.hpp>
 #include <vector>
-
-#include "picture.hpp"
 
 namespace prehend::recognition {
 

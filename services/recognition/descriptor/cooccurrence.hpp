@@ -1,9 +1,8 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <prehend/recognition_picture/picture.hpp>
 #include <vector>
-
-#include "picture.hpp"
 
 namespace prehend::recognition {
 
