@@ -32,12 +32,6 @@ std::string text_of(const std::filesystem::path& file) {
 
 class GloveUse : public Rig {
  protected:
-  void SetUp() override {
-    auto writer = participant_->writer(dds::glove_frame);
-    ASSERT_TRUE(writer);
-    writer_.emplace(std::move(*writer));
-  }
-
   v1::GloveFrame frame(const Pose& X_TH, const model::HumanPosture& q, double scale = 1) {
     v1::GloveFrame message;
     message.glove("glove");
@@ -59,18 +53,12 @@ class GloveUse : public Rig {
     return message;
   }
   void publish(const v1::GloveFrame& message) {
-    ASSERT_TRUE(writer_->write(message));
+    ASSERT_TRUE(writer_.write(message));
     std::this_thread::sleep_for(std::chrono::milliseconds(20));  // the glove's rate
   }
-  Strings with_lab(Strings arguments) {
-    const Strings lab = lab_arguments();
-    arguments.insert(arguments.end(), lab.begin(), lab.end());
-    return arguments;
-  }
-
   const Pose place_ = make_pose(Vector3d(0.1, -0.2, 0.3));
   const model::HumanPosture half_ = model::HumanHand::posture({0.4, 0.4, 0.4, 0.4, 0.4});
-  std::optional<dds::Writer<v1::GloveFrame>> writer_;
+  dds::Writer<v1::GloveFrame> writer_ = writer(dds::glove_frame);
   std::uint64_t frames_ = 0;
 };
 
@@ -147,12 +135,7 @@ TEST_F(GloveUse, AUserIsCalibratedAndTheServiceKnowsTheHand) {
   service::Process tool =
       start_program("prehend-glove-tool",
                     with_lab({"calibrate", "--user", "anna", "--out", file, "--limit", "60"}));
-  // The recorder hears the person from the beginning.
-  ASSERT_TRUE(eventually(20, [&] {
-    eprosima::fastdds::dds::PublicationMatchedStatus matched;
-    writer_->raw().get_publication_matched_status(matched);
-    return matched.current_count >= 2;
-  }));
+  meet(writer_, 2);  // the recorder hears the person from the beginning
   for (const auto pose : glove::shown_poses) {
     const std::string next = pose == glove::ShownPose::pinch
                                  ? "hand scale"
@@ -326,8 +309,7 @@ TEST_F(GloveUse, APersonWatchesIt) {
   Terminal terminal(program("prehend"), with_lab({"glove", "watch"}));
   for (const char* word : {"synthetic", "back of hand", "valid", "postures/s", "tip", "running"})
     EXPECT_TRUE(terminal.shows(word)) << word;
-  terminal.press('q');
-  terminal.press('\n');
+  terminal.press("q\n");
   EXPECT_EQ(terminal.end(), 0);
 
   const Answer snapshot = run("prehend", with_lab({"glove", "watch", "--json"}), 20);

@@ -4,40 +4,20 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
-#include <prehend/dds/convert.hpp>
 #include <prehend/dds/topics.hpp>
-#include <prehend/model/human_hand.hpp>
 #include <prehend/test_support/hands.hpp>
 
 #include "rig.hpp"
+#include "shown_hand.hpp"
 
 namespace prehend::integration {
 namespace {
 
 class SetMode : public Rig {
  protected:
-  void SetUp() override {
-    postures_.emplace(participant_->writer(dds::hand_posture).value());
-    orders_.emplace(participant_->writer(dds::operator_command).value());
-  }
-
   /// The same slightly bent hand, at the glove's rate. No finger of it meets another.
   void publish() {
-    v1::HandPosture message;
-    message.glove("glove");
-    message.sequence_number(++frames_);
-    message.stamp_ns(now_ns());
-    message.origin_ns(now_ns());
-    message.hand_scale(1);
-    message.quality(1);
-    message.X_WH(dds::to_message(make_pose({0, 0, 0.4})));
-    const auto tips =
-        model::HumanHand(1).fingertip_poses(model::HumanHand::posture({0.1, 0.3, 0.3, 0.1, 0.1}));
-    for (std::size_t f = 0; f < tips.size(); ++f) {
-      message.fingertips()[f].valid(true);
-      message.fingertips()[f].p_HF(dds::to_message(Eigen::Vector3d(tips[f].translation())));
-    }
-    ASSERT_TRUE(postures_->write(message));
+    ASSERT_TRUE(postures_.write(shown_hand({0.1, 0.3, 0.3, 0.1, 0.1}, ++frames_)));
     std::this_thread::sleep_for(std::chrono::milliseconds(20));
   }
 
@@ -66,7 +46,7 @@ class SetMode : public Rig {
     command.action(v1::ACTION_SET_MODE);
     command.target(target);
     command.argument(argument);
-    EXPECT_TRUE(orders_->write(command));
+    EXPECT_TRUE(orders_.write(command));
     std::optional<v1::OperatorReply> reply;
     EXPECT_TRUE(eventually(15, [&] {
       publish();
@@ -93,8 +73,8 @@ class SetMode : public Rig {
 
   dds::Reader<v1::HandCommand> commands_ = reader(dds::robot_command);
   dds::Reader<v1::OperatorReply> replies_ = reader(dds::operator_reply);
-  std::optional<dds::Writer<v1::HandPosture>> postures_;
-  std::optional<dds::Writer<v1::OperatorCommand>> orders_;
+  dds::Writer<v1::HandPosture> postures_ = writer(dds::hand_posture);
+  dds::Writer<v1::OperatorCommand> orders_ = writer(dds::operator_command);
   std::optional<v1::HandCommand> last_;
   std::uint64_t frames_ = 0;
   int order_count_ = 0;
@@ -147,7 +127,7 @@ TEST_F(SetMode, OrdersForOthersAreNotAnswered) {
   other.action(v1::ACTION_SET_MODE);
   other.target("simulation");
   other.argument("cartesian");
-  ASSERT_TRUE(orders_->write(other));
+  ASSERT_TRUE(orders_.write(other));
   // Orders are reliable and in order: what follows is answered alone.
   EXPECT_EQ(order("retargeting").message().to_string(), "retargeting intelligent placement");
   EXPECT_TRUE(replies_.take().empty());

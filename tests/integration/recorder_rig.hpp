@@ -24,21 +24,6 @@ class RecorderRig : public Rig {
   /// Ends it as a service manager does and returns its exit code; -1: it did not end.
   static int end(service::Process& process, int signal = SIGTERM);
 
-  template <class P>
-  dds::Writer<typename P::type> writer(const dds::Topic<P>& topic) {
-    auto made = participant_->writer(topic);
-    if (!made) throw std::runtime_error(made.error().message());
-    return std::move(*made);
-  }
-  /// Until the program on the other side has matched the writer.
-  template <class T>
-  static void meet(dds::Writer<T>& writer, int readers = 1) {
-    ASSERT_TRUE(eventually(10, [&] {
-      eprosima::fastdds::dds::PublicationMatchedStatus status;
-      writer.raw().get_publication_matched_status(status);
-      return status.current_count >= readers;
-    }));
-  }
   /// Sends an order and returns the reply.
   v1::OperatorReply order(const std::string& target, const std::string& argument);
 

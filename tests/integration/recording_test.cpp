@@ -265,22 +265,22 @@ TEST_F(Recording, KeysOnATerminalPauseWriteASnapshotAndQuit) {
   arguments.insert(arguments.end(), {"--output", file("ring.mcap"), "--snapshot", "30"});
   Terminal terminal(program("prehend-record"), arguments);
   ASSERT_TRUE(terminal.shows("recording 0 s"));
-  EXPECT_FALSE(terminal.waits_for_enter());
+  EXPECT_FALSE(terminal.is_a_shells());
   auto reports = writer(dds::grasp_report);
   meet(reports);
   v1::GraspReport report;
   report.hand("hand");
   ASSERT_TRUE(reports.write(report));
   ASSERT_EQ(reports.raw().wait_for_acknowledgments({5, 0}), ReturnCode_t::RETCODE_OK);
-  terminal.press(' ');
+  terminal.press(" ");
   EXPECT_TRUE(terminal.shows("paused ")) << terminal.shown();
-  terminal.press(' ');
+  terminal.press(" ");
   EXPECT_TRUE(terminal.shows("recording ")) << terminal.shown();
-  terminal.press('s');
+  terminal.press("s");
   EXPECT_TRUE(terminal.shows("_1.mcap")) << terminal.shown();
-  terminal.press('q');
+  terminal.press("q");
   EXPECT_EQ(terminal.end(), 0);
-  EXPECT_TRUE(terminal.waits_for_enter()) << "the terminal is not as it was";
+  EXPECT_TRUE(terminal.is_a_shells()) << "the terminal is not as it was";
   std::size_t snapshots = 0;
   for (const auto& entry : std::filesystem::directory_iterator(folder_))
     if (entry.path().extension() == ".mcap") {

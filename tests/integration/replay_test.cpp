@@ -4,13 +4,6 @@
 //
 // Recordings that keys and orders work on have their messages an hour apart, so that nothing comes
 // by itself.
-#include <poll.h>
-#include <pty.h>
-#include <sys/wait.h>
-#include <termios.h>
-#include <unistd.h>
-
-#include <csignal>
 #include <cstdlib>
 #include <mutex>
 #include <nlohmann/json.hpp>
@@ -21,6 +14,7 @@
 #include <prehend/recorder/recording_file.hpp>
 
 #include "rig.hpp"
+#include "terminal.hpp"
 
 namespace prehend::integration {
 namespace {
@@ -62,11 +56,6 @@ class Replay : public Rig {
     EXPECT_TRUE(recording.close());
     return file(name);
   }
-  Strings with_lab(Strings arguments) {
-    const Strings lab = lab_arguments();
-    arguments.insert(arguments.end(), lab.begin(), lab.end());
-    return arguments;
-  }
   /// Numbers of reports, as they come.
   static void take(dds::Reader<v1::GraspReport>& reader, std::vector<std::uint64_t>& numbers) {
     for (const auto& sample : reader.take())
@@ -86,106 +75,43 @@ class Replay : public Rig {
   std::uint64_t sequence_ = 0;
 };
 
-/// A program on a terminal of its own.
-class OnTerminal {
- public:
-  explicit OnTerminal(const Strings& command) {
-    pid_ = ::forkpty(&terminal_, nullptr, nullptr, nullptr);
-    if (pid_ == 0) {
-      std::vector<char*> pointers;
-      for (const std::string& text : command) pointers.push_back(const_cast<char*>(text.data()));
-      pointers.push_back(nullptr);
-      ::execv(pointers.front(), pointers.data());
-      ::_exit(127);
-    }
-  }
-  ~OnTerminal() {
-    ::kill(pid_, SIGKILL);
-    ::waitpid(pid_, nullptr, 0);
-    ::close(terminal_);
-  }
-  /// Waits until it has said this; what was said before is passed by.
-  bool says(const std::string& text) {
-    return eventually(20, [&] {
-      read();
-      const std::size_t at = said_.find(text);
-      if (at == std::string::npos) return false;
-      said_.erase(0, at + text.size());
-      return true;
-    });
-  }
-  void press(const std::string& keys) {
-    EXPECT_EQ(::write(terminal_, keys.data(), keys.size()), static_cast<ssize_t>(keys.size()));
-  }
-  /// Letters appear as they are typed and wait for Enter, as in a shell.
-  bool is_ordinary() const {
-    termios now{};
-    return ::tcgetattr(terminal_, &now) == 0 && (now.c_lflag & ICANON) && (now.c_lflag & ECHO);
-  }
-  std::optional<int> exit_code() {
-    std::optional<int> code;
-    eventually(20, [&] {
-      read();
-      int status = 0;
-      if (::waitpid(pid_, &status, WNOHANG) != pid_) return false;
-      code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-      return true;
-    });
-    return code;
-  }
-
- private:
-  void read() {
-    pollfd input{terminal_, POLLIN, 0};
-    char bytes[4096];
-    while (::poll(&input, 1, 0) == 1 && (input.revents & POLLIN)) {
-      const ssize_t count = ::read(terminal_, bytes, sizeof bytes);
-      if (count <= 0) return;
-      said_.append(bytes, static_cast<std::size_t>(count));
-    }
-  }
-  pid_t pid_ = -1;
-  int terminal_ = -1;
-  std::string said_;
-};
-
 TEST_F(Replay, KeysPauseStepSeekAndStop) {
   std::vector<int> numbers(40);
   for (int i = 0; i < 40; ++i) numbers[static_cast<std::size_t>(i)] = i;
   const std::string tape = reports("tape.mcap", numbers, std::chrono::hours(1));
   auto reader = this->reader(dds::grasp_report);
   std::vector<std::uint64_t> came;
-  OnTerminal player(with_lab({program("prehend-replay"), tape, "--delay", "0"}));
+  Terminal player(program("prehend-replay"), with_lab({tape, "--delay", "0"}));
   ASSERT_TRUE(heard(reader, came, 1));  // it plays
-  EXPECT_FALSE(player.is_ordinary());
+  EXPECT_FALSE(player.is_a_shells());
   player.press(" ");
-  EXPECT_TRUE(player.says("paused"));
+  EXPECT_TRUE(player.shows("paused"));
   player.press("s");
-  EXPECT_TRUE(player.says("stepped"));
+  EXPECT_TRUE(player.shows("stepped"));
   EXPECT_TRUE(heard(reader, came, 2));
   player.press("b");
-  EXPECT_TRUE(player.says("burst of 10"));
+  EXPECT_TRUE(player.shows("burst of 10"));
   EXPECT_TRUE(heard(reader, came, 12));
   for (std::size_t i = 0; i < came.size(); ++i) EXPECT_EQ(came[i], i);
   player.press("\x1b[C");  // right
-  EXPECT_TRUE(player.says("at 39605.000 s"));
+  EXPECT_TRUE(player.shows("at 39605.000 s"));
   player.press("\x1b[D");
-  EXPECT_TRUE(player.says("at 39600.000 s"));
+  EXPECT_TRUE(player.shows("at 39600.000 s"));
   player.press("\x1b[A");
-  EXPECT_TRUE(player.says("rate 1.25"));
+  EXPECT_TRUE(player.shows("rate 1.25"));
   player.press("\x1b[B");
-  EXPECT_TRUE(player.says("rate 1"));
+  EXPECT_TRUE(player.shows("rate 1"));
   player.press("l");
-  EXPECT_TRUE(player.says("loop on"));
+  EXPECT_TRUE(player.shows("loop on"));
   player.press("l");
-  EXPECT_TRUE(player.says("loop off"));
+  EXPECT_TRUE(player.shows("loop off"));
   player.press(" ");
-  EXPECT_TRUE(player.says("playing"));
+  EXPECT_TRUE(player.shows("playing"));
   player.press("x");  // means nothing
   player.press("q");
-  EXPECT_TRUE(player.says("stopped"));
-  EXPECT_EQ(player.exit_code(), 0);
-  EXPECT_TRUE(player.is_ordinary());
+  EXPECT_TRUE(player.shows("stopped"));
+  EXPECT_EQ(player.end(), 0);
+  EXPECT_TRUE(player.is_a_shells()) << "the terminal is not as it was";
 }
 
 TEST_F(Replay, SeveralPlayersStartedTogetherKeepTogether) {

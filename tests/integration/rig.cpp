@@ -61,6 +61,12 @@ Strings Rig::lab_arguments(const Strings& sets) const {
   return arguments;
 }
 
+Strings Rig::with_lab(Strings arguments) const {
+  const Strings lab = lab_arguments();
+  arguments.insert(arguments.end(), lab.begin(), lab.end());
+  return arguments;
+}
+
 service::Process Rig::start_program(const std::string& name, const Strings& arguments) {
   service::Process::Options options;
   options.command = {program(name)};

@@ -35,6 +35,8 @@ class Rig : public testing::Test {
   static std::string program(const std::string& name);
   /// --config and --set so that a service joins this lab.
   Strings lab_arguments(const Strings& sets = {}) const;
+  /// The arguments, and those by which a program joins this lab.
+  Strings with_lab(Strings arguments) const;
   /// Starts prehend-NAME in this lab; its words go into a log that the test prints when it fails.
   service::Process start(const std::string& name, const Strings& sets = {});
   service::Process start_program(const std::string& name, const Strings& arguments);
@@ -48,6 +50,21 @@ class Rig : public testing::Test {
     auto made = participant_->reader(topic);
     if (!made) throw std::runtime_error(made.error().message());
     return std::move(*made);
+  }
+  template <class P>
+  dds::Writer<typename P::type> writer(const dds::Topic<P>& topic) {
+    auto made = participant_->writer(topic);
+    if (!made) throw std::runtime_error(made.error().message());
+    return std::move(*made);
+  }
+  /// Until the program on the other side has matched the writer.
+  template <class T>
+  static void meet(dds::Writer<T>& writer, int readers = 1) {
+    ASSERT_TRUE(eventually(10, [&] {
+      eprosima::fastdds::dds::PublicationMatchedStatus status;
+      writer.raw().get_publication_matched_status(status);
+      return status.current_count >= readers;
+    }));
   }
 
   int domain_;

@@ -28,15 +28,7 @@ v1::HandCommand command(const Vector3d& p_WG, double closure) {
   return message;
 }
 
-class Simulation : public Rig {
- protected:
-  template <class P>
-  dds::Writer<typename P::type> writer(const dds::Topic<P>& topic) {
-    auto made = participant_->writer(topic);
-    if (!made) throw std::runtime_error(made.error().message());
-    return std::move(*made);
-  }
-};
+using Simulation = Rig;
 
 TEST_F(Simulation, GraspsWhatWasSeenAndReportsIt) {
   auto commands = writer(dds::robot_command);

@@ -4,52 +4,24 @@
 #include <gmock/gmock.h>
 
 #include <nlohmann/json.hpp>
-#include <prehend/dds/convert.hpp>
 #include <prehend/dds/topics.hpp>
 #include <prehend/learning/training_set.hpp>
-#include <prehend/model/human_hand.hpp>
 #include <set>
 
 #include "rig.hpp"
+#include "shown_hand.hpp"
 
 namespace prehend::integration {
 namespace {
 
-using Closure = std::array<double, model::finger_count>;
-
 class Teach : public Rig {
  protected:
-  void SetUp() override {
-    auto writer = participant_->writer(dds::hand_posture);
-    ASSERT_TRUE(writer);
-    writer_.emplace(std::move(*writer));
-  }
-
   void publish(const Closure& closure) {
-    v1::HandPosture message;
-    message.glove("glove");
-    message.sequence_number(++frames_);
-    message.stamp_ns(now_ns());
-    message.origin_ns(now_ns());
-    message.hand_scale(1);
-    message.quality(1);
-    message.X_WH(dds::to_message(make_pose({0, 0, 0.4})));
-    const auto tips = model::HumanHand(1).fingertip_poses(model::HumanHand::posture(closure));
-    for (std::size_t f = 0; f < tips.size(); ++f) {
-      message.fingertips()[f].valid(true);
-      message.fingertips()[f].p_HF(dds::to_message(Eigen::Vector3d(tips[f].translation())));
-    }
-    ASSERT_TRUE(writer_->write(message));
+    ASSERT_TRUE(writer_.write(shown_hand(closure, ++frames_)));
     std::this_thread::sleep_for(std::chrono::milliseconds(20));  // the glove's rate
   }
 
-  Strings with_lab(Strings arguments) {
-    const Strings lab = lab_arguments();
-    arguments.insert(arguments.end(), lab.begin(), lab.end());
-    return arguments;
-  }
-
-  std::optional<dds::Writer<v1::HandPosture>> writer_;
+  dds::Writer<v1::HandPosture> writer_ = writer(dds::hand_posture);
   std::uint64_t frames_ = 0;
 };
 

@@ -29,8 +29,8 @@ Terminal::~Terminal() {
   ::close(descriptor_);
 }
 
-void Terminal::press(char key) {
-  EXPECT_EQ(::write(descriptor_, &key, 1), 1);
+void Terminal::press(const std::string& keys) {
+  EXPECT_EQ(::write(descriptor_, keys.data(), keys.size()), static_cast<ssize_t>(keys.size()));
 }
 
 bool Terminal::shows(const std::string& text) {
@@ -52,10 +52,10 @@ int Terminal::end() {
   return ended_ && WIFEXITED(status) ? WEXITSTATUS(status) : -1;
 }
 
-bool Terminal::waits_for_enter() const {
+bool Terminal::is_a_shells() const {
   termios now{};
-  ::tcgetattr(descriptor_, &now);
-  return (now.c_lflag & ICANON) != 0;
+  return ::tcgetattr(descriptor_, &now) == 0 && (now.c_lflag & ICANON) != 0 &&
+         (now.c_lflag & ECHO) != 0;
 }
 
 void Terminal::take() {

@@ -16,12 +16,13 @@ class Terminal {
   Terminal(const Terminal&) = delete;
   Terminal& operator=(const Terminal&) = delete;
 
-  void press(char key);
+  void press(const std::string& keys);
   /// Until it shows the text; what it showed before does not count again.
   bool shows(const std::string& text);
   /// Its exit code; -1: it did not end.
   int end();
-  bool waits_for_enter() const;
+  /// Letters appear as they are typed and wait for Enter, as in a shell.
+  bool is_a_shells() const;
   const std::string& shown() const { return shown_; }
 
  private:

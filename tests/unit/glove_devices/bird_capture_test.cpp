@@ -5,7 +5,6 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
-#include <prehend/base/random.hpp>
 #include <prehend/glove_devices/bird_capture.hpp>
 
 namespace prehend::glove::bird {
@@ -82,35 +81,6 @@ TEST(BirdCapture, ReadsBothRealCaptures) {
 TEST(BirdCapture, RefusesOtherTexts) {
   EXPECT_FALSE(read_capture("", "empty"));
   EXPECT_FALSE(read_capture("Copyright Information\nThe license …\n", "licence"));
-}
-
-// Mutation fuzzing: damaged captures give an error or finite records.
-TEST(BirdCapture, SurvivesDamagedCaptures) {
-  Random random(31);
-  for (int n = 0; n < 5000; ++n) {
-    std::string text = small;
-    for (std::size_t changes = 1 + random.index(6); changes > 0; --changes) {
-      const std::size_t at = random.index(text.size());
-      switch (random.index(3)) {
-        case 0:
-          text[at] = static_cast<char>(random.bits() & 0xff);
-          break;
-        case 1:
-          text.erase(at, 1 + random.index(10));
-          break;
-        default:
-          text.insert(at, text.substr(random.index(text.size()), random.index(20)));
-      }
-    }
-    const auto capture = read_capture(text, "damaged");
-    if (!capture) continue;
-    for (const CapturedRecord& captured : capture->records) {
-      ASSERT_TRUE(std::isfinite(captured.time));
-      if (captured.record.position) {
-        ASSERT_TRUE(captured.record.position->allFinite());
-      }
-    }
-  }
 }
 
 }  // namespace
