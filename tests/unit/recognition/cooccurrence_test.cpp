@@ -1,5 +1,5 @@
-// The sliding sums against the definition of a colour cooccurrence histogram, written out naively.
-// Counts are whole numbers below 2^24, so they must be equal exactly.
+// Histograms of a masked region against the definition of a colour cooccurrence histogram, written
+// out naively. Counts are whole numbers below 2^24, so they must be equal exactly.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -18,43 +18,6 @@ Plane random_plane(int width, int height, std::uint64_t seed) {
   Plane made(width, height);
   for (auto& value : made.values) value = static_cast<std::uint8_t>(random.index(colours));
   return made;
-}
-
-/// All pairs whose first pixel lies in the rectangle, on every step-th pixel.
-Eigen::VectorXf naive(const Plane& plane, const std::vector<Offset>& offsets, int left, int top,
-                      int side, int step) {
-  Eigen::VectorXf made = Eigen::VectorXf::Zero(pair_count(colours));
-  for (int y = top; y < top + side; ++y)
-    for (int x = left; x < left + side; ++x) {
-      if (x % step != 0 || y % step != 0) continue;
-      for (const Offset& o : offsets) {
-        const int u = x + o.dx, v = y + o.dy;
-        if (u < 0 || v < 0 || u >= plane.width || v >= plane.height) continue;
-        if (plane.at(x, y) >= colours || plane.at(u, v) >= colours) continue;
-        made[pair_index(plane.at(x, y), plane.at(u, v))] += 1;
-      }
-    }
-  return made;
-}
-
-TEST(Cooccurrence, SlidingWindowsEqualNaiveOnes) {
-  Plane plane = random_plane(83, 61, 3);
-  for (int i = 0; i < 200; ++i) plane.values[static_cast<std::size_t>(i * 17)] = 255;  // left out
-  const auto offsets = offsets_at({1, 3, 6});
-  for (const int step : {1, 2}) {
-    const CellGrid grid(plane, colours, offsets, 8, step);
-    for (const auto& [size, stride] : {std::pair(1, 1), std::pair(2, 1), std::pair(3, 2)}) {
-      const Eigen::MatrixXf windows = grid.windows(size, stride);
-      const int across = (grid.columns() - size) / stride + 1;
-      const int down = (grid.rows() - size) / stride + 1;
-      ASSERT_EQ(windows.cols(), across * down);
-      for (int j = 0; j < down; ++j)
-        for (int i = 0; i < across; ++i)
-          ASSERT_EQ(windows.col(j * across + i),
-                    naive(plane, offsets, 8 * i * stride, 8 * j * stride, 8 * size, step))
-              << size << " " << stride << " at " << i << " " << j;
-    }
-  }
 }
 
 TEST(Cooccurrence, MaskedCountsOnlyPairsInsideTheMask) {
