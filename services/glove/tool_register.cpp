@@ -1,8 +1,7 @@
-#include <fstream>
 #include <iostream>
-#include <iterator>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <prehend/base/toml_text.hpp>
 #include <prehend/glove_calibration/toucher.hpp>
 
 #include "asking.hpp"
@@ -35,20 +34,6 @@ Expected<std::vector<Eigen::Vector3d>> known_points(const Arguments& arguments) 
   return points;
 }
 
-Expected<void> write_to(const std::filesystem::path& file, const std::string& line) {
-  std::ifstream in(file, std::ios::binary);
-  const std::string text{std::istreambuf_iterator<char>(in), {}};
-  if (!in) return fail("the configuration cannot be read", file.string());
-  // Beside it first: whoever reads it meanwhile sees the old or the new one.
-  const std::filesystem::path beside = file.string() + ".new";
-  std::ofstream out(beside, std::ios::binary);
-  out << with_x_wt(text, line) << std::flush;
-  std::error_code error;
-  if (out) std::filesystem::rename(beside, file, error);
-  if (!out || error) return fail("the configuration cannot be written", file.string());
-  return {};
-}
-
 int register_with(const Arguments& arguments) {
   const auto config = arguments.lab.load();
   if (!config) return service::complain(config.error(), service::exit_wrong_use);
@@ -78,7 +63,7 @@ int register_with(const Arguments& arguments) {
             1000 * result->worst);
   if (arguments.write) {
     const std::string file = arguments.lab.file();
-    if (const auto written = write_to(file, line); !written)
+    if (const auto written = write_line(file, "tracker", "X_WT", line); !written)
       return service::complain(written.error(), service::exit_broken);
     log::info("written to {}", file);
   }

@@ -5,6 +5,7 @@
 #include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
+#include <prehend/base/toml_text.hpp>
 
 namespace prehend::glove {
 namespace {
@@ -27,11 +28,6 @@ Matrix3Xd columns(const std::vector<Vector3d>& points) {
 double spread_across(const Matrix3Xd& centred) {
   const Eigen::JacobiSVD<Matrix3Xd> svd(centred);
   return svd.singularValues()[1] / std::sqrt(static_cast<double>(centred.cols()));
-}
-
-std::string_view trimmed(std::string_view line) {
-  const auto first = line.find_first_not_of(" \t");
-  return first == std::string_view::npos ? std::string_view() : line.substr(first);
 }
 
 }  // namespace
@@ -75,26 +71,7 @@ std::string x_wt_line(const Pose& X_WT) {
 }
 
 std::string with_x_wt(std::string_view lab_toml, const std::string& line) {
-  std::string result;
-  bool in_tracker = false, done = false;
-  while (!lab_toml.empty()) {
-    const std::size_t end = lab_toml.find('\n');
-    const std::string_view old = lab_toml.substr(0, end);
-    lab_toml.remove_prefix(end == std::string_view::npos ? lab_toml.size() : end + 1);
-    const std::string_view text = trimmed(old);
-    const bool header = text.starts_with('[');
-    const bool replaced = in_tracker && !header && text.starts_with("X_WT");
-    result += replaced ? (done ? std::string() : line) : std::string(old);
-    result += '\n';
-    done = done || replaced;
-    if (header) in_tracker = text.starts_with("[tracker]");
-  }
-  if (done) return result;
-  // No such line yet: right behind the table's header, which may have to be made.
-  const std::size_t table = ("\n" + result).find("\n[tracker]");
-  if (table == std::string::npos) return result + "\n[tracker]\n" + line + '\n';
-  result.insert(result.find('\n', table) + 1, line + '\n');
-  return result;
+  return with_line(lab_toml, "tracker", "X_WT", line);
 }
 
 }  // namespace prehend::glove
