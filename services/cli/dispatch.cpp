@@ -17,6 +17,7 @@ const std::vector<Tool>& tools() {
       {"check", "prehend-check", "do services still answer as recorded"},
       {"recording", "prehend-recording", "what is in recordings, parts of them, comparisons"},
       {"glove", "prehend-glove-tool", "calibrate, register and watch a glove; decode, emulate"},
+      {"camera", "prehend-camera", "calibrate a camera with a chessboard"},
       {"objects", "prehend-objects", "train, detect and evaluate object models"},
       {"teach", "prehend-teach", "show postures to learn a mapping from"},
       {"train", "prehend-train", "train a mapping model for a robot hand"},
