@@ -91,6 +91,16 @@ std::optional<Detector::Hypothesis> Detector::weigh(const Frame& frame, std::siz
   return made;
 }
 
+Sighting Detector::sighting_of(const Hypothesis& hypothesis) const {
+  const auto c = static_cast<std::size_t>(hypothesis.class_index);
+  return {models_.classes[c].name,
+          hypothesis.probability,
+          to_box(bounds(hypothesis.fit.region)),
+          shapes_[c],
+          hypothesis.fit.at,
+          hypothesis.fit.covariance};
+}
+
 std::optional<Detector::Hypothesis> Detector::examine(const Frame& frame, const CameraModel& camera,
                                                       const Votes& votes,
                                                       const Region& region) const {
@@ -137,6 +147,7 @@ Expected<std::vector<Sighting>> Detector::on_table(const Picture& picture,
   std::vector<Sighting> found;
   std::vector<double> agreements;  // of each found one's outline
   std::vector<Bounds> nothing;     // places that were examined in vain
+  std::vector<Sighting> doubtful;
   // What is found is taken out of the picture, and the rest is scanned again: the windows around a
   // large object would outvote a small one.
   for (std::size_t before = 1; before != found.size();) {
@@ -144,11 +155,13 @@ Expected<std::vector<Sighting>> Detector::on_table(const Picture& picture,
     Votes votes = scan(models_, frame.colours, options_.scan, frame.taken);
     for (const Bounds& b : nothing) erase(votes, b.left, b.top, b.right, b.bottom);
     for (int tries = 0; tries < options_.most_tries;) {
-      if (static_cast<int>(found.size()) >= options_.most_objects) return found;
+      if (static_cast<int>(found.size()) >= options_.most_objects) break;
       const Region region = grow_strongest(votes);
       if (region.class_index < 0) break;
       const auto hypothesis = examine(frame, camera, votes, region);
       if (!hypothesis || hypothesis->probability < options_.accept) {
+        if (hypothesis && hypothesis->probability >= options_.doubtful)
+          doubtful.push_back(sighting_of(*hypothesis));
         nothing.push_back({region.left, region.top, region.right, region.bottom});
         erase(votes, region.left, region.top, region.right, region.bottom);
         ++tries;
@@ -163,8 +176,7 @@ Expected<std::vector<Sighting>> Detector::on_table(const Picture& picture,
         for (int x = span.left; x < span.right; ++x)
           frame.taken.at(x, hypothesis->fit.region.top + static_cast<int>(i)) = 1;
       }
-      Sighting sighting{models_.classes[c].name, hypothesis->probability,   to_box(b), shapes_[c],
-                        hypothesis->fit.at,      hypothesis->fit.covariance};
+      Sighting sighting = sighting_of(*hypothesis);
       // Two of a kind cannot stand in one place: the one whose outline agrees better is true.
       const double apart = model::half_extents(shapes_[c]).head<2>().norm();
       std::size_t same = 0;
@@ -183,6 +195,7 @@ Expected<std::vector<Sighting>> Detector::on_table(const Picture& picture,
       }
     }
   }
+  found.insert(found.end(), doubtful.begin(), doubtful.end());
   return found;
 }
 

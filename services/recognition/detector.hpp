@@ -4,11 +4,10 @@
 #include <optional>
 #include <prehend/model/catalogue.hpp>
 #include <prehend/recognition_learning/object_models.hpp>
+#include <prehend/recognition_placing/localise.hpp>
+#include <prehend/recognition_scan/scan.hpp>
 #include <string>
 #include <vector>
-
-#include "localise.hpp"
-#include "scan.hpp"
 
 namespace prehend::recognition {
 
@@ -30,7 +29,8 @@ struct Sighting {
 
 struct DetectorOptions {
   ScanOptions scan;
-  double accept = 0.5;   // least probability of what is reported
+  double accept = 0.5;   // least probability of what is taken for true, and reported
+  double doubtful = 1;   // least probability of what is reported although it is not accepted
   int most_objects = 6;  // in a picture
   int hypotheses = 4;    // classes tried at each place
   int most_tries = 5;    // places in a pass that turn out to be nothing before it ends
@@ -57,6 +57,7 @@ class Detector {
 
  private:
   struct Hypothesis;
+  Sighting sighting_of(const Hypothesis& hypothesis) const;
   std::optional<Hypothesis> weigh(const Frame& frame, std::size_t class_index, Fit fit) const;
   std::optional<Hypothesis> examine(const Frame& frame, const CameraModel& camera,
                                     const Votes& votes, const Region& region) const;

@@ -1,8 +1,7 @@
 #pragma once
 
+#include <prehend/recognition_geometry/camera_model.hpp>
 #include <prehend/service/shell.hpp>
-
-#include "camera_model.hpp"
 
 namespace prehend::recognition {
 

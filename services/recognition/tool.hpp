@@ -10,5 +10,6 @@ void add_render(CLI::App& app, int& exit_code);
 void add_train(CLI::App& app, int& exit_code);
 void add_detect(CLI::App& app, int& exit_code);
 void add_evaluate(CLI::App& app, int& exit_code);
+void add_scenes(CLI::App& app, int& exit_code);
 
 }  // namespace prehend::recognition

@@ -9,10 +9,10 @@
 #include <prehend/recognition_learning/dataset.hpp>
 #include <prehend/recognition_learning/model_file.hpp>
 #include <prehend/recognition_picture/picture_file.hpp>
+#include <prehend/recognition_rendering/renderer.hpp>
 #include <prehend/service/config.hpp>
 
 #include "detector.hpp"
-#include "renderer.hpp"
 #include "service.hpp"
 #include "tool.hpp"
 

@@ -15,6 +15,7 @@ int main(int argc, char** argv) {
   prehend::recognition::add_train(app, exit_code);
   prehend::recognition::add_detect(app, exit_code);
   prehend::recognition::add_evaluate(app, exit_code);
+  prehend::recognition::add_scenes(app, exit_code);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

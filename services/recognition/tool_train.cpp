@@ -11,9 +11,9 @@
 #include <prehend/recognition_learning/dataset.hpp>
 #include <prehend/recognition_learning/model_file.hpp>
 #include <prehend/recognition_picture/picture_file.hpp>
+#include <prehend/recognition_rendering/training_views.hpp>
 
 #include "tool.hpp"
-#include "training_views.hpp"
 
 namespace prehend::recognition {
 namespace {

@@ -11,9 +11,9 @@
 #include <filesystem>
 #include <fstream>
 #include <map>
-#include <prehend/recognition/renderer.hpp>
-#include <prehend/recognition/scan.hpp>
-#include <prehend/recognition/training_views.hpp>
+#include <prehend/recognition_rendering/renderer.hpp>
+#include <prehend/recognition_scan/scan.hpp>
+#include <prehend/recognition_rendering/training_views.hpp>
 #include <string>
 
 namespace {

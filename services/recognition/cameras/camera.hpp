@@ -3,7 +3,7 @@
 #include <memory>
 #include <prehend/base/error.hpp>
 #include <prehend/model/scene.hpp>
-#include <prehend/recognition/camera_model.hpp>
+#include <prehend/recognition_geometry/camera_model.hpp>
 #include <prehend/recognition_picture/picture.hpp>
 #include <string>
 

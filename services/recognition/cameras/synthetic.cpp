@@ -1,4 +1,4 @@
-#include <prehend/recognition/renderer.hpp>
+#include <prehend/recognition_rendering/renderer.hpp>
 
 #include "sources.hpp"
 

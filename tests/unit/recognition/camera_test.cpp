@@ -5,7 +5,7 @@
 #include <limits>
 #include <numbers>
 #include <prehend/base/random.hpp>
-#include <prehend/recognition/silhouette.hpp>
+#include <prehend/recognition_geometry/silhouette.hpp>
 
 namespace prehend::recognition {
 namespace {

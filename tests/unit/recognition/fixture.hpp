@@ -2,8 +2,8 @@
 
 #include <prehend/model/scene.hpp>
 #include <prehend/recognition/detector.hpp>
-#include <prehend/recognition/renderer.hpp>
-#include <prehend/recognition/training_views.hpp>
+#include <prehend/recognition_rendering/renderer.hpp>
+#include <prehend/recognition_rendering/training_views.hpp>
 
 namespace prehend::recognition {
 

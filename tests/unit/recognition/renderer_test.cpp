@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <prehend/recognition/silhouette.hpp>
+#include <prehend/recognition_geometry/silhouette.hpp>
 
 #include "fixture.hpp"
 

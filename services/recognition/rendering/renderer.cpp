@@ -156,8 +156,8 @@ void blur(std::vector<Vector3f>& light, int width, int height) {
 
 }  // namespace
 
-Renderer::Renderer(const model::Catalogue& catalogue) {
-  for (const model::CatalogueObject& object : catalogue.objects())
+Renderer::Renderer(const std::vector<model::CatalogueObject>& objects) {
+  for (const model::CatalogueObject& object : objects)
     known_.emplace(object.name, std::pair(object.shape, paint(object)));
 }
 

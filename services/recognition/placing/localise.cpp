@@ -6,92 +6,13 @@
 #include <cmath>
 #include <numbers>
 
+#include "colour_bins.hpp"
+#include "evidence.hpp"
+
 namespace prehend::recognition {
 namespace {
 
 constexpr double pi = std::numbers::pi;
-constexpr int side = 16;  // fine RGB bins a channel
-constexpr int bin_count = side * side * side;
-
-/// 1-2-1 along each channel: neighbouring colours are alike, and few pixels must fill many bins.
-void smooth(Eigen::VectorXf& bins) {
-  for (const int stride : {1, side, side * side}) {
-    const Eigen::VectorXf before = bins;
-    for (int i = 0; i < bin_count; ++i) {
-      const int place = i / stride % side;
-      const float low = place > 0 ? before[i - stride] : before[i];
-      const float high = place < side - 1 ? before[i + stride] : before[i];
-      bins[i] = 0.25f * low + 0.5f * before[i] + 0.25f * high;
-    }
-  }
-  const float sum = bins.sum();
-  if (sum > 0) bins /= sum;
-}
-
-/// Adds what the same surfaces look like in a shadow: every colour darker by some shares of itself.
-/// Without it a cast shadow, rare and darker than the table, passes for a part of the object.
-void add_shadows(Eigen::VectorXf& bins) {
-  constexpr float share = 0.06f;  // of the surface for each depth of shadow
-  const Eigen::VectorXf lit = bins;
-  for (int i = 0; i < bin_count; ++i) {
-    if (!(lit[i] > 0)) continue;
-    const Eigen::Array3f colour(static_cast<float>(i / (side * side)) + 0.5f,
-                                static_cast<float>(i / side % side) + 0.5f,
-                                static_cast<float>(i % side) + 0.5f);
-    for (const float darker : {0.9f, 0.82f, 0.74f, 0.66f, 0.58f, 0.5f}) {
-      const Eigen::Array3i dark = (colour * darker).cast<int>();
-      bins[dark[0] * side * side + dark[1] * side + dark[2]] += share * lit[i];
-    }
-  }
-  const float sum = bins.sum();
-  if (sum > 0) bins /= sum;
-}
-
-/// A map of log likelihood ratios over a rectangle of the picture, as running sums of each row.
-class Evidence {
- public:
-  Evidence(int left, int top, int width, int height)
-      : left_(left),
-        top_(top),
-        width_(width),
-        height_(height),
-        sums_(static_cast<std::size_t>(width + 1) * static_cast<std::size_t>(height)) {}
-
-  template <class Value>
-  void fill(Value value) {
-    for (int y = 0; y < height_; ++y) {
-      double* row = &sums_[static_cast<std::size_t>(y) * static_cast<std::size_t>(width_ + 1)];
-      row[0] = 0;
-      for (int x = 0; x < width_; ++x) row[x + 1] = row[x] + value(left_ + x, top_ + y);
-    }
-  }
-  /// Of one pixel; 0 outside the rectangle.
-  double at(int x, int y) const {
-    if (x < left_ || y < top_ || x >= left_ + width_ || y >= top_ + height_) return 0;
-    const double* row =
-        &sums_[static_cast<std::size_t>(y - top_) * static_cast<std::size_t>(width_ + 1)];
-    return row[x - left_ + 1] - row[x - left_];
-  }
-  double sum(const Silhouette& region) const {
-    double total = 0;
-    for (std::size_t i = 0; i < region.rows.size(); ++i) {
-      const int y = region.top + static_cast<int>(i) - top_;
-      if (y < 0 || y >= height_) continue;
-      const int from = std::clamp(region.rows[i].left - left_, 0, width_);
-      const int to = std::clamp(region.rows[i].right - left_, 0, width_);
-      if (to <= from) continue;
-      const double* row =
-          &sums_[static_cast<std::size_t>(y) * static_cast<std::size_t>(width_ + 1)];
-      total += row[to] - row[from];
-    }
-    return total;
-  }
-
- private:
-  int left_, top_, width_, height_;
-  std::vector<double> sums_;
-};
-
 /// An outline that agrees less with the first evidence is not looked at any further.
 constexpr double least_promise = 0.25;
 
@@ -431,32 +352,6 @@ class Fitter {
 };
 
 }  // namespace
-
-Frame prepare(const Picture& picture, const Palette& palette) {
-  Frame frame{picture, palette.quantise(picture), Plane(picture.width, picture.height), {}, {}, {}};
-  frame.bins.resize(picture.pixels());
-  frame.bin_share = Eigen::VectorXf::Zero(bin_count);
-  frame.colour_share = Eigen::VectorXf::Zero(palette.size());
-  for (std::size_t i = 0; i < frame.bins.size(); ++i) {
-    const std::uint8_t* p = &picture.rgb[3 * i];
-    const int bin = (p[0] >> 4) * side * side + (p[1] >> 4) * side + (p[2] >> 4);
-    frame.bins[i] = static_cast<std::uint16_t>(bin);
-    frame.bin_share[bin] += 1;
-  }
-  add_shadows(frame.bin_share);
-  smooth(frame.bin_share);
-  // The same in colours of the palette.
-  Picture every_bin(bin_count, 1);
-  for (int i = 0; i < bin_count; ++i) {
-    std::uint8_t* p = every_bin.at(i, 0);
-    p[0] = static_cast<std::uint8_t>(i / (side * side) * 16 + 8);
-    p[1] = static_cast<std::uint8_t>(i / side % side * 16 + 8);
-    p[2] = static_cast<std::uint8_t>(i % side * 16 + 8);
-  }
-  const Plane of_bin = palette.quantise(every_bin);
-  for (int i = 0; i < bin_count; ++i) frame.colour_share[of_bin.at(i, 0)] += frame.bin_share[i];
-  return frame;
-}
 
 std::optional<Fit> localise(const Frame& frame, const CameraModel& camera,
                             const model::Shape& shape, const Eigen::VectorXf& known_colours,

@@ -1,22 +1,11 @@
 #pragma once
 
 #include <optional>
-#include <prehend/recognition_descriptor/palette.hpp>
+#include <prehend/recognition_geometry/silhouette.hpp>
 
-#include "silhouette.hpp"
+#include "frame.hpp"
 
 namespace prehend::recognition {
-
-/// A picture prepared for fitting shapes into it.
-struct Frame {
-  Picture picture;
-  Plane colours;                    // palette indices
-  Plane taken;                      // 1: already explained by another object
-  std::vector<std::uint16_t> bins;  // fine RGB bin of every pixel
-  Eigen::VectorXf bin_share;        // of the whole picture, smoothed
-  Eigen::VectorXf colour_share;     // of the palette's colours in the whole picture
-};
-Frame prepare(const Picture& picture, const Palette& palette);
 
 struct Fit {
   Standing at;

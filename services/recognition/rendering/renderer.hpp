@@ -2,10 +2,10 @@
 
 #include <map>
 #include <prehend/model/scene.hpp>
+#include <prehend/recognition_geometry/camera_model.hpp>
 #include <prehend/recognition_picture/picture.hpp>
 #include <string>
 
-#include "camera_model.hpp"
 #include "texture.hpp"
 
 namespace prehend::recognition {
@@ -22,7 +22,8 @@ struct RenderOptions {
 /// Colours: scene.light.gain 1 shows an albedo facing the lamp as its own sRGB colour.
 class Renderer {
  public:
-  explicit Renderer(const model::Catalogue& catalogue);
+  explicit Renderer(const model::Catalogue& catalogue) : Renderer(catalogue.objects()) {}
+  explicit Renderer(const std::vector<model::CatalogueObject>& objects);
 
   /// Objects of the scene that the catalogue does not know are left out.
   Picture render(const model::Scene& scene, const CameraModel& camera,

@@ -1,0 +1,224 @@
+// `prehend objects scenes`.
+#include <fmt/format.h>
+
+#include <fstream>
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <prehend/base/gnuplot.hpp>
+#include <prehend/base/log.hpp>
+#include <prehend/base/progress.hpp>
+#include <prehend/recognition_learning/model_file.hpp>
+#include <prehend/recognition_trials/trials.hpp>
+#include <prehend/service/arguments.hpp>
+#include <set>
+
+#include "service.hpp"
+#include "tool.hpp"
+
+namespace prehend::recognition {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct Arguments {
+  service::LabArguments lab;
+  std::vector<std::string> kinds;
+  std::string roc, list;
+  int count = 40;
+  std::uint64_t seed = 1;
+  bool distances = false, json = false;
+};
+
+constexpr std::array all_kinds{Trial::open,     Trial::clutter, Trial::light,
+                               Trial::occluded, Trial::empty,   Trial::strangers};
+
+double degrees(double rad) {
+  return rad * 180 / 3.14159265358979;
+}
+
+Json to_json(const TrialSummary& s) {
+  Json made{{"kind", to_string(s.trial)},
+            {"scenes", s.scenes},
+            {"frames_with_false_alarm", s.frames_with_false_alarm}};
+  if (s.trial == Trial::empty || s.trial == Trial::strangers) return made;
+  made["detected"] = s.detected;
+  made["error_median_m"] = s.error_median;
+  made["error_95_m"] = s.error_95;
+  made["error_worst_m"] = s.error_worst;
+  made["turn_median_rad"] = s.turn_median;
+  made["normalised_squared_error"] = s.normalised;
+  made["normalised_squared_turn"] = s.normalised_turn;
+  made["within_95"] = s.within_95;
+  return made;
+}
+
+void print(const std::vector<TrialSummary>& rows) {
+  fmt::print(
+      "| scenes | | detected | error median, mm | 95 % | worst | turn median, ° | "
+      "error²/σ² (2) | turn²/σ² (1) | in 95 % ellipse | frames with false alarm |\n"
+      "|---|---|---|---|---|---|---|---|---|---|---|\n");
+  for (const TrialSummary& s : rows) {
+    if (s.trial == Trial::empty || s.trial == Trial::strangers) {
+      fmt::print("| {} | {} | | | | | | | | | {} |\n", to_string(s.trial), s.scenes,
+                 s.frames_with_false_alarm);
+      continue;
+    }
+    fmt::print(
+        "| {} | {} | {:.1f} % | {:.1f} | {:.1f} | {:.1f} | {:.1f} | {:.1f} | {:.1f} | {:.0f} % "
+        "| {} |\n",
+        to_string(s.trial), s.scenes, 100.0 * s.detected / std::max(1, s.scenes),
+        1000 * s.error_median, 1000 * s.error_95, 1000 * s.error_worst, degrees(s.turn_median),
+        s.normalised, s.normalised_turn, 100 * s.within_95, s.frames_with_false_alarm);
+  }
+}
+
+/// Share of targets detected against frames with a false alarm, over all thresholds.
+Expected<void> draw_roc(const std::vector<TrialResult>& results, const std::string& file) {
+  std::set<double> thresholds;
+  int with_target = 0;
+  for (const TrialResult& r : results) {
+    with_target += !r.target.empty();
+    if (r.probability > 0) thresholds.insert(r.probability);
+    for (const auto& [name, p] : r.false_alarms) thresholds.insert(p);
+  }
+  std::string points;
+  for (const double t : thresholds) {
+    int detected = 0, alarms = 0;
+    for (const TrialResult& r : results) {
+      detected += r.probability >= t;
+      alarms += std::any_of(r.false_alarms.begin(), r.false_alarms.end(),
+                            [&](const auto& alarm) { return alarm.second >= t; });
+    }
+    points += fmt::format("{} {} {}\n", 100.0 * alarms / static_cast<double>(results.size()),
+                          100.0 * detected / std::max(1, with_target), t);
+  }
+  return draw_by_gnuplot(
+      fmt::format("$roc << EOD\n{}EOD\n"
+                  "set xlabel 'frames with a false alarm, %'\nset ylabel 'targets detected, %'\n"
+                  "set grid\nset key off\nset yrange [*:100]\n"
+                  "plot $roc using 1:2 with linespoints pt 7 ps 0.4, "
+                  "$roc using 1:2:(sprintf('%.2f', $3)) every {} with labels offset 2,-0.7\n",
+                  points, std::max<std::size_t>(1, thresholds.size() / 8)),
+      file, 800, 480);
+}
+
+int broken(const Error& error) {
+  return service::complain(error, service::exit_broken);
+}
+
+int run(const Arguments& arguments) {
+  const auto config = arguments.lab.load();
+  if (!config) return service::complain(config.error(), service::exit_wrong_use);
+  const auto lab_camera = configured_camera(*config);
+  if (!lab_camera) return broken(lab_camera.error());
+  const auto catalogue = model::Catalogue::load(config->path("lab.catalogue"));
+  if (!catalogue) return broken(catalogue.error());
+  auto models = load_models(config->path("recognition.model"));
+  if (!models) return broken(models.error());
+  DetectorOptions options;
+  options.accept = config->number("recognition.accept");
+  options.doubtful = arguments.roc.empty() ? 1 : 0.02;
+  const Detector detector(std::move(*models), *catalogue, options);
+
+  std::ofstream list;
+  if (!arguments.list.empty()) {
+    list.open(arguments.list);
+    list << "kind,seed,target,probability,error_mm,turn_deg,distance_m,normalised,normalised_turn,"
+            "false_alarms\n";
+  }
+  const auto look = [&](Trial kind, const CameraModel& camera, Progress& progress) {
+    const TrialScenes scenes(*catalogue, camera);
+    std::vector<TrialResult> results;
+    const auto count = static_cast<std::size_t>(arguments.count);
+    for (std::size_t i = 0; i < count; ++i) {
+      const std::uint64_t seed = arguments.seed + i;
+      if (const auto scene = scenes.make(kind, seed)) {
+        results.push_back(try_scene(detector, camera, scenes, *scene));
+        TrialResult& r = results.back();
+        r.trial = kind;
+        r.seed = seed;
+        if (list.is_open()) {
+          list << fmt::format("{},{},{},{:.3f},{:.1f},{:.1f},{:.2f},{:.2f},{:.2f}", to_string(kind),
+                              seed, r.target, r.probability, 1000 * r.error, degrees(r.turn_error),
+                              r.distance, r.normalised, r.normalised_turn);
+          for (const auto& [name, p] : r.false_alarms) list << fmt::format(",{} {:.3f}", name, p);
+          list << std::endl;
+        }
+      }
+      progress.show(i + 1, count);
+    }
+    return results;
+  };
+
+  std::vector<TrialResult> results;
+  std::vector<TrialSummary> rows;
+  for (const Trial kind : all_kinds) {
+    const auto& wanted = arguments.kinds;
+    if (!wanted.empty() && std::find(wanted.begin(), wanted.end(), to_string(kind)) == wanted.end())
+      continue;
+    Progress progress(to_string(kind));
+    const auto these = look(kind, *lab_camera, progress);
+    results.insert(results.end(), these.begin(), these.end());
+    rows.push_back(summarise(kind, results, options.accept));
+  }
+  Json report{{"accept", options.accept}, {"kinds", Json::array()}};
+  for (const TrialSummary& row : rows) report["kinds"].push_back(to_json(row));
+  if (!arguments.json) print(rows);
+
+  if (arguments.distances) {
+    report["distances"] = Json::array();
+    if (!arguments.json)
+      fmt::print(
+          "\n| distance, m | detected | error median, mm | 95 % | turn median, ° | error²/σ² "
+          "(2) |\n|---|---|---|---|---|---|\n");
+    for (const double d : {0.6, 0.8, 1.0, 1.2, 1.5, 2.0}) {
+      // The lab's camera, nearer or further along the line on which it looks at the table's middle.
+      CameraModel camera = *lab_camera;
+      const Eigen::Vector3d middle(0, -0.05, 0.05);
+      camera.X_WC =
+          look_at(middle + d * (lab_camera->X_WC.translation() - middle).normalized(), middle);
+      Progress progress(fmt::format("{} m", d));
+      const TrialSummary s =
+          summarise(Trial::open, look(Trial::open, camera, progress), options.accept);
+      Json row = to_json(s);
+      row["distance_m"] = d;
+      report["distances"].push_back(row);
+      if (!arguments.json)
+        fmt::print("| {:.1f} | {:.0f} % | {:.1f} | {:.1f} | {:.1f} | {:.1f} |\n", d,
+                   100.0 * s.detected / std::max(1, s.scenes), 1000 * s.error_median,
+                   1000 * s.error_95, degrees(s.turn_median), s.normalised);
+    }
+  }
+  if (!arguments.roc.empty())
+    if (const auto drawn = draw_roc(results, arguments.roc); !drawn) return broken(drawn.error());
+  if (arguments.json) std::cout << report << "\n";
+  return service::exit_done;
+}
+
+}  // namespace
+
+void add_scenes(CLI::App& app, int& exit_code) {
+  auto a = std::make_shared<Arguments>();
+  CLI::App* command = app.add_subcommand(
+      "scenes", "How well objects are found and placed in rendered scenes, whose truth is known.");
+  a->lab.add_to(*command);
+  command->add_option("--count", a->count, "scenes of each kind")
+      ->check(CLI::Range(1, 1000000))
+      ->capture_default_str();
+  command->add_option("--seed", a->seed, "of the first scene")->capture_default_str();
+  command
+      ->add_option("--kind", a->kinds,
+                   "open, clutter, light, occluded, empty or strangers; repeatable; default: all")
+      ->check(CLI::IsMember({"open", "clutter", "light", "occluded", "empty", "strangers"}))
+      ->type_size(1)
+      ->allow_extra_args(false);
+  command->add_flag("--distances", a->distances, "also the error at distances from 0.6 to 2 m");
+  command->add_option("--roc", a->roc,
+                      "png of the targets detected against false alarms (by gnuplot)");
+  command->add_option("--list", a->list, "csv with a line a scene");
+  command->add_flag("--json", a->json, "one JSON document");
+  command->callback([a, &exit_code] { exit_code = run(*a); });
+}
+
+}  // namespace prehend::recognition

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <optional>
+#include <prehend/model/scene.hpp>
+#include <prehend/recognition_rendering/renderer.hpp>
+#include <string>
+#include <vector>
+
+namespace prehend::recognition {
+
+/// What makes a scene hard.
+enum class Trial {
+  open,       // the target and two other objects of the catalogue, nothing hides the target
+  clutter,    // also four strangers: things that no model knows
+  light,      // as open, in light of another strength and colour than any training view had
+  occluded,   // a stranger stands before the target and hides 25 to 35 % of it
+  empty,      // a table without objects
+  strangers,  // four strangers and nothing else
+};
+std::string to_string(Trial trial);
+
+/// Things that no model knows, of sizes and patterns like the objects'.
+std::vector<model::CatalogueObject> strangers();
+
+struct TrialScene {
+  model::Scene scene;
+  std::string target;  // empty: there is none; else the first of the scene's objects
+  double hidden = 0;   // share of the target's pixels that something stands before
+};
+
+/// Draws scenes of a kind from seeds: the same seed gives the same scene.
+class TrialScenes {
+ public:
+  TrialScenes(const model::Catalogue& catalogue, const CameraModel& camera);
+
+  /// None when no such scene was found in some tries.
+  std::optional<TrialScene> make(Trial trial, std::uint64_t seed) const;
+  const Renderer& renderer() const { return renderer_; }
+
+ private:
+  const model::Catalogue& catalogue_;
+  CameraModel camera_;
+  std::vector<model::CatalogueObject> strangers_;
+  Renderer renderer_;
+};
+
+}  // namespace prehend::recognition

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <functional>
+#include <prehend/recognition/detector.hpp>
+
+#include "trial_scenes.hpp"
+
+namespace prehend::recognition {
+
+/// What became of one scene.
+struct TrialResult {
+  Trial trial = Trial::open;
+  std::uint64_t seed = 0;
+  std::string target;          // empty: none
+  double probability = 0;      // of the target where it stands; 0: not seen there
+  double error = 0;            // m, horizontal
+  double turn_error = 0;       // rad, of boxes
+  double distance = 0;         // m, camera to target
+  double normalised = 0;       // squared error of x, y over its covariance: chi-square of 2
+  double normalised_turn = 0;  // the same of a box' turn: chi-square of 1
+  bool box = false;
+  /// Names and probabilities of what is said to stand where nothing of that name stands.
+  std::vector<std::pair<std::string, double>> false_alarms;
+};
+
+/// A sighting belongs to an object when it is at most this far from it, m.
+inline constexpr double same_place = 0.05;
+
+/// Looks at a rendered scene.
+TrialResult try_scene(const Detector& detector, const CameraModel& camera,
+                      const TrialScenes& scenes, const TrialScene& scene);
+
+/// Over scenes of a kind; those with a target, detected when seen with `accept` or more.
+struct TrialSummary {
+  Trial trial = Trial::open;
+  int scenes = 0, detected = 0;
+  int frames_with_false_alarm = 0;                         // of at least `accept`
+  double error_median = 0, error_95 = 0, error_worst = 0;  // m, of the detected
+  double turn_median = 0;                                  // rad, of the detected boxes
+  /// Mean normalised squared errors, 2 and 1 when the covariances are true, and the share of
+  /// detections whose place lies within the ellipse of 95 %.
+  double normalised = 0, normalised_turn = 0, within_95 = 0;
+};
+TrialSummary summarise(Trial trial, const std::vector<TrialResult>& results, double accept);
+
+}  // namespace prehend::recognition
