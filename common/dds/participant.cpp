@@ -1,6 +1,6 @@
 #include "participant.hpp"
 
-#include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
+#include <fastdds/rtps/transport/SocketTransportDescriptor.h>
 
 #include <algorithm>
 #include <fastdds/dds/domain/DomainParticipant.hpp>
@@ -102,25 +102,20 @@ Expected<Participant> Participant::create(const ParticipantOptions& options) {
     return fail("domain must lie in 0 to 232", "lab.domain");
   auto state = std::make_unique<State>();
   state->options = options;
-  auto* factory = fdds::DomainParticipantFactory::get_instance();
-  fdds::DomainParticipantQos qos = factory->get_default_participant_qos();
-  qos.name(options.name);
-  // UDP only: shared memory hides peers of other users and containers and outlives killed
-  // processes.
-  qos.transport().use_builtin_transports = false;
-  auto udp = std::make_shared<eprosima::fastdds::rtps::UDPv4TransportDescriptor>();
-  udp->sendBufferSize = 1 << 21;
+  auto qos = participant_qos(options.network, {options.listener != nullptr, options.serves});
+  if (!qos) return tl::unexpected(qos.error());
+  qos->name(options.name);
   // Who listens to the whole domain is a recorder: pictures that come while it has no processor
   // wait in the socket (as far as net.core.rmem_max allows), for on best effort topics nothing else
   // holds them.
-  udp->receiveBufferSize = options.listener ? 1 << 24 : 1 << 21;
-  qos.transport().user_transports.push_back(udp);
-  // A participant that is just starting may miss our answer to its greeting and then knows us only
-  // by our next announcement; with the default of 3 s its first samples are lost.
-  qos.wire_protocol().builtin.discovery_config.leaseDuration_announcementperiod =
-      duration(std::chrono::milliseconds(500));
+  if (options.listener)
+    for (auto& transport : qos->transport().user_transports)
+      if (auto* socket =
+              dynamic_cast<eprosima::fastdds::rtps::SocketTransportDescriptor*>(transport.get()))
+        socket->receiveBufferSize = 1 << 24;
+  auto* factory = fdds::DomainParticipantFactory::get_instance();
   state->participant =
-      factory->create_participant(options.domain, qos, options.listener, fdds::StatusMask::none());
+      factory->create_participant(options.domain, *qos, options.listener, fdds::StatusMask::none());
   if (!state->participant)
     return fail("cannot join the domain", "dds", "is a network interface up, at least loopback?");
 

@@ -13,6 +13,7 @@
 #include <string>
 #include <vector>
 
+#include "network.hpp"
 #include "topics.hpp"
 
 namespace prehend::dds {
@@ -21,10 +22,13 @@ struct ParticipantOptions {
   std::string name;  // shown to others at discovery
   int domain = 0;    // 0..232
   std::string rig;   // partition: samples stay within a rig
+  Network network;   // how it reaches the others
   /// All topics reliable and complete, without deadlines: for recordings in lockstep.
   bool lockstep = false;
-  /// Told of discovery, in its thread; must outlive the participant.
+  /// Told of discovery in the whole domain, in its thread; must outlive the participant.
   eprosima::fastdds::dds::DomainParticipantListener* listener = nullptr;
+  /// ADDRESS:PORT at which this is the discovery server of a network of that kind.
+  std::string serves = {};
 };
 
 /// Provenance of a received sample.

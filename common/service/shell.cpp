@@ -17,6 +17,8 @@
 #include <prehend/base/paths.hpp>
 #include <thread>
 
+#include "membership.hpp"
+
 namespace prehend::service {
 
 namespace fdds = eprosima::fastdds::dds;
@@ -149,11 +151,9 @@ std::unique_ptr<Shell> Shell::create(int argc, char** argv, const Options& optio
   state->options = options;
   state->config = std::move(*config);
   state->lockstep = lockstep || state->config.flag("lab.lockstep");
-  auto participant =
-      dds::Participant::create({.name = options.name,
-                                .domain = static_cast<int>(state->config.integer("lab.domain")),
-                                .rig = state->config.text("lab.rig"),
-                                .lockstep = state->lockstep});
+  dds::ParticipantOptions joining = membership(state->config, options.name);
+  joining.lockstep = state->lockstep;
+  auto participant = dds::Participant::create(joining);
   if (!participant) {
     log::error("{}", participant.error().message());
     exit_code = 3;

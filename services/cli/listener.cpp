@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <prehend/dds/participant.hpp>
+#include <prehend/service/membership.hpp>
 
 namespace prehend::cli {
 
@@ -15,10 +16,7 @@ struct Listener::State {
 };
 
 Expected<Listener> Listener::create(const service::Config& config, bool everything) {
-  auto participant =
-      dds::Participant::create({.name = "prehend",
-                                .domain = static_cast<int>(config.integer("lab.domain")),
-                                .rig = config.text("lab.rig")});
+  auto participant = dds::Participant::create(service::membership(config, "prehend"));
   if (!participant) return tl::unexpected(participant.error());
   auto state = std::make_unique<State>(State{std::move(*participant), {}, {}, {}, {}, {}});
   std::optional<Error> error;

@@ -7,6 +7,7 @@
 #include "demo.hpp"
 #include "dispatch.hpp"
 #include "scene_command.hpp"
+#include "server_command.hpp"
 #include "status_command.hpp"
 
 using namespace prehend;
@@ -21,6 +22,8 @@ struct Command {
 constexpr Command commands[] = {
     {"demo", cli::demo_command, "play a demonstration through all services and judge the grasp"},
     {"status", cli::status_command, "who is there and how they fare"},
+    {"discovery-server", cli::server_command,
+     "by which services find each other without multicast"},
     {"scene", cli::scene_command, "draw a scene from a seed"},
 };
 
@@ -29,9 +32,9 @@ std::string help() {
       "prehend: turns a human hand into a robot hand\n\n"
       "Usage: prehend COMMAND [ARGUMENTS]; prehend COMMAND --help tells more\n\n";
   for (const Command& command : commands)
-    text += fmt::format("  {:<9}{}\n", command.name, command.help);
+    text += fmt::format("  {:<17}{}\n", command.name, command.help);
   for (const cli::Tool& tool : cli::tools())
-    text += fmt::format("  {:<9}{}\n", tool.name, tool.help);
+    text += fmt::format("  {:<17}{}\n", tool.name, tool.help);
   return text + "\nExit codes: 0 done, 1 the answer is no, 2 wrong use, 3 environment broken.\n";
 }
 

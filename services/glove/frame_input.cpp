@@ -12,6 +12,7 @@
 #include <prehend/glove/recording.hpp>
 #include <prehend/glove_devices/device.hpp>
 #include <prehend/mcap/reader.hpp>
+#include <prehend/service/membership.hpp>
 
 #include "messages.hpp"
 #include "options.hpp"
@@ -34,10 +35,7 @@ FrameInput& FrameInput::operator=(FrameInput&&) noexcept = default;
 FrameInput::~FrameInput() = default;
 
 Expected<FrameInput> FrameInput::live(const service::Config& config) {
-  auto participant =
-      dds::Participant::create({.name = "glove-tool",
-                                .domain = static_cast<int>(config.integer("lab.domain")),
-                                .rig = config.text("lab.rig")});
+  auto participant = dds::Participant::create(service::membership(config, "glove-tool"));
   if (!participant) return tl::unexpected(participant.error());
   auto state = std::make_unique<State>();
   state->participant.emplace(std::move(*participant));

@@ -5,6 +5,7 @@
 #include <memory>
 #include <prehend/dds/participant.hpp>
 #include <prehend/service/arguments.hpp>
+#include <prehend/service/membership.hpp>
 #include <thread>
 
 #include "frame_input.hpp"
@@ -34,10 +35,7 @@ Time now() {
 int watch(const Arguments& arguments) {
   const auto config = arguments.lab.load();
   if (!config) return service::complain(config.error(), service::exit_wrong_use);
-  auto participant =
-      dds::Participant::create({.name = "glove-watch",
-                                .domain = static_cast<int>(config->integer("lab.domain")),
-                                .rig = config->text("lab.rig")});
+  auto participant = dds::Participant::create(service::membership(*config, "glove-watch"));
   if (!participant) return service::complain(participant.error(), service::exit_broken);
   auto frames = participant->reader(dds::glove_frame);
   auto postures = participant->reader(dds::hand_posture);

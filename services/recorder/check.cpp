@@ -9,6 +9,7 @@
 #include <mutex>
 #include <prehend/service/conductor.hpp>
 #include <prehend/service/lab.hpp>
+#include <prehend/service/membership.hpp>
 #include <set>
 
 #include "describe.hpp"
@@ -165,8 +166,9 @@ class Run {
     if (!config) return tl::unexpected(config.error());
     std::vector<std::string> sets;
     for (const auto& [key, value] : recorded.configuration)
-      if (key != "lab.rig" && key != "lab.domain" && key != "lab.scene" &&
-          key != "recognition.path" && key != "glove.file" && key != "glove.port")
+      // Where the lab was recorded is not where it is checked.
+      if ((!key.starts_with("lab.") || key == "lab.catalogue") && key != "recognition.path" &&
+          key != "glove.file" && key != "glove.port")
         sets.push_back(key + "=" + value);
     if (!recorded.scene.empty()) {
       const auto file = options_.log_folder / "scene.toml";
@@ -176,17 +178,19 @@ class Run {
     for (const std::string& set : options_.lab.overrides()) sets.push_back(set);
     const std::string rig = fmt::format(
         "check-{}-{:x}", ::getpid(), std::chrono::system_clock::now().time_since_epoch().count());
-    const int domain = static_cast<int>(config->integer("lab.domain"));
+    dds::ParticipantOptions membership = service::membership(*config, "check");
+    membership.rig = rig;
+    membership.lockstep = true;
     for (const std::string& set :
          {std::string("glove.device=topic"), std::string("recognition.source=topic"),
-          std::string("lab.lockstep=true"), "lab.rig=" + rig, fmt::format("lab.domain={}", domain)})
+          std::string("lab.lockstep=true"), "lab.rig=" + rig,
+          fmt::format("lab.domain={}", membership.domain)})
       sets.push_back(set);
     lab_.emplace(options_.lab.file(), sets, options_.log_folder);
     for (const std::string& name : names_)
       if (const auto started = lab_->start_service(name); !started) return started;
 
-    auto participant =
-        dds::Participant::create({.name = "check", .domain = domain, .rig = rig, .lockstep = true});
+    auto participant = dds::Participant::create(membership);
     if (!participant) return tl::unexpected(participant.error());
     participant_.emplace(std::move(*participant));
     auto conductor = service::Conductor::create(*participant_, names_);

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <prehend/base/log.hpp>
 #include <prehend/service/arguments.hpp>
+#include <prehend/service/membership.hpp>
 #include <prehend/service/shell.hpp>
 
 #include "describe.hpp"
@@ -97,16 +98,17 @@ class Recording {
     if (arguments_.paused) recorder_.pause(system_now());
     auto keys = keys_of_types();
     if (!keys) return tl::unexpected(keys.error());
-    auto listener = TopicListener::create(
-        {.domain = static_cast<int>(shell_.config().integer("lab.domain")),
-         .rig = arguments_.rig.empty() ? shell_.config().text("lab.rig") : arguments_.rig,
-         .topics = arguments_.topics,
-         .keys = std::move(*keys),
-         .on_found = [this] { shell_.post([this] { listener_->poll(); }); }},
-        [this](const Source& source, dds::RawSample&& sample) {
-          const std::scoped_lock lock(mutex_);
-          recorder_.take(source, std::move(sample));
-        });
+    dds::ParticipantOptions lab = service::membership(shell_.config(), "recorder");
+    if (!arguments_.rig.empty()) lab.rig = arguments_.rig;
+    auto listener =
+        TopicListener::create({.lab = std::move(lab),
+                               .topics = arguments_.topics,
+                               .keys = std::move(*keys),
+                               .on_found = [this] { shell_.post([this] { listener_->poll(); }); }},
+                              [this](const Source& source, dds::RawSample&& sample) {
+                                const std::scoped_lock lock(mutex_);
+                                recorder_.take(source, std::move(sample));
+                              });
     if (!listener) return tl::unexpected(listener.error());
     listener_ = std::move(*listener);
     started_ = system_now();

@@ -8,6 +8,7 @@
 #include <prehend/base/paths.hpp>
 #include <prehend/dds/convert.hpp>
 #include <prehend/service/arguments.hpp>
+#include <prehend/service/membership.hpp>
 #include <prehend/service/shell.hpp>
 #include <prehend/types/idl.hpp>
 #include <thread>
@@ -318,10 +319,7 @@ int replay(const Arguments& arguments) {
   if (!shell) return exit_code;
   const auto types = types::load_contract();
   if (!types) return service::complain(types.error(), service::exit_broken);
-  auto participant =
-      dds::Participant::create({.name = "player",
-                                .domain = static_cast<int>(shell->config().integer("lab.domain")),
-                                .rig = shell->config().text("lab.rig")});
+  auto participant = dds::Participant::create(service::membership(shell->config(), "player"));
   if (!participant) return service::complain(participant.error(), service::exit_broken);
   auto player = Player::create(std::move(*tape), *participant, *types, *options);
   if (!player) return service::complain(player.error(), service::exit_wrong_use);

@@ -8,10 +8,9 @@ namespace prehend::recorder {
 
 Expected<std::unique_ptr<TopicListener>> TopicListener::create(const Options& options, Take take) {
   std::unique_ptr<TopicListener> made(new TopicListener(options, std::move(take)));
-  auto participant = dds::Participant::create({.name = "recorder",
-                                               .domain = options.domain,
-                                               .rig = options.rig,
-                                               .listener = &made->discovery_});
+  dds::ParticipantOptions lab = options.lab;
+  lab.listener = &made->discovery_;
+  auto participant = dds::Participant::create(lab);
   if (!participant) return tl::unexpected(participant.error());
   made->participant_.emplace(std::move(*participant));
   TopicListener* raw = made.get();
@@ -42,9 +41,10 @@ void TopicListener::stop() {
 }
 
 std::optional<std::string> TopicListener::rig_of(const dds::Discovered& found) const {
-  if (found.rigs.empty() && options_.rig.empty()) return "";
+  if (found.rigs.empty() && options_.lab.rig.empty()) return "";
   for (const std::string& rig : found.rigs)
-    if (rig == options_.rig || ::fnmatch(options_.rig.c_str(), rig.c_str(), 0) == 0) return rig;
+    if (rig == options_.lab.rig || ::fnmatch(options_.lab.rig.c_str(), rig.c_str(), 0) == 0)
+      return rig;
   return std::nullopt;
 }
 

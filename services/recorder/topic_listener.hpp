@@ -19,8 +19,7 @@ namespace prehend::recorder {
 class TopicListener {
  public:
   struct Options {
-    int domain = 0;
-    std::string rig;  // may be a pattern, * for all
+    dds::ParticipantOptions lab;  // its rig may be a pattern, * for all
     TopicFilter topics;
     /// Held for a disk that is slower than the topics for a while; what is more is lost and
     /// counted.

@@ -1,0 +1,241 @@
+#include "network.hpp"
+
+#include <arpa/inet.h>
+#include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
+#include <fastrtps/utils/IPLocator.h>
+#include <fmt/format.h>
+#include <ifaddrs.h>
+#include <net/if.h>
+#include <netdb.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <charconv>
+#include <cstdlib>
+#include <cstring>
+#include <fastdds/dds/domain/DomainParticipantFactory.hpp>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <prehend/base/log.hpp>
+#include <prehend/base/paths.hpp>
+#include <utility>
+
+#include "dds_log.hpp"
+
+namespace prehend::dds {
+
+namespace fdds = eprosima::fastdds::dds;
+namespace transport = eprosima::fastdds::rtps;
+namespace rtps = eprosima::fastrtps::rtps;
+
+namespace {
+
+constexpr const char* profiles_variable = "FASTRTPS_DEFAULT_PROFILES_FILE";
+constexpr const char* profiles_file = "DEFAULT_FASTRTPS_PROFILES.xml";
+
+/// Every variable by which Fast DDS 2.9 lets itself be changed.
+constexpr std::pair<const char*, const char*> variables[] = {
+    {profiles_variable, "names profiles that Fast DDS takes as its defaults"},
+    {"ROS_DISCOVERY_SERVER", "turns participants into clients of a discovery server"},
+    {"FASTDDS_ENVIRONMENT_FILE", "names a file with further variables"},
+    {"FASTDDS_STATISTICS", "adds writers to every participant"},
+};
+
+/// The port at which linked discovery servers begin to count: server n listens at 11811 + n.
+constexpr std::uint16_t first_server_port = 11811;
+
+/// Clients know a server by this prefix, which is that of `fast-discovery-server -i N`.
+rtps::GuidPrefix_t server_prefix(std::uint16_t port) {
+  constexpr std::array<std::uint8_t, 12> pattern{0x44, 0x53, 0x00, 0x5f, 0x45, 0x50,
+                                                 0x52, 0x4f, 0x53, 0x49, 0x4d, 0x41};
+  rtps::GuidPrefix_t prefix;
+  std::copy(pattern.begin(), pattern.end(), prefix.value);
+  prefix.value[2] = static_cast<rtps::octet>(port - first_server_port);
+  return prefix;
+}
+
+rtps::Locator_t locator_of(const Address& address, std::int32_t kind) {
+  rtps::Locator_t locator;
+  locator.kind = kind;
+  locator.port = address.port;
+  rtps::IPLocator::setIPv4(locator, address.ip[0], address.ip[1], address.ip[2], address.ip[3]);
+  return locator;
+}
+
+/// A profile as it stands in its file. Each file is read once.
+Expected<fdds::DomainParticipantQos> load(const std::string& profile) {
+  const std::string file = (share_directory() / "dds" / (profile + ".xml")).string();
+  const std::string mend = "put back the file from deploy/dds, or name it rightly in lab.network";
+  static std::mutex mutex;
+  static std::map<std::string, fdds::DomainParticipantQos> known;
+  const std::scoped_lock lock(mutex);
+  if (const auto found = known.find(file); found != known.end()) return found->second;
+
+  std::error_code code;
+  if (!std::filesystem::is_regular_file(file, code))
+    return fail("there is no such profile", file, mend);
+  auto* factory = fdds::DomainParticipantFactory::get_instance();
+  DdsLog::Hearing complaints("XMLPARSER");
+  const auto loaded = factory->load_XML_profiles_file(file);
+  fdds::DomainParticipantQos qos;
+  const auto found = factory->get_participant_qos_from_profile(profile, qos);
+  const std::string said = complaints.text();
+  if (!said.empty()) return fail("cannot be used: " + said, file, mend);
+  if (loaded != ReturnCode_t::RETCODE_OK) return fail("cannot be read", file, mend);
+  if (found != ReturnCode_t::RETCODE_OK)
+    return fail(fmt::format("has no participant profile \"{}\"", profile), file, mend);
+  known.emplace(file, qos);
+  return qos;
+}
+
+/// What must be true of a profile whatever else is changed in it; empty: it is.
+std::string violation(const std::string& profile, const fdds::DomainParticipantQos& qos) {
+  if (qos.transport().use_builtin_transports)
+    return "useBuiltinTransports is on, which adds shared memory";
+  if (qos.transport().user_transports.empty()) return "it has no transport";
+  for (const auto& given : qos.transport().user_transports) {
+    const auto* udp = dynamic_cast<transport::UDPv4TransportDescriptor*>(given.get());
+    if (!udp) return "it is not UDPv4 only";
+    if (profile == "laptop" && udp->interfaceWhiteList != std::vector<std::string>{"127.0.0.1"})
+      return "it is not confined to 127.0.0.1";
+  }
+  const auto protocol = qos.wire_protocol().builtin.discovery_config.discoveryProtocol;
+  const auto due =
+      profile == "server" ? rtps::DiscoveryProtocol_t::CLIENT : rtps::DiscoveryProtocol_t::SIMPLE;
+  if (protocol != due)
+    return profile == "server" ? "discoveryProtocol is not CLIENT"
+                               : "discoveryProtocol is not SIMPLE";
+  return {};
+}
+
+/// Fast DDS joins without a word where there is nothing to send through.
+Expected<void> need_interface(const std::string& profile) {
+  ifaddrs* all = nullptr;
+  if (::getifaddrs(&all) != 0)
+    return fail("the interfaces cannot be listed", profile, std::strerror(errno));
+  bool found = false;
+  for (const ifaddrs* one = all; one; one = one->ifa_next)
+    found |= one->ifa_addr && one->ifa_addr->sa_family == AF_INET && (one->ifa_flags & IFF_UP) &&
+             (profile != "laptop" || (one->ifa_flags & IFF_LOOPBACK));
+  ::freeifaddrs(all);
+  if (found) return {};
+  return fail(profile == "laptop" ? "the loopback interface is down" : "no interface is up",
+              "lab.network = " + profile, "as root: ip link set lo up");
+}
+
+Expected<void> use_servers(fdds::DomainParticipantQos& qos, const Network& network,
+                           const Discovering& discovering) {
+  auto& builtin = qos.wire_protocol().builtin;
+  if (!discovering.serves.empty()) {
+    const auto own = resolve(discovering.serves, first_server_port);
+    if (!own) return tl::unexpected(own.error());
+    builtin.discovery_config.discoveryProtocol = rtps::DiscoveryProtocol_t::SERVER;
+    builtin.metatrafficUnicastLocatorList.push_back(locator_of(*own, LOCATOR_KIND_UDPv4));
+    qos.wire_protocol().prefix = server_prefix(own->port);
+    // A server that is started again knows nobody, and its clients tell it of themselves anew only
+    // after they have missed it. They keep each other meanwhile.
+    builtin.discovery_config.leaseDuration = {1, 0};
+    builtin.discovery_config.leaseDuration_announcementperiod = {0, 200'000'000};
+  } else if (network.servers.empty()) {
+    return fail("names no discovery server", "lab.server",
+                "give ADDRESS:PORT of `prehend discovery-server`");
+  } else if (discovering.sees_all) {
+    builtin.discovery_config.discoveryProtocol = rtps::DiscoveryProtocol_t::SUPER_CLIENT;
+  }
+  for (const std::string& text : network.servers) {
+    const auto address = resolve(text, first_server_port);
+    if (!address) return tl::unexpected(address.error());
+    transport::RemoteServerAttributes server;
+    server.guidPrefix = server_prefix(address->port);
+    if (server.guidPrefix == qos.wire_protocol().prefix)
+      return fail("linked discovery servers must have different ports", text,
+                  "the first listens at 11811, the next at 11812");
+    server.metatrafficUnicastLocatorList.push_back(locator_of(*address, LOCATOR_KIND_UDPv4));
+    builtin.discovery_config.m_DiscoveryServers.push_back(server);
+  }
+  return {};
+}
+
+}  // namespace
+
+Expected<Address> resolve(const std::string& text, std::optional<std::uint16_t> port) {
+  Address address;
+  const std::size_t colon = text.rfind(':');
+  const std::string host = text.substr(0, colon);
+  if (colon != std::string::npos) {
+    const char* end = text.data() + text.size();
+    const auto read = std::from_chars(text.data() + colon + 1, end, address.port);
+    if (read.ec != std::errc{} || read.ptr != end || address.port == 0)
+      return fail("is not ADDRESS:PORT", text, "a port is 1 to 65535");
+  } else if (port) {
+    address.port = *port;
+  } else {
+    return fail("names no port", text, "write ADDRESS:PORT");
+  }
+  addrinfo wanted{}, *found = nullptr;
+  wanted.ai_family = AF_INET;
+  wanted.ai_socktype = SOCK_DGRAM;
+  const int code =
+      host.empty() ? EAI_NONAME : ::getaddrinfo(host.c_str(), nullptr, &wanted, &found);
+  if (code != 0 || !found)
+    return fail(fmt::format("does not resolve ({})", ::gai_strerror(code)), text,
+                "is the name right, and the network up?");
+  const auto* ip = reinterpret_cast<const sockaddr_in*>(found->ai_addr);
+  std::copy_n(reinterpret_cast<const std::uint8_t*>(&ip->sin_addr), 4, address.ip.begin());
+  ::freeaddrinfo(found);
+  return address;
+}
+
+Expected<fdds::DomainParticipantQos> participant_qos(const Network& network,
+                                                     const Discovering& discovering) {
+  take_charge();
+  constexpr std::string_view profiles[] = {"laptop", "lan", "server"};
+  if (std::find(std::begin(profiles), std::end(profiles), network.profile) == std::end(profiles))
+    return fail("must be laptop, lan or server, not " + network.profile, "lab.network");
+  auto qos = load(network.profile);
+  if (!qos) return qos;
+  if (const std::string wrong = violation(network.profile, *qos); !wrong.empty())
+    return fail(wrong, fmt::format("profile {}", network.profile), "see deploy/dds/README.md");
+  if (const auto up = need_interface(network.profile); !up) return tl::unexpected(up.error());
+  if (network.profile == "server")
+    if (const auto used = use_servers(*qos, network, discovering); !used)
+      return tl::unexpected(used.error());
+  // Each participant may enlarge its buffers: the descriptors are its own.
+  for (auto& given : qos->transport().user_transports)
+    if (const auto* udp = dynamic_cast<transport::UDPv4TransportDescriptor*>(given.get()))
+      given = std::make_shared<transport::UDPv4TransportDescriptor>(*udp);
+  return qos;
+}
+
+std::vector<Error> outside_influence() {
+  std::vector<Error> found;
+  for (const auto& [name, effect] : variables)
+    if (const char* value = std::getenv(name))
+      found.push_back(
+          {fmt::format("{}; it is set to '{}' and has no effect on Prehend", effect, value), name,
+           fmt::format("unset {}", name)});
+  std::error_code code;
+  if (std::filesystem::exists(profiles_file, code))
+    found.push_back(
+        {"holds profiles that Fast DDS takes as its defaults; it has no effect on Prehend",
+         (std::filesystem::current_path(code) / profiles_file).string(),
+         "remove the file, or work in another folder"});
+  return found;
+}
+
+void take_charge() {
+  static std::mutex mutex;
+  static bool first = true;
+  const std::scoped_lock lock(mutex);
+  for (const Error& influence : outside_influence())
+    if (first || std::getenv(influence.where.c_str())) log::warning("{}", influence.message());
+  for (const auto& [name, effect] : variables)
+    if (std::getenv(name)) ::unsetenv(name);
+  if (!std::exchange(first, false)) return;
+  ::setenv("SKIP_DEFAULT_XML_FILE", "1", 1);
+  DdsLog::install();
+}
+
+}  // namespace prehend::dds

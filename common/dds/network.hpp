@@ -1,0 +1,49 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <fastdds/dds/domain/qos/DomainParticipantQos.hpp>
+#include <optional>
+#include <prehend/base/error.hpp>
+#include <string>
+#include <vector>
+
+namespace prehend::dds {
+
+/// How a process reaches the others. The profiles themselves are XML files of Fast DDS in
+/// deploy/dds.
+struct Network {
+  std::string profile = "laptop";    // laptop, lan or server
+  std::vector<std::string> servers;  // server: ADDRESS:PORT of each discovery server
+};
+
+/// What a participant is to the discovery of a network.
+struct Discovering {
+  bool sees_all = false;  // server: is told of topics that it neither reads nor writes
+  std::string serves;     // ADDRESS:PORT at which it is itself the server; empty: it is none
+};
+
+/// A place to reach by IPv4.
+struct Address {
+  std::array<std::uint8_t, 4> ip{};
+  std::uint16_t port = 0;
+};
+
+/// "HOST:PORT", or "HOST" where a port is given to fall back to. A name is resolved now.
+Expected<Address> resolve(const std::string& text, std::optional<std::uint16_t> port = {});
+
+/// Transports and discovery of a participant on this network, with everything else at Fast DDS's
+/// defaults. Fast DDS itself goes on without a profile that it cannot read, and without the parts
+/// that it does not understand: here both are errors, and so is a profile that is not what its name
+/// says.
+Expected<eprosima::fastdds::dds::DomainParticipantQos> participant_qos(
+    const Network& network, const Discovering& discovering = {});
+
+/// What in the environment and the working directory would have changed DDS behind our back.
+std::vector<Error> outside_influence();
+
+/// Switches that off, and sends what Fast DDS has to say to our log instead of standard output.
+/// Must come before every participant; participant_qos() sees to it.
+void take_charge();
+
+}  // namespace prehend::dds

@@ -1,0 +1,188 @@
+// The networks of lab.network between real processes: each carries what it says and no more, and a
+// profile that Fast DDS would pass over with a line in a log stops the process instead. What needs
+// interfaces of its own runs in a network namespace, which takes root; it is skipped without.
+#include <fmt/format.h>
+
+#include <fstream>
+#include <iterator>
+#include <prehend/base/paths.hpp>
+#include <random>
+#include <regex>
+
+#include "rig.hpp"
+
+namespace prehend::integration {
+namespace {
+
+class Profiles : public Rig {
+ protected:
+  /// Runs a shell script where there is no interface but those that it makes.
+  Answer alone(const std::string& script, double limit_s) {
+    const std::string file = (folder_ / "script").string();
+    std::ofstream(file) << "set -eu\nbin=" << PREHEND_PROGRAMS << "\nlab='"
+                        << joined(lab_arguments()) << "'\n"
+                        << script;
+    service::Process::Options options;
+    options.command = {"unshare", "-n", "sh", file};
+    options.log = folder_ / "script.log";
+    options.output = folder_ / "script.out";
+    auto process = service::Process::start(options);
+    if (!process) throw std::runtime_error(process.error().message());
+    const auto exit = process->wait(seconds(limit_s));
+    process->stop(seconds(5));
+    return {exit ? exit->code : -1, text(options.output), text(options.log)};
+  }
+  static bool may_make_namespaces() {
+    return std::system("unshare -n ip link set lo up >/dev/null 2>&1") == 0;
+  }
+  static std::string joined(const Strings& words) {
+    std::string all;
+    for (const std::string& word : words) (all += word) += " ";
+    return all;
+  }
+  static std::string text(const std::filesystem::path& file) {
+    std::ifstream stream(file);
+    return {std::istreambuf_iterator<char>(stream), {}};
+  }
+  /// Is a service seen from where these settings join?
+  bool sees(const std::string& service, const Strings& sets, const std::string& timeout = "15") {
+    Strings arguments{"status", "--wait", service, "--timeout", timeout};
+    const Strings lab = lab_arguments(sets);
+    arguments.insert(arguments.end(), lab.begin(), lab.end());
+    return run("prehend", arguments, 30).exit_code == 0;
+  }
+};
+
+/// Every element of an XML text under another name, one at a time.
+std::vector<std::pair<std::string, std::string>> misspelt(const std::string& xml) {
+  std::vector<std::pair<std::string, std::string>> texts;
+  const std::regex element("<([A-Za-z_]+)[ >]");
+  for (std::sregex_iterator one(xml.begin(), xml.end(), element), end; one != end; ++one) {
+    const std::string name = one->str(1);
+    const auto begin = static_cast<std::size_t>(one->position());
+    // Elements of one name are not nested here.
+    const std::size_t close = xml.find(fmt::format("</{}>", name), begin);
+    if (close == std::string::npos) continue;
+    const std::size_t opened = begin + 1 + name.size(), closed = close + 2 + name.size();
+    const std::string text = fmt::format("{}x{}x{}", xml.substr(0, opened),
+                                         xml.substr(opened, closed - opened), xml.substr(closed));
+    texts.emplace_back(name, text);
+  }
+  return texts;
+}
+
+TEST_F(Profiles, APartThatFastDdsWouldIgnoreStopsTheProcess) {
+  const auto share = folder_ / "share";
+  std::filesystem::create_directories(share / "dds");
+  const auto run_with = [&](const std::string& profile, const std::string& xml) {
+    const auto file = share / "dds" / fmt::format("{}.xml", profile);
+    std::ofstream(file) << xml;
+    service::Process::Options options;
+    options.command = {program("prehend"), "status",
+                       "--timeout",        "0.1",
+                       "--config",         PREHEND_SOURCE "/deploy/lab.toml"};
+    const Strings lab =
+        lab_arguments({fmt::format("lab.network={}", profile), "lab.server=[\"127.0.0.1\"]"});
+    options.command.insert(options.command.end(), lab.begin(), lab.end());
+    options.log = folder_ / "profile.log";
+    options.environment = {{"PREHEND_SHARE", share.string()}};
+    auto process = service::Process::start(options);
+    if (!process) throw std::runtime_error(process.error().message());
+    const auto exit = process->wait(seconds(20));
+    return Answer{exit ? exit->code : -1, "", text(options.log)};
+  };
+  for (const std::string profile : {"laptop", "lan", "server"}) {
+    const std::string xml = text(fmt::format(PREHEND_SOURCE "/deploy/dds/{}.xml", profile));
+    ASSERT_EQ(run_with(profile, xml).exit_code, 1) << profile;  // fine: nobody is there
+    auto broken = misspelt(xml);
+    ASSERT_GT(broken.size(), 10u);
+    broken.emplace_back("half of the file", xml.substr(0, xml.size() / 2));
+    broken.emplace_back("nothing", "");
+    broken.emplace_back(
+        "another name",
+        std::regex_replace(xml, std::regex("profile_name=\"[a-z]+\""), "profile_name=\"other\""));
+    broken.emplace_back("shared memory", std::regex_replace(xml, std::regex("UDPv4"), "SHM"));
+    broken.emplace_back(
+        "builtin transports",
+        std::regex_replace(xml, std::regex("(<useBuiltinTransports>)false"), "$1true"));
+    if (profile == "laptop")
+      broken.emplace_back("another address",
+                          std::regex_replace(xml, std::regex("127\\.0\\.0\\.1"), "192.0.2.1"));
+    for (const auto& [what, changed] : broken) {
+      const Answer answer = run_with(profile, changed);
+      EXPECT_EQ(answer.exit_code, 3) << profile << ", " << what << ": " << answer.log;
+      EXPECT_NE(answer.log.find(profile), std::string::npos) << answer.log;
+    }
+  }
+  std::filesystem::remove(share / "dds" / "lan.xml");
+  EXPECT_EQ(run("prehend", {"status", "--set", "lab.network=house"}, 10).exit_code, 3);
+}
+
+TEST_F(Profiles, TheLaptopNeedsOnlyLoopbackAndNothingLeavesIt) {
+  if (!may_make_namespaces()) GTEST_SKIP() << "a network namespace needs root";
+  const Answer answer = alone(R"sh(
+$bin/prehend status $lab && exit 10 || [ $? -eq 3 ] || exit 11
+ip link set lo up
+ip link add outside type veth peer name cable
+ip link set outside addrgenmode none; ip link set cable addrgenmode none
+ip addr add 10.9.0.1/24 dev outside; ip link set outside up; ip link set cable up
+ip route add default via 10.9.0.2
+sent() { ip -j -s link show outside | grep -o '"tx":{"bytes":[0-9]*'; }
+before=$(sent)
+$bin/prehend-simulation $lab & simulation=$!
+$bin/prehend status --wait simulation --timeout 15 $lab || exit 12
+[ "$(sent)" = "$before" ] || exit 13
+# Who listens on the network hears nothing of it.
+$bin/prehend status --wait simulation --timeout 2 $lab --set lab.network=lan && exit 14
+[ "$(sent)" != "$before" ] || exit 15
+kill $simulation; wait $simulation
+)sh",
+                              60);
+  EXPECT_EQ(answer.exit_code, 0) << answer.log;
+  EXPECT_NE(answer.log.find("loopback interface is down"), std::string::npos) << answer.log;
+}
+
+// Over loopback addresses, so that it needs no network; multicast is not used by this profile.
+TEST_F(Profiles, ADiscoveryServerBringsThemTogetherAndLinkedServersTheirClients) {
+  const int port = 20000 + static_cast<int>(std::random_device{}() % 10000);
+  const auto at = [&](int n) { return fmt::format("127.0.0.1:{}", port + n); };
+  const auto serve = [&](int n, Strings more) {
+    Strings arguments{"discovery-server", "--listen", at(n)};
+    const Strings lab = lab_arguments();
+    arguments.insert(arguments.end(), lab.begin(), lab.end());
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return start_program("prehend", arguments);
+  };
+  const auto client = [&](int n) {
+    return Strings{"lab.network=server", fmt::format("lab.server=[\"{}\"]", at(n))};
+  };
+  auto first = serve(0, {});
+  auto simulation = start("simulation", client(0));
+  EXPECT_TRUE(sees("simulation", client(0)));
+  EXPECT_FALSE(sees("simulation", client(1), "1")) << "there is no second server yet";
+  auto second = serve(1, {"--link", at(0)});
+  EXPECT_TRUE(sees("simulation", client(1)));
+  EXPECT_FALSE(sees("simulation", {}, "1")) << "seen without the server";
+
+  // The server comes and goes: who is matched stays so, and newcomers find it again.
+  first.signal(SIGKILL);
+  first.wait(seconds(5));
+  first = serve(0, {});
+  EXPECT_TRUE(sees("simulation", client(0), "20"));
+  EXPECT_FALSE(simulation.exit());
+
+  // A recorder sees topics that it does not know beforehand.
+  const std::string file = (folder_ / "all.mcap").string();
+  Strings record{"--output", file, "--quiet", "--duration", "3"};
+  const Strings lab = lab_arguments(client(0));
+  record.insert(record.end(), lab.begin(), lab.end());
+  EXPECT_EQ(run("prehend-record", record, 30).exit_code, 0);
+  const Answer info = run("prehend-recording", {"info", file, "--json"}, 10);
+  EXPECT_NE(info.output.find("\"robot/state\""), std::string::npos) << info.output << info.log;
+
+  const Answer alone = run("prehend", {"discovery-server", "--listen", at(0), "--link", at(0)}, 10);
+  EXPECT_EQ(alone.exit_code, 3);
+}
+
+}  // namespace
+}  // namespace prehend::integration

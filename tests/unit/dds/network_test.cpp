@@ -1,0 +1,124 @@
+// Profiles of the network: each is what its name says, wrong settings are errors with a mend, and
+// nothing in the environment or the working directory changes DDS. That broken files stop a process
+// is tests/integration/profiles_test.cpp, in processes of their own: Fast DDS keeps what it has
+// read.
+#include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <cstdlib>
+#include <fastdds/dds/domain/DomainParticipantFactory.hpp>
+#include <filesystem>
+#include <fstream>
+#include <prehend/dds/network.hpp>
+#include <prehend/dds/participant.hpp>
+#include <random>
+
+namespace prehend::dds {
+namespace {
+
+namespace rtps = eprosima::fastrtps::rtps;
+using eprosima::fastdds::rtps::UDPv4TransportDescriptor;
+
+int random_domain() {
+  return static_cast<int>(std::random_device{}() % 200);
+}
+
+TEST(Network, TheLaptopIsConfinedToLoopback) {
+  const auto qos = participant_qos({});
+  ASSERT_TRUE(qos) << qos.error().message();
+  EXPECT_FALSE(qos->transport().use_builtin_transports);
+  ASSERT_EQ(qos->transport().user_transports.size(), 1u);
+  const auto* udp =
+      dynamic_cast<UDPv4TransportDescriptor*>(qos->transport().user_transports[0].get());
+  ASSERT_TRUE(udp);
+  EXPECT_EQ(udp->interfaceWhiteList, std::vector<std::string>{"127.0.0.1"});
+}
+
+TEST(Network, TheLanUsesEveryInterfaceByUdpAlone) {
+  const auto qos = participant_qos({.profile = "lan"});
+  ASSERT_TRUE(qos) << qos.error().message();
+  EXPECT_FALSE(qos->transport().use_builtin_transports);
+  ASSERT_EQ(qos->transport().user_transports.size(), 1u);
+  const auto* udp =
+      dynamic_cast<UDPv4TransportDescriptor*>(qos->transport().user_transports[0].get());
+  ASSERT_TRUE(udp);
+  EXPECT_TRUE(udp->interfaceWhiteList.empty());
+}
+
+TEST(Network, ClientsOfAServerKnowItByItsPort) {
+  const Network network{.profile = "server", .servers = {"127.0.0.1", "127.0.0.1:11812"}};
+  const auto client = participant_qos(network);
+  ASSERT_TRUE(client) << client.error().message();
+  const auto& discovery = client->wire_protocol().builtin.discovery_config;
+  EXPECT_EQ(discovery.discoveryProtocol, rtps::DiscoveryProtocol_t::CLIENT);
+  ASSERT_EQ(discovery.m_DiscoveryServers.size(), 2u);
+  const auto all = participant_qos(network, {.sees_all = true});
+  ASSERT_TRUE(all);
+  EXPECT_EQ(all->wire_protocol().builtin.discovery_config.discoveryProtocol,
+            rtps::DiscoveryProtocol_t::SUPER_CLIENT);
+  for (int i = 0; i < 2; ++i) {
+    const auto server = participant_qos({.profile = "server"},
+                                        {.serves = "127.0.0.1:" + std::to_string(11811 + i)});
+    ASSERT_TRUE(server) << server.error().message();
+    EXPECT_EQ(server->wire_protocol().prefix,
+              std::next(discovery.m_DiscoveryServers.begin(), i)->guidPrefix);
+  }
+}
+
+TEST(Network, WrongSettingsAreErrorsWithAMend) {
+  for (const Network& network :
+       {Network{.profile = "house"}, Network{.profile = "server"},
+        Network{.profile = "server", .servers = {"127.0.0.1:0"}},
+        Network{.profile = "server", .servers = {"127.0.0.1:port"}},
+        Network{.profile = "server", .servers = {"127.0.0.1:70000"}},
+        Network{.profile = "server", .servers = {":11811"}},
+        Network{.profile = "server", .servers = {"no.such.host.invalid:11811"}}}) {
+    const auto qos = participant_qos(network);
+    ASSERT_FALSE(qos) << network.profile;
+    EXPECT_FALSE(qos.error().what.empty());
+    EXPECT_FALSE(qos.error().where.empty());
+  }
+  EXPECT_FALSE(participant_qos({.profile = "server", .servers = {"127.0.0.1:11811"}},
+                               {.serves = "127.0.0.1:11811"}))
+      << "a server linked with itself";
+}
+
+// A profile that turns everything best effort and confines it to an address that is not ours, and a
+// discovery server that is not there: whoever obeyed one of them would hear nothing.
+TEST(Network, EnvironmentAndWorkingDirectoryHaveNoEffect) {
+  const auto folder = std::filesystem::temp_directory_path() /
+                      ("prehend-network-" + std::to_string(std::random_device{}()));
+  std::filesystem::create_directories(folder);
+  const std::string profile = R"(<?xml version="1.0"?>
+<profiles xmlns="http://www.eprosima.com/XMLSchemas/fastRTPS_Profiles">
+<transport_descriptors><transport_descriptor><transport_id>nowhere</transport_id><type>UDPv4</type>
+<interfaceWhiteList><address>192.0.2.1</address></interfaceWhiteList></transport_descriptor>
+</transport_descriptors><participant profile_name="deaf" is_default_profile="true"><rtps>
+<userTransports><transport_id>nowhere</transport_id></userTransports>
+<useBuiltinTransports>false</useBuiltinTransports></rtps></participant></profiles>)";
+  const auto outside = std::filesystem::current_path();
+  std::filesystem::current_path(folder);
+  std::ofstream("DEFAULT_FASTRTPS_PROFILES.xml") << profile;
+  std::ofstream("named.xml") << profile;
+  ::setenv("FASTRTPS_DEFAULT_PROFILES_FILE", (folder / "named.xml").c_str(), 1);
+  ::setenv("ROS_DISCOVERY_SERVER", "192.0.2.1:11811", 1);
+  const auto influences = outside_influence();
+  EXPECT_EQ(influences.size(), 3u);
+  for (const Error& influence : influences) EXPECT_FALSE(influence.mend.empty());
+
+  const int domain = random_domain();
+  const std::string rig = "rig" + std::to_string(std::random_device{}());
+  auto here = Participant::create({.name = "here", .domain = domain, .rig = rig});
+  auto there = Participant::create({.name = "there", .domain = domain, .rig = rig});
+  std::filesystem::current_path(outside);
+  std::filesystem::remove_all(folder);
+  ASSERT_TRUE(here && there);
+  auto writer = *here->writer(service_status);
+  auto reader = *there->reader(service_status);
+  ASSERT_TRUE(writer.write(v1::ServiceStatus{}));
+  EXPECT_TRUE(reader.raw().wait_for_unread_message({10, 0}));
+}
+
+}  // namespace
+}  // namespace prehend::dds
