@@ -1,6 +1,5 @@
 // `prehend objects render` and `prehend objects train`.
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <chrono>
 #include <iostream>
@@ -8,11 +7,13 @@
 #include <nlohmann/json.hpp>
 #include <prehend/base/log.hpp>
 #include <prehend/base/paths.hpp>
+#include <prehend/base/progress.hpp>
 #include <prehend/recognition_learning/dataset.hpp>
 #include <prehend/recognition_learning/model_file.hpp>
 #include <prehend/recognition_picture/picture_file.hpp>
 #include <prehend/recognition_rendering/training_views.hpp>
 
+#include "descriptor_choice.hpp"
 #include "tool.hpp"
 
 namespace prehend::recognition {
@@ -27,18 +28,13 @@ struct RenderArguments {
 
 struct TrainArguments {
   std::string folder, model;
+  DescriptorChoice choice;
   bool json = false;
 };
 
 int broken(const Error& error) {
   log::error("{}", error.message());
   return 3;
-}
-
-/// «done 3 of 9» that overwrites itself on a terminal and is silent elsewhere.
-void progress(const std::string& what, std::size_t done, std::size_t all) {
-  if (!isatty(STDERR_FILENO)) return;
-  fmt::print(stderr, "\r{} {} of {}{}", what, done, all, done == all ? "\n" : "");
 }
 
 int render(const RenderArguments& arguments) {
@@ -49,6 +45,7 @@ int render(const RenderArguments& arguments) {
   if (!catalogue) return broken(catalogue.error());
   const Renderer renderer(*catalogue);
   std::size_t written = 0, done = 0;
+  Progress progress("rendering");
   for (const model::CatalogueObject& object : catalogue->objects()) {
     const auto folder = std::filesystem::path(arguments.folder) / object.name;
     std::error_code error;
@@ -64,7 +61,7 @@ int render(const RenderArguments& arguments) {
         if (!saved) return broken(saved.error());
       ++written;
     }
-    progress("rendering object", ++done, catalogue->objects().size());
+    progress.show(++done, catalogue->objects().size());
   }
   if (arguments.json)
     std::cout << nlohmann::ordered_json{{"classes", catalogue->objects().size()},
@@ -78,34 +75,36 @@ int render(const RenderArguments& arguments) {
 
 int train_models(const TrainArguments& arguments) {
   const auto begin = std::chrono::steady_clock::now();
-  const auto folders = class_folders(arguments.folder);
-  if (!folders) return broken(folders.error());
-  std::vector<TrainingClass> classes;
-  for (const ClassFolder& folder : *folders) {
-    classes.push_back({folder.name, {}});
-    for (const auto& file : folder.files) {
-      auto view = load_view(file);
-      if (view)
-        classes.back().views.push_back(std::move(*view));
-      else
-        log::warning("left out: {}", view.error().message());
-    }
-    progress("reading class", classes.size(), folders->size());
+  const auto dataset = load_dataset(arguments.folder);
+  if (!dataset) return broken(dataset.error());
+  for (const Error& error : dataset->left_out) log::warning("left out: {}", error.message());
+  for (const TrainingClass& c : dataset->classes)
+    if (c.views.empty())
+      log::warning("class {} has no picture that can be read", c.name);
+    else if (c.views.size() < 3)
+      log::warning("class {} has {} picture(s): how sure an answer is cannot be judged well",
+                   c.name, c.views.size());
+  const auto options = arguments.choice.options(*dataset);
+  if (!options) {
+    log::error("{}", options.error().message());
+    return 2;
   }
-  const auto models = train(classes);
+  const auto models = train(dataset->classes, *options);
   if (!models) return broken(models.error());
   if (const auto saved = save_models(arguments.model, *models); !saved)
     return broken(saved.error());
+  std::size_t views = 0;
+  for (const TrainingClass& c : dataset->classes) views += c.views.size();
   const double seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   if (arguments.json)
     std::cout << nlohmann::ordered_json{{"classes", models->classes.size()},
-                                        {"views", models->view_class.size()},
+                                        {"views", views},
                                         {"seconds", seconds}}
               << "\n";
   else
-    fmt::print("{} classes from {} views in {:.1f} s: {}\n", models->classes.size(),
-               models->view_class.size(), seconds, arguments.model);
+    fmt::print("{} classes from {} views in {:.1f} s: {}\n", models->classes.size(), views, seconds,
+               arguments.model);
   return 0;
 }
 
@@ -129,6 +128,7 @@ void add_train(CLI::App& app, int& exit_code) {
       app.add_subcommand("train", "Learns object models from a folder of pictures a class.");
   command->add_option("folder", arguments->folder, "holds a folder a class")->required();
   command->add_option("--model", arguments->model, "file to write")->required();
+  arguments->choice.add_to(*command);
   command->add_flag("--json", arguments->json, "one JSON document");
   command->callback([arguments, &exit_code] { exit_code = train_models(*arguments); });
 }

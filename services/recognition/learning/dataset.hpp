@@ -1,11 +1,10 @@
 #pragma once
 
 #include <filesystem>
-#include <functional>
 #include <string>
 #include <vector>
 
-#include "object_models.hpp"
+#include "training.hpp"
 
 namespace prehend::recognition {
 
@@ -23,5 +22,18 @@ struct ClassFolder {
   std::vector<std::filesystem::path> files;
 };
 Expected<std::vector<ClassFolder>> class_folders(const std::filesystem::path& folder);
+
+/// All views of a folder of class folders. `files` has the file of each view, class by class;
+/// `left_out` says of each picture that could not be read why.
+struct Dataset {
+  std::vector<TrainingClass> classes;
+  std::vector<std::vector<std::filesystem::path>> files;
+  std::vector<Error> left_out;
+  bool masks = false;  // any picture has a mask beside it
+};
+Expected<Dataset> load_dataset(const std::filesystem::path& folder);
+
+/// Objects cut out by masks are learned for the table, others as photos_of_objects().
+DescriptorOptions suited_options(const Dataset& dataset);
 
 }  // namespace prehend::recognition

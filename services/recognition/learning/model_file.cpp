@@ -34,6 +34,10 @@ std::string to_bytes(const ObjectModels& models) {
   messages::ObjectModelSet set;
   set.set_brightness_weight(models.palette.space().brightness_weight);
   set.set_dark(models.palette.space().dark);
+  set.set_constancy(static_cast<std::uint32_t>(models.palette.space().constancy));
+  set.set_colours(static_cast<std::uint32_t>(models.palette.space().colours));
+  set.set_weighting(static_cast<std::uint32_t>(models.weighting));
+  set.set_same_pairs(models.same_pairs);
   Eigen::MatrixXf palette(3, models.palette.size());
   for (int k = 0; k < models.palette.size(); ++k)
     palette.col(k) = models.palette.centres()[static_cast<std::size_t>(k)];
@@ -62,21 +66,18 @@ Expected<ObjectModels> from_bytes(const std::string& bytes) {
   const Eigen::MatrixXf colours = take(set.palette());
   if (colours.rows() != 3 || colours.cols() < 1 || colours.cols() > Palette::max_colours ||
       !colours.allFinite() || !(set.dark() >= 0 && set.dark() < 1000) ||
-      !(set.brightness_weight() >= 0 && set.brightness_weight() < 1000))
-    return fail("palette is wrong", "object models", "train again: prehend objects train");
+      !(set.brightness_weight() >= 0 && set.brightness_weight() < 1000) || set.constancy() > 2 ||
+      set.colours() > 1 || set.weighting() > 2)
+    return fail("descriptor is wrong", "object models", "train again: prehend objects train");
   std::vector<Eigen::Vector3f> centres;
   for (Eigen::Index k = 0; k < colours.cols(); ++k) centres.emplace_back(colours.col(k));
-  ObjectModels models{Palette({set.brightness_weight(), set.dark()}, std::move(centres)),
-                      {},
-                      0,
-                      {},
-                      {},
-                      {},
-                      {},
-                      {},
-                      {},
-                      set.kernel_sharpness(),
-                      {}};
+  const ColourSpace space{set.brightness_weight(), set.dark(),
+                          static_cast<Constancy>(set.constancy()),
+                          static_cast<Colours>(set.colours())};
+  ObjectModels models{.palette = Palette(space, std::move(centres))};
+  models.kernel_sharpness = set.kernel_sharpness();
+  models.weighting = static_cast<Weighting>(set.weighting());
+  models.same_pairs = set.same_pairs();
   for (const std::uint32_t c : set.coarse()) models.coarse.push_back(static_cast<int>(c));
   models.coarse_colours = static_cast<int>(set.coarse_colours());
   for (const std::uint32_t d : set.distances()) models.distances.push_back(static_cast<int>(d));

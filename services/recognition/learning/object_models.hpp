@@ -7,35 +7,33 @@
 #include <string>
 #include <vector>
 
+#include "calibration.hpp"
+
 namespace prehend::recognition {
 
-/// What a picture is turned into before it is compared. The defaults are what did best on photos
-/// and rendered views alike; all is stored in the model, so a model is always used as it was made.
+/// How two histograms are compared; all give 0..1, 1 for equal ones.
+enum class Weighting {
+  idf_hellinger,  // square roots of the shares, weighted by rarity, as unit vectors: their dot
+                  // product
+  hellinger,      // the same without weights: the Bhattacharyya coefficient
+  intersection,   // the sum of the smaller shares (Swain and Ballard 1991; Chang and Krumm 1999)
+};
+
+/// What a picture is turned into before it is compared. All is stored in the model, so a model is
+/// always used as it was made. The defaults are for objects cut out by masks, which are looked for
+/// on a table; photos_of_objects() did best on photos of single objects (README.md has the table).
 struct DescriptorOptions {
   ColourSpace space;
   int colours = 64;                            // of the palette, at most Palette::max_colours
   int coarse_colours = 20;                     // of the scan's palette, merged from the fine one
   std::vector<int> distances = {1, 3, 6, 10};  // px between the pixels of a pair, four directions
-  int views_a_class = 6;                       // prototypes that the scan compares with
+  double same_pairs = 1;                       // weight of pairs of one colour, 0..1
+  Weighting weighting = Weighting::idf_hellinger;
+  int varied = 0;         // copies of each view under another light, size and place
+  int views_a_class = 6;  // prototypes that the scan compares with
   std::uint64_t seed = 1;
 };
-
-/// A picture of one object. The mask tells which pixels show it.
-struct TrainingView {
-  Picture picture;
-  Plane mask;
-};
-struct TrainingClass {
-  std::string name;
-  std::vector<TrainingView> views;
-};
-
-/// How sure a classification is: P(right) = 1 / (1 + exp(-(w . (1, score, margin, similarity)))),
-/// fitted on views that the classifier had not seen and on views of classes left out.
-struct Calibration {
-  Eigen::Vector4d w = Eigen::Vector4d::Zero();
-  double probability(double score, double margin, double similarity) const;
-};
+DescriptorOptions photos_of_objects();
 
 struct ObjectClass {
   std::string name;
@@ -49,12 +47,14 @@ struct ObjectModels {
   std::vector<int> coarse;  // coarse colour of each colour of the palette
   int coarse_colours = 0;
   std::vector<int> distances;
+  double same_pairs = 1;
+  Weighting weighting = Weighting::idf_hellinger;
   Eigen::VectorXf idf;  // weight of each pair of colours
   std::vector<ObjectClass> classes;
-  Eigen::MatrixXf views;        // descriptors of all training views, one a column, of norm 1
+  Eigen::MatrixXf views;        // descriptors of all training views, one a column
   std::vector<int> view_class;  // of each column
   Eigen::MatrixXf dual;         // views by classes: the kernel ridge classifier
-  double kernel_sharpness = 0;  // k(a, b) = exp(sharpness (a . b - 1))
+  double kernel_sharpness = 0;  // k(a, b) = exp(sharpness (similarity(a, b) - 1))
   Calibration calibration;
 
   Expected<void> check() const;
@@ -68,17 +68,16 @@ struct Classification {
   double probability = 0;      // that `best` is right
 };
 
-/// Weighted Hellinger descriptor: square root of the normalised counts, weighted by rarity, of norm
-/// 1, so that the dot product of two is their similarity. Zero for empty counts.
-Eigen::VectorXf descriptor(const Eigen::VectorXf& counts, const Eigen::VectorXf& idf);
+/// Counts of pairs as a descriptor: unit vectors whose dot product is the similarity or, for the
+/// intersection, shares. Zero for empty counts.
+Eigen::VectorXf descriptor(const Eigen::VectorXf& counts, const Eigen::VectorXf& idf,
+                           Weighting weighting = Weighting::idf_hellinger);
+/// Similarities of the columns of `views` and those of `others`.
+Eigen::MatrixXf similarities(const Eigen::MatrixXf& views, const Eigen::MatrixXf& others,
+                             Weighting weighting);
 
-/// Pixels in an ellipse around the middle: where the object is in a photo of one object.
+/// Pixels in an upright ellipse around the middle: where the object is in a photo of one object.
 Plane centred_mask(int width, int height);
-
-/// Learns palette, views and classifier. Views without a picture are skipped; fails without any
-/// class that has a view. More than `max_views` views of a class are thinned out evenly.
-Expected<ObjectModels> train(const std::vector<TrainingClass>& classes,
-                             const DescriptorOptions& options = {}, int max_views = 60);
 
 /// Compares a descriptor with all classes, by the learned classifier or the nearest view.
 Classification classify(const ObjectModels& models, const Eigen::VectorXf& descriptor,

@@ -1,7 +1,7 @@
 #pragma once
 
 #include <cstdint>
-#include <prehend/recognition_learning/object_models.hpp>
+#include <prehend/recognition_learning/training.hpp>
 
 #include "renderer.hpp"
 

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <optional>
+#include <prehend/recognition_learning/dataset.hpp>
+#include <string>
+#include <vector>
+
+namespace prehend::recognition {
+
+/// The options of a descriptor on the command line, over what suits the pictures.
+class DescriptorChoice {
+ public:
+  void add_to(CLI::App& command);
+  Expected<DescriptorOptions> options(const Dataset& dataset) const;
+
+ private:
+  std::string purpose_, colour_space_, constancy_, weighting_;
+  std::optional<int> colours_, varied_;
+  std::optional<double> brightness_, same_pairs_;
+  std::vector<int> distances_;
+};
+
+}  // namespace prehend::recognition

@@ -1,0 +1,232 @@
+#include "training.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "folds.hpp"
+#include "ridge.hpp"
+
+namespace prehend::recognition {
+namespace {
+
+constexpr double sharpness = 6.0;  // of the kernel
+constexpr int calibration_folds = 5;
+
+/// Measures what the classifier says of views it has not seen: in folds by background and, as
+/// strangers, of every class when it was left out. Varied
+/// views are judged, too, because another day is what the answer is for.
+Calibration calibrate(const Eigen::MatrixXf& near, const Eigen::MatrixXf& kernel,
+                      const std::vector<int>& view_class, const std::vector<int>& fold,
+                      int classes) {
+  const std::size_t n = view_class.size();
+  std::vector<Outcome> outcomes;
+  const auto collect = [&](auto held_out, bool stranger, double weight) {
+    std::vector<char> use(n);
+    for (std::size_t i = 0; i < n; ++i) use[i] = !held_out(i);
+    if (std::none_of(use.begin(), use.end(), [](char u) { return u != 0; })) return;
+    const Eigen::MatrixXf dual = solve_ridge(kernel, view_class, classes, use);
+    for (std::size_t i = 0; i < n; ++i) {
+      if (use[i]) continue;
+      const auto row = static_cast<Eigen::Index>(i);
+      const Eigen::VectorXf scores = (kernel.row(row) * dual).transpose();
+      Eigen::VectorXf similarity = Eigen::VectorXf::Zero(classes);
+      for (std::size_t j = 0; j < n; ++j)
+        if (use[j])
+          similarity[view_class[j]] =
+              std::max(similarity[view_class[j]], near(row, static_cast<Eigen::Index>(j)));
+      const Evidence seen = evidence(scores, similarity);
+      outcomes.push_back({seen, !stranger && seen.best == view_class[i], weight});
+    }
+  };
+  for (int k = 0; k < calibration_folds; ++k)
+    collect([&](std::size_t i) { return fold[i] == k; }, false, 1.0);
+  for (int c = 0; classes > 1 && c < classes; ++c)
+    collect([&](std::size_t i) { return view_class[i] == c; }, true, 0.5);
+  return fit(outcomes);
+}
+
+/// Merges the palette's colours into fewer, by k-means over their centres weighted by use.
+std::vector<int> merge_colours(const Palette& palette, const Eigen::VectorXf& use, int colours,
+                               std::uint64_t seed, int& made) {
+  std::vector<Eigen::Vector3f> samples;
+  for (int k = 0; k < palette.size(); ++k)
+    for (int i = 0; i < 1 + static_cast<int>(40 * use[k]); ++i)
+      samples.push_back(palette.centres()[static_cast<std::size_t>(k)]);
+  const Palette coarse = Palette::learn(palette.space(), samples, colours, seed);
+  made = coarse.size();
+  std::vector<int> map;
+  for (const Eigen::Vector3f& centre : palette.centres()) map.push_back(coarse.nearest(centre));
+  return map;
+}
+
+Eigen::VectorXf fold_counts(const Eigen::VectorXf& fine, const std::vector<int>& coarse,
+                            int coarse_colours) {
+  Eigen::VectorXf made = Eigen::VectorXf::Zero(pair_count(coarse_colours));
+  for (int a = 0; a < static_cast<int>(coarse.size()); ++a)
+    for (int b = 0; b <= a; ++b)
+      made[pair_index(coarse[static_cast<std::size_t>(a)], coarse[static_cast<std::size_t>(b)])] +=
+          fine[pair_index(a, b)];
+  return made;
+}
+
+/// At most `count` directions that stand for the columns: k-means on the unit sphere.
+Eigen::MatrixXf prototypes(const Eigen::MatrixXf& columns, int count) {
+  std::vector<Eigen::Index> chosen{0};
+  while (static_cast<int>(chosen.size()) < std::min<int>(count, static_cast<int>(columns.cols()))) {
+    const Eigen::MatrixXf nearness = columns(Eigen::all, chosen).transpose() * columns;
+    Eigen::Index furthest;
+    if (nearness.colwise().maxCoeff().minCoeff(&furthest) > 0.9999f) break;
+    chosen.push_back(furthest);
+  }
+  Eigen::MatrixXf centres = columns(Eigen::all, chosen);
+  for (int iteration = 0; iteration < 8; ++iteration) {
+    const Eigen::MatrixXf nearness = centres.transpose() * columns;
+    Eigen::MatrixXf sums = Eigen::MatrixXf::Zero(centres.rows(), centres.cols());
+    for (Eigen::Index i = 0; i < columns.cols(); ++i) {
+      Eigen::Index best;
+      nearness.col(i).maxCoeff(&best);
+      sums.col(best) += columns.col(i);
+    }
+    for (Eigen::Index k = 0; k < centres.cols(); ++k)
+      if (sums.col(k).norm() > 0) centres.col(k) = sums.col(k).normalized();
+  }
+  return centres;
+}
+
+/// The views that show something, at most `max_views` of a class, evenly chosen; classes that have
+/// any.
+std::vector<TrainingClass> usable(const std::vector<TrainingClass>& classes, int max_views) {
+  std::vector<TrainingClass> made;
+  for (const TrainingClass& given : classes) {
+    std::vector<const TrainingView*> good;
+    for (const TrainingView& view : given.views)
+      if (!view.picture.empty() && view.mask.width == view.picture.width &&
+          view.mask.height == view.picture.height &&
+          std::any_of(view.mask.values.begin(), view.mask.values.end(),
+                      [](std::uint8_t v) { return v != 0; }))
+        good.push_back(&view);
+    if (good.empty()) continue;
+    const auto keep = std::min(good.size(), static_cast<std::size_t>(std::max(1, max_views)));
+    made.push_back({given.name, {}});
+    for (std::size_t i = 0; i < keep; ++i)
+      made.back().views.push_back(*good[i * good.size() / keep]);
+  }
+  return made;
+}
+
+/// Of as many pixels of every view.
+Palette learn_palette(const std::vector<TrainingClass>& classes, const DescriptorOptions& options) {
+  std::size_t views = 0;
+  for (const TrainingClass& c : classes) views += c.views.size();
+  const std::size_t a_view = std::clamp<std::size_t>(24000 / views, 8, 400);
+  Random random(options.seed);
+  std::vector<Eigen::Vector3f> samples;
+  for (const TrainingClass& c : classes)
+    for (const TrainingView& view : c.views) {
+      const Picture picture = balanced(view.picture, options.space.constancy);
+      for (std::size_t i = 0, tries = 0; i < a_view && tries < 40 * a_view; ++tries) {
+        const std::size_t p = random.index(picture.pixels());
+        if (!view.mask.values[p]) continue;
+        samples.push_back(colour_feature(options.space, picture.rgb[3 * p], picture.rgb[3 * p + 1],
+                                         picture.rgb[3 * p + 2]));
+        ++i;
+      }
+    }
+  return Palette::learn(options.space, samples, options.colours, options.seed);
+}
+
+/// Share of each colour under the mask.
+Eigen::VectorXf shares(const Plane& colours, const Plane& mask, int size) {
+  Eigen::VectorXf made = Eigen::VectorXf::Zero(size);
+  for (std::size_t p = 0; p < colours.values.size(); ++p)
+    if (mask.values[p]) made[colours.values[p]] += 1;
+  return made / made.sum();
+}
+
+/// A pair of colours that every view has tells little: sqrt(log((2 + views) / (1 + views with
+/// it))).
+Eigen::VectorXf rarity(const Eigen::MatrixXf& counts) {
+  Eigen::VectorXf made(counts.rows());
+  const auto n = static_cast<float>(counts.cols());
+  const Eigen::RowVectorXf least = 2e-4f * counts.colwise().sum();
+  for (Eigen::Index b = 0; b < counts.rows(); ++b) {
+    const auto with = static_cast<float>((counts.row(b).array() > least.array()).count());
+    made[b] = std::sqrt(std::log((2.f + n) / (1.f + with)));
+  }
+  return made;
+}
+
+}  // namespace
+
+Expected<ObjectModels> train(const std::vector<TrainingClass>& classes,
+                             const DescriptorOptions& options, int max_views) {
+  const std::vector<TrainingClass> used = usable(classes, max_views);
+  if (used.empty())
+    return fail("no usable view", "training", "give a folder with a folder of pictures a class");
+  const int class_count = static_cast<int>(used.size());
+  const std::vector<int> background = folds_by_background(used, calibration_folds);
+
+  ObjectModels made{.palette = learn_palette(used, options)};
+  made.distances = options.distances;
+  made.same_pairs = options.same_pairs;
+  made.weighting = options.weighting;
+  made.kernel_sharpness = sharpness;
+  const int colours = made.palette.size();
+  const std::vector<Offset> offsets = offsets_at(options.distances);
+
+  // Every view and its varied copies: pairs counted, class and fold.
+  const auto n = static_cast<Eigen::Index>(background.size()) * (1 + options.varied);
+  Eigen::MatrixXf counts(pair_count(colours), n);
+  std::vector<int> fold;
+  Eigen::VectorXf use = Eigen::VectorXf::Zero(colours);
+  Random random(options.seed);
+  auto view_fold = background.begin();
+  for (const TrainingClass& c : used) {
+    made.classes.push_back({c.name, Eigen::VectorXf::Zero(colours), {}});
+    for (const TrainingView& view : c.views) {
+      for (int copy = 0; copy <= options.varied; ++copy) {
+        const Plane quantised =
+            made.palette.quantise(copy == 0 ? view.picture : varied(view.picture, random));
+        counts.col(static_cast<Eigen::Index>(fold.size())) =
+            cooccurrence(quantised, colours, offsets, view.mask);
+        made.view_class.push_back(static_cast<int>(made.classes.size()) - 1);
+        fold.push_back(*view_fold);
+        made.classes.back().colours += shares(quantised, view.mask, colours);
+      }
+      ++view_fold;
+    }
+    use += made.classes.back().colours;
+    made.classes.back().colours /= made.classes.back().colours.sum();
+  }
+  use /= use.sum();
+
+  made.coarse =
+      merge_colours(made.palette, use, options.coarse_colours, options.seed, made.coarse_colours);
+  for (std::size_t c = 0; c < made.classes.size(); ++c) {
+    std::vector<Eigen::VectorXf> columns;
+    for (Eigen::Index i = 0; i < n; ++i)
+      if (made.view_class[static_cast<std::size_t>(i)] == static_cast<int>(c) &&
+          counts.col(i).sum() > 0)
+        columns.push_back(
+            fold_counts(counts.col(i), made.coarse, made.coarse_colours).cwiseSqrt().normalized());
+    if (columns.empty()) columns.push_back(Eigen::VectorXf::Zero(pair_count(made.coarse_colours)));
+    Eigen::MatrixXf together(columns.front().size(), static_cast<Eigen::Index>(columns.size()));
+    for (std::size_t i = 0; i < columns.size(); ++i)
+      together.col(static_cast<Eigen::Index>(i)) = columns[i];
+    made.classes[c].prototypes = prototypes(together, options.views_a_class);
+  }
+
+  for (int k = 0; k < colours; ++k)
+    counts.row(pair_index(k, k)) *= static_cast<float>(options.same_pairs);
+  made.idf = rarity(counts);
+  made.views.resize(counts.rows(), n);
+  for (Eigen::Index i = 0; i < n; ++i)
+    made.views.col(i) = descriptor(counts.col(i), made.idf, made.weighting);
+  const Eigen::MatrixXf near = similarities(made.views, made.views, made.weighting);
+  const Eigen::MatrixXf kernel = kernel_of(near, sharpness);
+  made.dual = solve_ridge(kernel, made.view_class, class_count, std::vector<char>(fold.size(), 1));
+  made.calibration = calibrate(near, kernel, made.view_class, fold, class_count);
+  return made;
+}
+
+}  // namespace prehend::recognition

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <prehend/base/random.hpp>
+
+#include "object_models.hpp"
+
+namespace prehend::recognition {
+
+/// A picture of one object. The mask tells which pixels show it.
+struct TrainingView {
+  Picture picture;
+  Plane mask;
+};
+struct TrainingClass {
+  std::string name;
+  std::vector<TrainingView> views;
+};
+
+/// Learns palette, views and classifier. Views without a picture are skipped; fails without any
+/// class that has a view. More than `max_views` views of a class are thinned out evenly.
+Expected<ObjectModels> train(const std::vector<TrainingClass>& classes,
+                             const DescriptorOptions& options = {}, int max_views = 60);
+
+/// The picture as another day might show it: brighter or darker, in light of another colour, nearer
+/// or further, not quite in the middle. The mask stays.
+Picture varied(const Picture& picture, Random& random);
+
+}  // namespace prehend::recognition
