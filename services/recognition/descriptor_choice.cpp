@@ -16,9 +16,11 @@ void DescriptorChoice::add_to(CLI::App& command) {
       ->check(CLI::IsMember({"none", "grey-world", "shades-of-grey"}));
   command.add_option("--colours", colours_, "of the palette")
       ->check(CLI::Range(2, Palette::max_colours));
-  command.add_option("--distances", distances_, "between the pixels of a pair, px")
+  command
+      .add_option("--distances", distances_,
+                  "between the pixels of a pair, px; 0 is the plain histogram")
       ->delimiter(',')
-      ->check(CLI::Range(1, 64));
+      ->check(CLI::Range(0, 64));
   command.add_option("--same-pairs", same_pairs_, "weight of pairs of one colour")
       ->check(CLI::Range(0.0, 1.0));
   command.add_option("--weighting", weighting_, "how histograms are compared")

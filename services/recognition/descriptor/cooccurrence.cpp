@@ -7,6 +7,10 @@ namespace prehend::recognition {
 std::vector<Offset> offsets_at(const std::vector<int>& distances) {
   std::vector<Offset> made;
   for (const int d : distances) {
+    if (d == 0) {
+      made.push_back({0, 0});
+      continue;
+    }
     const int diagonal = std::max(1, static_cast<int>(d * 0.7071 + 0.5));
     made.push_back({d, 0});
     made.push_back({0, d});

@@ -11,7 +11,8 @@ struct Offset {
   int dx = 0, dy = 0;
 };
 
-/// Offsets of half a plane (a pair counts once) at four directions and these distances, px.
+/// Offsets of half a plane (a pair counts once) at four directions and these distances, px. At
+/// distance 0 a pixel is its own partner: a plain colour histogram.
 std::vector<Offset> offsets_at(const std::vector<int>& distances);
 
 /// Index of the unordered pair of colours {a, b} among pair_count(colours) ones.

@@ -7,14 +7,14 @@
 namespace prehend::recognition {
 namespace {
 
-Eigen::Vector4d row(const Evidence& e) {
+Eigen::Vector4d row(const Grounds& e) {
   return {1, e.score, e.margin, e.similarity};
 }
 
 }  // namespace
 
-Evidence evidence(const Eigen::VectorXf& scores, const Eigen::VectorXf& similarity) {
-  Evidence made;
+Grounds grounds(const Eigen::VectorXf& scores, const Eigen::VectorXf& similarity) {
+  Grounds made;
   if (scores.size() == 0) return made;
   Eigen::Index best;
   made.score = scores.maxCoeff(&best);
@@ -27,8 +27,8 @@ Evidence evidence(const Eigen::VectorXf& scores, const Eigen::VectorXf& similari
   return made;
 }
 
-double Calibration::probability(const Evidence& evidence) const {
-  return 1 / (1 + std::exp(-w.dot(row(evidence))));
+double Calibration::probability(const Grounds& grounds) const {
+  return 1 / (1 + std::exp(-w.dot(row(grounds))));
 }
 
 Calibration fit(const std::vector<Outcome>& outcomes) {
@@ -37,8 +37,8 @@ Calibration fit(const std::vector<Outcome>& outcomes) {
     Eigen::Vector4d gradient = -0.05 * made.w;
     Eigen::Matrix4d hessian = 0.05 * Eigen::Matrix4d::Identity();
     for (const Outcome& outcome : outcomes) {
-      const Eigen::Vector4d x = row(outcome.evidence);
-      const double p = made.probability(outcome.evidence);
+      const Eigen::Vector4d x = row(outcome.grounds);
+      const double p = made.probability(outcome.grounds);
       gradient += outcome.weight * ((outcome.right ? 1 : 0) - p) * x;
       hessian += outcome.weight * std::max(1e-6, p * (1 - p)) * x * x.transpose();
     }

@@ -65,7 +65,7 @@ Classification classify(const ObjectModels& models, const Eigen::VectorXf& d, bo
     best = std::max(best, near[i]);
   }
   made.scores = models.dual.transpose() * kernel_of(near, models.kernel_sharpness);
-  const Evidence seen = evidence(made.scores, made.similarity);
+  const Grounds seen = grounds(made.scores, made.similarity);
   made.best = seen.best;
   made.probability = models.calibration.probability(seen);
   if (!learned) {
@@ -93,7 +93,7 @@ Expected<void> ObjectModels::check() const {
     if (c < 0 || c >= coarse_colours) return wrong("coarse colour out of range");
   if (distances.empty() || distances.size() > 16) return wrong("offsets are wrong");
   for (const int d : distances)
-    if (d < 1 || d > 64) return wrong("an offset is out of range");
+    if (d < 0 || d > 64) return wrong("an offset is out of range");
   if (!(same_pairs >= 0 && same_pairs <= 1)) return wrong("weight of pairs of one colour is wrong");
   if (idf.size() != pair_count(colours) || !idf.allFinite()) return wrong("weights are wrong");
   if (classes.empty() || classes.size() > 1000) return wrong("number of classes is wrong");

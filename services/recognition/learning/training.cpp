@@ -34,7 +34,7 @@ Calibration calibrate(const Eigen::MatrixXf& near, const Eigen::MatrixXf& kernel
         if (use[j])
           similarity[view_class[j]] =
               std::max(similarity[view_class[j]], near(row, static_cast<Eigen::Index>(j)));
-      const Evidence seen = evidence(scores, similarity);
+      const Grounds seen = grounds(scores, similarity);
       outcomes.push_back({seen, !stranger && seen.best == view_class[i], weight});
     }
   };
