@@ -169,7 +169,9 @@ std::optional<Mapping::Candidate> Mapping::candidate(const Track& track, const P
   const auto X_OG =
       model::nearest_grasp(detection.shape, detection.X_WO.inverse() * X_WG, hand_.reach());
   if (!X_OG) return std::nullopt;
-  Candidate found{detection, trust(track), 0, detection.X_WO * *X_OG, *X_OG};
+  Candidate found{detection, trust(track),
+                  0,         detection.X_WO * *X_OG,
+                  *X_OG,     place_for(model_.traits().places, detection.shape, *X_OG)};
   found.distance = (found.X_WG.translation() - X_WG.translation()).norm();
   const double angle = angle_between(found.X_WG.linear(), X_WG.linear());
   if (found.distance > (engaged ? options_.leave : options_.enter) ||
@@ -259,7 +261,9 @@ Pose Mapping::corrected(const Pose& X_WG, const std::optional<Candidate>& seen, 
       full_correction_ = Pose::Identity();
       yielded_ = 0;
     } else if (seen && arbitration_.phase() != Phase::leaving) {
-      const auto aside = [&] { return seen->X_WG * Eigen::Translation3d(0, yielded_, 0); };
+      const auto aside = [&] {
+        return seen->X_WG * Eigen::Translation3d(seen->p_GR + Eigen::Vector3d(0, yielded_, 0));
+      };
       if (options_.intelligent && engaged_)
         yielded_ = std::clamp(yielded_ + yielding(aside()), -options_.correct_distance,
                               options_.correct_distance);

@@ -131,10 +131,11 @@ class Mapping {
   };
   struct Candidate {
     Detection detection;
-    double trust = 1;     // most that the intelligent answer may count
-    double distance = 0;  // m, to its nearest grasp
-    Pose X_WG;            // that grasp
-    Pose X_OG;            // the same on the object
+    double trust = 1;                                // most that the intelligent answer may count
+    double distance = 0;                             // m, to its nearest grasp
+    Pose X_WG;                                       // that grasp
+    Pose X_OG;                                       // the same on the object
+    Eigen::Vector3d p_GR = Eigen::Vector3d::Zero();  // m: where this hand stands in it
   };
   Mapping(const model::HandModel& hand, const MappingModel& model, const MappingOptions& options);
   Expected<Eigen::VectorXd> without_object(const Posture& posture, const Answer& joints,

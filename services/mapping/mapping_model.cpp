@@ -118,6 +118,8 @@ Expected<MappingModel> MappingModel::create(const model::HandModel& hand, ModelT
     return fail("wrong number of weights for precision grasps", traits.scheme);
   if (!traits.precision.allFinite())
     return fail("weights for precision grasps are not finite", traits.scheme);
+  for (const LearntPlace& place : traits.places)
+    if (auto ok = check(place); !ok) return fail(ok.error().what, traits.scheme);
   std::set<model::ShapeKind> shapes;
   for (const MappingNetwork& network : networks) {
     const bool direct = network.shape == model::ShapeKind::unknown;
@@ -162,7 +164,15 @@ Expected<MappingModel> MappingModel::load(const std::filesystem::path& file,
                      *size_input,
                      Eigen::VectorXd::Map(message.lower().data(), message.lower_size()),
                      Eigen::VectorXd::Map(message.upper().data(), message.upper_size()),
-                     Eigen::VectorXd::Map(message.precision().data(), message.precision_size())};
+                     Eigen::VectorXd::Map(message.precision().data(), message.precision_size()),
+                     {}};
+  for (const messages::LearntPlace& from : message.places()) {
+    const auto shape = model::shape_from_string(from.shape());
+    if (!shape || from.seen_size() != 4 || from.place_size() != 3)
+      return refuse("a place without shape, size or coordinates");
+    traits.places.push_back({*shape, Eigen::Vector4d::Map(from.seen().data()),
+                             Eigen::Vector3d::Map(from.place().data())});
+  }
   auto made = create(hand, std::move(traits), std::move(networks));
   if (!made) return refuse(made.error().message());
   return made;
@@ -184,6 +194,12 @@ Expected<void> MappingModel::save(const std::filesystem::path& file,
   message.mutable_lower()->Add(traits_.lower.begin(), traits_.lower.end());
   message.mutable_upper()->Add(traits_.upper.begin(), traits_.upper.end());
   message.mutable_precision()->Add(traits_.precision.begin(), traits_.precision.end());
+  for (const LearntPlace& place : traits_.places) {
+    messages::LearntPlace& to = *message.add_places();
+    to.set_shape(std::string(to_string(place.shape)));
+    to.mutable_seen()->Add(place.seen.begin(), place.seen.end());
+    to.mutable_place()->Add(place.p_GR.begin(), place.p_GR.end());
+  }
   for (const MappingNetwork& network : networks_) {
     messages::MappingNetwork& to = *message.add_networks();
     if (network.shape != model::ShapeKind::unknown)

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "features.hpp"
+#include "learnt_place.hpp"
 #include "size_input.hpp"
 
 namespace prehend::mapping {
@@ -37,6 +38,7 @@ struct ModelTraits {
   /// Tells precision grasps from circular sphere ones: a weight of each feature, 1/m, and an
   /// offset; their sum is positive for precision. Empty: not learnt.
   Eigen::VectorXd precision;
+  std::vector<LearntPlace> places;  // where the hand stands to grasp what
 };
 
 /// A robot posture, and whether the question lay outside what was trained.

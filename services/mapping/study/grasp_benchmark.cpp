@@ -112,7 +112,7 @@ class Trial {
     const grasping::HandMotion motion = world_->hand_motion();
     result.joint_error = (motion.dof - grasp_.dof).squaredNorm();
     const Pose X_OB = world_->body_motion(0).X_WO.inverse() * motion.X_WB;
-    const Pose X_OB_shown = grasp_.X_OG * parts_.hand.X_BG().inverse();
+    const Pose X_OB_shown = grasp_.X_OR() * parts_.hand.X_BG().inverse();
     const auto tips = parts_.hand.fingertip_positions(motion.dof);
     const auto shown = parts_.hand.fingertip_positions(grasp_.dof);
     double sum = 0;

@@ -90,6 +90,15 @@ int main(int argc, char** argv) {
   app.add_option("--recordings", recordings,
                  "Leap recordings of real hands, a folder; default: leap_hand_recordings in\n"
                  "PREHEND_SHARED_DATA. Without any, figure «real» is left out");
+  app.add_option("--size-error", options.take.size_error,
+                 "grasp benchmark: objects are seen larger or smaller by this share")
+      ->check(CLI::Range(0.0, 0.5));
+  app.add_option("--position-error", options.take.position_error,
+                 "grasp benchmark: sigma of where objects are seen, m a coordinate")
+      ->check(CLI::Range(0.0, 0.1));
+  app.add_option("--claimed-error", options.take.claimed_error,
+                 "grasp benchmark: the same as the camera tells it, if that is more, m")
+      ->check(CLI::Range(0.0, 1.0));
   app.add_option("--threads", threads, "0: one a core; the answer is the same")
       ->capture_default_str()
       ->check(CLI::Range(0, 1024));

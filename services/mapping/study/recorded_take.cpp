@@ -70,7 +70,8 @@ std::optional<RecordedTake> record_take(const RobotGrasp& grasp, std::uint64_t s
                         Eigen::AngleAxisd(turn, Vector3d::UnitZ()).toRotationMatrix());
   take.covariance.setZero();
   if (options.says_uncertain) {
-    take.covariance(0, 0) = take.covariance(1, 1) = options.position_error * options.position_error;
+    const double claimed = std::max(options.position_error, options.claimed_error);
+    take.covariance(0, 0) = take.covariance(1, 1) = claimed * claimed;
     take.covariance(3, 3) = options.angle_error * options.angle_error;
   }
   return take;

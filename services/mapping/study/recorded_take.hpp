@@ -16,6 +16,7 @@ struct TakeOptions {
   double size_error = 0;       // the object is seen larger or smaller by this share of its size
   double position_error = 0;   // m, sigma of each horizontal coordinate at which it is seen
   double angle_error = 0;      // rad, sigma of its turn
+  double claimed_error = 0;    // m, the same as told, if that is more: a camera that is careful
   bool says_uncertain = true;  // detections carry these errors as their covariance
 };
 

@@ -51,6 +51,7 @@ Expected<std::vector<TrialResult>> benchmark(const Parts& parts, const StudyOpti
       asked.modes = {mode};
       asked.trials = options.quick ? 24 : 270;
       asked.seed += options.seed;
+      asked.take = options.take;
       auto trials = run_grasp_benchmark(hand, asked, for_each,
                                         [&](double share) { progress((done + share) / pieces); });
       progress(++done / pieces);

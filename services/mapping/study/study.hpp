@@ -15,6 +15,7 @@ namespace prehend::mapping {
 struct StudyOptions {
   bool quick = false;
   std::uint64_t seed = 1;
+  TakeOptions take;  // how people reach in the grasp benchmark, and how the camera errs
 };
 
 /// An experiment with what it came to.

@@ -195,6 +195,7 @@ int main(int argc, char** argv) {
     const auto catalogue = model::Catalogue::load(catalogue_file);
     if (!catalogue) return refuse(catalogue.error());
     trainer.precision = precision_discriminant(*catalogue, hand->reach(), people);
+    trainer.places = learnt_places(*grasps);
     Steps steps;
     const double before = since_begin();
     const auto model = train_mapping(

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <optional>
 #include <prehend/grasping/closing.hpp>
+#include <prehend/grasping/hold_test.hpp>
+#include <prehend/grasping/world.hpp>
 #include <prehend/model/placement.hpp>
 #include <prehend/proto/pose_numbers.hpp>
 #include <prehend/proto/sealed_file.hpp>
@@ -17,6 +19,10 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr std::string_view kind = "robot-grasps";
+constexpr double longest_closing = 3;  // s, until the fingers must have stopped
+constexpr double closing_speed = 1.0;  // rad/s, of the fingers that close as the mapping does
+constexpr double aside = 0.012, nearer = 0.015;  // m, where else the hand is tried
+constexpr double unsure = 0.008;  // m, beside its place where a grasp shall hold as well
 
 template <class Repeated>
 Eigen::VectorXd to_vector(const Repeated& values) {
@@ -44,6 +50,9 @@ Expected<RobotGrasp> read(const messages::RobotGrasp& from, const model::HandMod
   if (grasp.preshape.size() != dofs || grasp.dof.size() != dofs || grasp.closing.size() != dofs)
     return fail("a grasp with another number of DoF");
   if (!grasp.preshape.allFinite() || !grasp.dof.allFinite()) return fail("a grasp is not finite");
+  if (from.place_size() != 3) return fail("a grasp without a place");
+  grasp.p_GR = Eigen::Vector3d::Map(from.place().data());
+  if (!grasp.p_GR.allFinite()) return fail("a grasp is not finite");
   grasp.epsilon = from.epsilon();
   grasp.held = from.held();
   return grasp;
@@ -66,6 +75,70 @@ bool above_table(const model::HandModel& hand, const Pose& X_OB, const Eigen::Ve
       }
   }
   return true;
+}
+
+/// Whether the object is held when it stands on the table and the fingers close as the mapping has
+/// them close: from the open hand, in proportion, so that they arrive together, then squeezed. The
+/// hand stands `beside` its place, m, in the direction in which it closes.
+bool survives(const model::HandModel& hand, const Eigen::VectorXd& open,
+              const grasping::Body& object, const RobotGrasp& grasp, double beside) {
+  const Pose X_WO = make_pose(Vector3d(0, 0, model::half_extents(object.shape).z()));
+  const Pose X_WB =
+      X_WO * grasp.X_OR() * Eigen::Translation3d(0, beside, 0) * hand.X_BG().inverse();
+  auto world = grasping::World::create(hand, X_WB, open);
+  if (!world || !(*world)->add_body(object, X_WO)) return false;
+  if ((*world)->distance_to_hand(0, 0.01) < 0) return false;
+  Eigen::VectorXd squeezed = grasp.dof;
+  for (Eigen::Index i = 0; i < squeezed.size(); ++i)
+    squeezed[i] += grasp.closing[i] * hand.dofs()[static_cast<std::size_t>(i)].squeeze;
+  const Eigen::VectorXd way = hand.clamp(squeezed) - open;
+  double closing = 0;  // s
+  for (Eigen::Index i = 0; i < way.size(); ++i)
+    closing = std::max(
+        closing,
+        std::abs(way[i]) /
+            (closing_speed * grasping::radian_of(hand.dofs()[static_cast<std::size_t>(i)])));
+  constexpr double settling = 0.4;  // s
+  const double dt = (*world)->time_step();
+  for (double t = 0; t < closing + settling; t += dt) {
+    if (!(*world)->command(X_WB, open + std::min(1.0, t / closing) * way)) return false;
+    (*world)->step();
+  }
+  grasping::HoldOptions hold{.shake = true};
+  if (beside != 0) hold.hold = 0.5;  // drops what it drops at once
+  // Shoved or toppled by its fingers, it is not grasped where it stood.
+  const Pose X_WO_after = (*world)->body_motion(0).X_WO;
+  if ((X_WO_after.translation() - X_WO.translation()).norm() > hold.most_slip ||
+      angle_between(X_WO_after.linear(), X_WO.linear()) > hold.most_turn)
+    return false;
+  return grasping::hold_test(**world, 0, hold).held;
+}
+
+/// Closes the hand from a preshape on the object where it stands; fills in what comes of it.
+Expected<void> close(const model::HandModel& hand, const grasping::Body& object,
+                     const Preshape& preshape, RobotGrasp& grasp) {
+  const Pose X_BO = hand.X_BG() * grasp.X_OR().inverse();
+  const double table = -model::half_extents(object.shape).z();
+  const auto reaches_into_table = [&](const Eigen::VectorXd& dof) {
+    return !above_table(hand, X_BO.inverse(), preshape.robot, dof, table);
+  };
+  const auto refused = [&] { return fail("fingers would reach into the table", object.name); };
+  if (reaches_into_table(preshape.robot)) return refused();
+  grasping::ClosingOptions options;
+  options.volume = false;
+  options.fixed_object = true;
+  options.longest = longest_closing;
+  options.resting = preshape.resting;
+  const auto closed = grasping::close_hand(hand, object, X_BO, preshape.robot, options);
+  if (!closed) return tl::unexpected(closed.error());
+  if (reaches_into_table(closed->dof)) return refused();
+  grasp.preshape = preshape.robot;
+  grasp.dof = closed->dof;
+  grasp.epsilon = closed->quality.epsilon;
+  grasp.closing.resize(grasp.dof.size());
+  for (std::size_t i = 0; i < hand.dofs().size(); ++i)
+    grasp.closing[static_cast<Eigen::Index>(i)] = preshape.resting[i] ? 0 : hand.dofs()[i].closing;
+  return {};
 }
 
 }  // namespace
@@ -106,63 +179,50 @@ Eigen::VectorXd past_contact(const model::HandModel& hand, const RobotGrasp& gra
   return hand.clamp(dof);
 }
 
+std::vector<Vector3d> places_to_try() {
+  return {{0, 0, 0}, {0, aside, 0}, {0, -aside, 0}, {0, 0, nearer}, {0, 0, -nearer}};
+}
+
 Expected<RobotGrasp> robot_grasp(const model::HandModel& hand, const Scheme& scheme,
                                  const model::CatalogueObject& object, const Pose& X_OG,
-                                 GraspType type) {
-  const Pose X_BO = hand.X_BG() * X_OG.inverse();
+                                 GraspType type, const std::vector<Vector3d>& places) {
   const grasping::Body body{object.name, object.shape, object.mass, object.material, {}};
-  grasping::ClosingOptions options;
-  options.volume = false;
-  options.down_B = X_BO.linear() * -Vector3d::UnitZ();
-
-  const double table = -model::half_extents(object.shape).z();
-  struct Closed {
-    const Preshape* preshape;
-    grasping::ClosedGrasp grasp;
-  };
-  std::vector<Closed> closed;
   Error last{"no preshape is for this grasp", object.name, ""};
-  for (const Preshape& preshape : scheme.preshapes) {
-    if (std::find(preshape.types.begin(), preshape.types.end(), type) == preshape.types.end())
-      continue;
-    options.resting = preshape.resting;
-    auto grasp = grasping::close_hand(hand, body, X_BO, preshape.robot, options);
-    if (!grasp)
-      last = grasp.error();
-    else if (!above_table(hand, X_BO.inverse(), preshape.robot, grasp->dof, table))
-      last = {"fingers would reach into the table", object.name, ""};
-    else
-      closed.push_back({&preshape, std::move(*grasp)});
+  std::optional<RobotGrasp> best;
+  int most = -1;
+  for (const Vector3d& place : places) {
+    std::vector<RobotGrasp> closed;
+    for (const Preshape& preshape : scheme.preshapes) {
+      if (std::find(preshape.types.begin(), preshape.types.end(), type) == preshape.types.end())
+        continue;
+      RobotGrasp made;
+      made.object = object.name;
+      made.type = type;
+      made.shape = object.shape;
+      made.X_OG = X_OG;
+      made.p_GR = place;
+      if (auto ok = close(hand, body, preshape, made); ok)
+        closed.push_back(std::move(made));
+      else
+        last = ok.error();
+    }
+    std::stable_sort(closed.begin(), closed.end(), [](const RobotGrasp& a, const RobotGrasp& b) {
+      return a.epsilon > b.epsilon;
+    });
+    for (RobotGrasp& candidate : closed) {
+      candidate.held = survives(hand, scheme.open.robot, body, candidate, 0);
+      int survived = candidate.held ? 1 : 0;
+      if (candidate.held)
+        for (const double beside : {unsure, -unsure})
+          survived += survives(hand, scheme.open.robot, body, candidate, beside);
+      if (survived <= most) continue;
+      most = survived;
+      best = std::move(candidate);
+      if (most == 3) return *best;
+    }
   }
-  if (closed.empty()) return tl::unexpected(last);
-  std::stable_sort(closed.begin(), closed.end(), [](const Closed& a, const Closed& b) {
-    return a.grasp.quality.epsilon > b.grasp.quality.epsilon;
-  });
-  // Lifting and shaking cost most of the time: only until one holds, best first.
-  options.hold_test = grasping::HoldOptions{.shake = true};
-  const Closed* best = nullptr;
-  for (const Closed& candidate : closed) {
-    options.resting = candidate.preshape->resting;
-    const auto lifted = grasping::close_hand(hand, body, X_BO, candidate.preshape->robot, options);
-    if (!lifted || !lifted->hold || !lifted->hold->held) continue;
-    best = &candidate;
-    break;
-  }
-  const bool held = best != nullptr;
-  if (!best) best = &closed.front();
-  RobotGrasp made{object.name,
-                  type,
-                  object.shape,
-                  X_OG,
-                  best->preshape->robot,
-                  best->grasp.dof,
-                  Eigen::VectorXd(best->grasp.dof.size()),
-                  best->grasp.quality.epsilon,
-                  held};
-  for (std::size_t i = 0; i < hand.dofs().size(); ++i)
-    made.closing[static_cast<Eigen::Index>(i)] =
-        best->preshape->resting[i] ? 0 : hand.dofs()[i].closing;
-  return made;
+  if (!best) return tl::unexpected(last);
+  return *best;
 }
 
 std::vector<RobotGrasp> close_on_catalogue(const model::HandModel& hand, const Scheme& scheme,
@@ -173,27 +233,36 @@ std::vector<RobotGrasp> close_on_catalogue(const model::HandModel& hand, const S
     const model::CatalogueObject* object;
     Pose X_OG;
     GraspType type;
+    std::optional<Expected<RobotGrasp>> grasp;
   };
-  std::vector<Task> tasks;
+  // What is approached in the same way; its types go one after the other.
+  std::vector<std::vector<Task>> approached;
   for (const model::CatalogueObject& object : catalogue.objects()) {
     const auto ways = approaches(object.shape, hand.reach());
     if (ways.empty()) report({"does not fit into the hand", object.name, "left out"});
-    for (const Pose& X_OG : ways)
-      for (const GraspType type : types_from(X_OG)) tasks.push_back({&object, X_OG, type});
+    for (const Pose& X_OG : ways) {
+      auto& tasks = approached.emplace_back();
+      for (const GraspType type : types_from(X_OG)) tasks.push_back({&object, X_OG, type, {}});
+    }
   }
-  std::vector<std::optional<Expected<RobotGrasp>>> closed(tasks.size());
-  for_each(tasks.size(), [&](std::size_t i) {
-    closed[i] = robot_grasp(hand, scheme, *tasks[i].object, tasks[i].X_OG, tasks[i].type);
+  for_each(approached.size(), [&](std::size_t i) {
+    // Until its fingers close, a hand cannot know the type: all of them from one place.
+    std::vector<Vector3d> from = places_to_try();
+    for (Task& task : approached[i]) {
+      task.grasp = robot_grasp(hand, scheme, *task.object, task.X_OG, task.type, from);
+      if (*task.grasp && (*task.grasp)->held) from = {(*task.grasp)->p_GR};
+    }
   });
   std::vector<RobotGrasp> grasps;
-  for (std::size_t i = 0; i < tasks.size(); ++i) {
-    if (*closed[i])
-      grasps.push_back(std::move(**closed[i]));
-    else
-      report({closed[i]->error().what,
-              fmt::format("{}, {}", tasks[i].object->name, to_string(tasks[i].type)),
-              "this grasp is left out"});
-  }
+  for (auto& tasks : approached)
+    for (Task& task : tasks) {
+      if (*task.grasp)
+        grasps.push_back(std::move(**task.grasp));
+      else
+        report({task.grasp->error().what,
+                fmt::format("{}, {}", task.object->name, to_string(task.type)),
+                "this grasp is left out"});
+    }
   return grasps;
 }
 
@@ -215,6 +284,7 @@ Expected<void> save_robot_grasps(const std::filesystem::path& file, const model:
     for (const double closing : grasp.closing)
       to.add_closing(closing > 0 ? 1 : closing < 0 ? -1 : 0);
     to.set_epsilon(grasp.epsilon);
+    to.mutable_place()->Add(grasp.p_GR.begin(), grasp.p_GR.end());
     to.set_held(grasp.held);
   }
   return proto::write_sealed(file, kind, message.SerializeAsString());

@@ -19,12 +19,15 @@ struct RobotGrasp {
   std::string object;
   GraspType type = GraspType::none;
   model::Shape shape;
-  Pose X_OG = Pose::Identity();  // grasp frame that was closed from
-  Eigen::VectorXd preshape;      // DoF values before closing, rad or m
-  Eigen::VectorXd dof;           // where the fingers were stopped
-  Eigen::VectorXd closing;       // of each DoF: +1, -1, which way it closed, 0 if it rested
+  Pose X_OG = Pose::Identity();                    // grasp frame that was asked for
+  Eigen::Vector3d p_GR = Eigen::Vector3d::Zero();  // m: where the hand's own stood in it
+  Eigen::VectorXd preshape;                        // DoF values before closing, rad or m
+  Eigen::VectorXd dof;                             // where the fingers were stopped
+  Eigen::VectorXd closing;  // of each DoF: +1, -1, which way it closed, 0 if it rested
   double epsilon = -1;
-  bool held = false;  // after being lifted and shaken
+  bool held = false;  // standing on the table, then lifted and shaken
+
+  Pose X_OR() const { return X_OG * Eigen::Translation3d(p_GR); }
 };
 
 /// The grasp with its closing fingers so far past contact: rad, or what stands for it where a jaw
@@ -39,12 +42,20 @@ std::vector<Pose> approaches(const model::Shape& shape, const model::Reach& reac
 /// fingers, and precision, with the fingertips of some, from above.
 std::vector<GraspType> types_from(const Pose& X_OG);
 
-/// Closes the hand in Bullet from every preshape of the scheme for this type, and keeps the one
-/// that holds when it is lifted and shaken, with the largest epsilon. Fails when the fingers find
-/// no two contacts from any without reaching into the table.
+/// Where a hand is tried beside the grasp frame asked for, m, in it: less than a placement may be
+/// corrected.
+std::vector<Eigen::Vector3d> places_to_try();
+
+/// Closes the hand in Bullet on the object where it stands, with every preshape of the scheme for
+/// this type, from the first of these places where a grasp is found that, closed on the table as
+/// the mapping closes it, neither shoves nor topples the object and holds when it is lifted and
+/// shaken, and also 8 mm to either side; of several the one with the greatest epsilon. If there is
+/// none, the one that survives in most of these. Fails when the fingers find no two contacts from
+/// anywhere without reaching into the table.
 Expected<RobotGrasp> robot_grasp(const model::HandModel& hand, const Scheme& scheme,
                                  const model::CatalogueObject& object, const Pose& X_OG,
-                                 GraspType type);
+                                 GraspType type,
+                                 const std::vector<Eigen::Vector3d>& places = places_to_try());
 
 /// The same on every object of the catalogue, from every approach, with every type. What the hand
 /// cannot grasp is left out, and `report` is told why. The same however the work is divided.

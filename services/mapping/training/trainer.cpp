@@ -203,6 +203,15 @@ Eigen::VectorXd precision_discriminant(const model::Catalogue& catalogue, const 
   return squares.ldlt().solve(sums);
 }
 
+std::vector<LearntPlace> learnt_places(const std::vector<RobotGrasp>& grasps) {
+  std::vector<LearntPlace> places;
+  for (const RobotGrasp& grasp : grasps)
+    if (grasp.held)
+      places.push_back(
+          {grasp.shape.kind, size_numbers(SizeInput::seen, grasp.shape, grasp.X_OG), grasp.p_GR});
+  return places;
+}
+
 Expected<MappingModel> train_mapping(const model::HandModel& hand, const Scheme& scheme,
                                      const Sets& sets, const TrainerOptions& options,
                                      const grasping::ForEach& for_each, const Progress& progress) {
@@ -238,7 +247,8 @@ Expected<MappingModel> train_mapping(const model::HandModel& hand, const Scheme&
   }
   ModelTraits traits{scheme.name,        proto::digest(learning::serialise(sets.training)),
                      options.size_input, scheme.lower,
-                     scheme.upper,       options.precision};
+                     scheme.upper,       options.precision,
+                     options.places};
   return MappingModel::create(hand, std::move(traits), std::move(networks));
 }
 

@@ -54,12 +54,16 @@ learning::TrainingSet demonstrate(const model::HandModel& hand, const Scheme& sc
 Eigen::VectorXd precision_discriminant(const model::Catalogue& catalogue, const model::Reach& reach,
                                        const SetOptions& options);
 
+/// Where the hand stood in each grasp that held.
+std::vector<LearntPlace> learnt_places(const std::vector<RobotGrasp>& grasps);
+
 struct TrainerOptions {
   learning::TrainingOptions network{
       .hidden = 12, .epochs = 1200, .patience = 150, .restarts = 3, .heat = 150};
   SizeInput size_input = SizeInput::seen;
   learning::ScalingKind scaling = learning::ScalingKind::each_feature;  // of the inputs
   Eigen::VectorXd precision;                                            // see ModelTraits
+  std::vector<LearntPlace> places;                                      // see learnt_places()
 };
 
 /// A set for each purpose; their users are disjoint.

@@ -170,6 +170,29 @@ TEST_F(MappingTest, CorrectsSidewaysBeforeItHasArrived) {
   EXPECT_NEAR(X_GG.translation().z(), 0, 1e-6);
 }
 
+// A single place is its own mean, so it is met but for rounding.
+TEST_F(MappingTest, StandsWhereItLearntToStand) {
+  const Pose X_WO = standing(talc);
+  const Pose X_WG = side_grasp(talc, X_WO);
+  const Eigen::Vector3d learnt(0, -0.012, 0.01);
+  ModelTraits traits = model_.traits();
+  traits.places = {{ShapeKind::cylinder, {0.05, 0.05, 0.1, 0}, learnt}};
+  const auto model = MappingModel::create(barrett(), traits, model_.networks());
+  ASSERT_TRUE(model) << model.error().message();
+  for (const bool place : {true, false}) {
+    Mapping mapping = *Mapping::create(barrett(), *model, {.intelligent = false, .place = place});
+    ASSERT_TRUE(mapping.on_state(state_at(base_at(X_WG), open_, 0)));
+    Expected<Command> last = fail("");
+    for (int ms = 0; ms < 2000; ms += 33) {
+      ASSERT_TRUE(mapping.on_detection(detection(talc, X_WO, ms)));
+      last = mapping.on_posture(posture(X_WG, ms), at(ms));
+    }
+    const Pose X_GG = X_WG.inverse() * last->X_WB * barrett().X_BG();
+    const Eigen::Vector3d expected = place ? learnt : Eigen::Vector3d::Zero();
+    EXPECT_NEAR((X_GG.translation() - expected).norm(), 0, 1e-6);
+  }
+}
+
 TEST_F(MappingTest, TheHandYieldsToFingersThatComeFirst) {
   const MappingModel closing = closing_model();
   const Arrival arrival(barrett());

@@ -92,6 +92,30 @@ TEST_F(ModelFile, ComesBackBitForBit) {
                                    Pose::Identity()));
 }
 
+TEST_F(ModelFile, CarriesWhereTheHandStands) {
+  ModelTraits traits = plain_traits(barrett());
+  traits.places = {{model::ShapeKind::box, {0.04, 0.1, 0.2, 1}, {0, -0.012, 0.005}}};
+  const auto saved =
+      MappingModel::create(barrett(), traits, {random_network(model::ShapeKind::unknown, 1)});
+  ASSERT_TRUE(saved) << saved.error().message();
+  ASSERT_TRUE(saved->save(file_, barrett()));
+  const auto loaded = MappingModel::load(file_, barrett());
+  ASSERT_TRUE(loaded) << loaded.error().message();
+  ASSERT_EQ(loaded->traits().places.size(), 1u);
+  EXPECT_EQ(loaded->traits().places[0].shape, model::ShapeKind::box);
+  EXPECT_EQ(loaded->traits().places[0].seen, traits.places[0].seen);
+  EXPECT_EQ(loaded->traits().places[0].p_GR, traits.places[0].p_GR);
+  rewrite([](messages::MappingModel& message) { message.add_places()->set_shape("box"); });
+  EXPECT_THAT(refusal(), testing::HasSubstr("a place without shape, size or coordinates"));
+  rewrite([](messages::MappingModel& message) {
+    messages::LearntPlace& place = *message.add_places();
+    place.set_shape("box");
+    for (int i = 0; i < 4; ++i) place.add_seen(0.1);
+    for (int i = 0; i < 3; ++i) place.add_place(1);
+  });
+  EXPECT_THAT(refusal(), testing::HasSubstr("nowhere near"));
+}
+
 TEST_F(ModelFile, NoMutationLoads) {
   Random random(5);
   for (int trial = 0; trial < 4000; ++trial) {

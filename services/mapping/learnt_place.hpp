@@ -1,0 +1,28 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <prehend/base/error.hpp>
+#include <prehend/base/pose.hpp>
+#include <prehend/model/shape.hpp>
+#include <vector>
+
+namespace prehend::mapping {
+
+/// Where a robot hand stood when it grasped an object well: its fingers do not meet in the same
+/// place around what is thin and what is thick.
+struct LearntPlace {
+  model::ShapeKind shape = model::ShapeKind::unknown;
+  Eigen::Vector4d seen = Eigen::Vector4d::Zero();  // of the object: see SizeInput::seen
+  Eigen::Vector3d p_GR = Eigen::Vector3d::Zero();  // m, of its grasp frame R in the grasp asked for
+};
+
+/// Fails on what is no shape, not finite, or more than 10 cm off.
+Expected<void> check(const LearntPlace& learnt);
+
+/// Where it should stand for this object, with the grasp frame X_OG asked for: the mean of what was
+/// learnt of this shape, those of the most alike size counting most (Shepard's weights). Zero if
+/// nothing was learnt of it.
+Eigen::Vector3d place_for(const std::vector<LearntPlace>& learnt, const model::Shape& shape,
+                          const Pose& X_OG);
+
+}  // namespace prehend::mapping
