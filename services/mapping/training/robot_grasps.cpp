@@ -133,7 +133,7 @@ Expected<void> close(const model::HandModel& hand, const grasping::Body& object,
   if (!closed) return tl::unexpected(closed.error());
   if (reaches_into_table(closed->dof)) return refused();
   grasp.preshape = preshape.robot;
-  grasp.dof = closed->dof;
+  grasp.dof = hand.clamp(closed->dof);  // what pushes bends a joint a little past its end
   grasp.epsilon = closed->quality.epsilon;
   grasp.closing.resize(grasp.dof.size());
   for (std::size_t i = 0; i < hand.dofs().size(); ++i)
