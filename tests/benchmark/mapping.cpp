@@ -22,7 +22,7 @@ using namespace prehend::mapping;
 void frames(benchmark::State& state, const std::string& name, FingerMode fingers,
             bool intelligent) {
   const model::HandModel& model = test::hand(name);
-  constexpr int hidden = 12;  // as trained ones have
+  constexpr int hidden = 16;  // as trained ones have
   const MappingModel networks = test::random_model(model, 1, hidden);
   Mapping mapping = *Mapping::create(
       model, networks, {.fingers = fingers, .intelligent = intelligent, .place = intelligent});

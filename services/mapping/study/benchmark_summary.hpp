@@ -14,8 +14,8 @@ struct ModeSummary {
   BenchmarkedMode mode;
   Interval held;                  // share of all takes
   Interval held_of_demonstrated;  // of those whose demonstrated robot grasp itself survives
-  /// Of the same takes and those: share held minus that of direct mapping with the same placement;
-  /// count 0 without such takes.
+  /// Of the same takes and those: share held minus that of direct mapping, which knows nothing
+  /// of the object and cannot place the hand by it; count 0 without such takes.
   Interval above_direct;
   Interval joint_error;      // rad²
   Interval fingertip_error;  // m

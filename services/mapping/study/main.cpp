@@ -90,6 +90,9 @@ int main(int argc, char** argv) {
   app.add_option("--recordings", recordings,
                  "Leap recordings of real hands, a folder; default: leap_hand_recordings in\n"
                  "PREHEND_SHARED_DATA. Without any, figure «real» is left out");
+  app.add_option("--trials", options.trials,
+                 "of the grasp benchmark for each hand and mode; default: 24 quick, 270 full")
+      ->check(CLI::Range(1, 100'000));
   app.add_option("--size-error", options.take.size_error,
                  "grasp benchmark: objects are seen larger or smaller by this share")
       ->check(CLI::Range(0.0, 0.5));

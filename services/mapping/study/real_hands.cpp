@@ -115,9 +115,9 @@ bool thumb_is_outside(const MappingModel& model, const Features& seen) {
 
 Followed follow(const StudiedHand& hand, const RealTake& take, const Sensors& sensors,
                 bool intelligent) {
-  // The talc, from the side: every hand has learnt to grasp it so.
-  const model::Shape talc{model::ShapeKind::cylinder, {0.024, 0.024, 0.105}};
-  const Pose X_OG = approaches(talc, hand.hand.reach()).back();
+  // Pringles, from the side: every hand has learnt to grasp it so.
+  const model::Shape pringles{model::ShapeKind::cylinder, {0.037, 0.037, 0.230}};
+  const Pose X_OG = approaches(pringles, hand.hand.reach()).back();
   Followed made;
   std::optional<Eigen::VectorXd> before;
   double time = 0;
@@ -125,7 +125,7 @@ Followed follow(const StudiedHand& hand, const RealTake& take, const Sensors& se
     const auto seen = features(sensors.read(frame.fingertips), take.hand_scale);
     if (!seen) continue;
     const Answer answer =
-        intelligent ? hand.model->intelligent(*seen, talc, X_OG).value_or(hand.model->direct(*seen))
+        intelligent ? hand.model->intelligent(*seen, pringles, X_OG).value_or(hand.model->direct(*seen))
                     : hand.model->direct(*seen);
     ++made.frames;
     made.extrapolating += answer.extrapolating;
@@ -258,7 +258,7 @@ Experiment real_hands() {
       "Fingers of real hands",
       "Leap recordings of right hands, at most 30 frames a second, on which sensors sit up to 5 mm "
       "and 10° askew, drawn anew each time; the trained models of the live mapping, intelligent as "
-      "at the talc from the side. «Grab» and «pinch» are what the camera's own software says",
+      "at the Pringles from the side. «Grab» and «pinch» are what the camera's own software says",
       {hands.begin(), hands.end()},
       {},
       30,

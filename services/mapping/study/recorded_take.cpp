@@ -33,6 +33,7 @@ std::optional<RecordedTake> record_take(const RobotGrasp& grasp, std::uint64_t s
   const auto reached = person.reach(grasp.shape, grasp.X_OG, grasp.type);
   if (!reached) return std::nullopt;
 
+  person.rest();
   RecordedTake take;
   take.user = person.user();
   take.X_WO = make_pose(Vector3d(0, 0, half_extents(grasp.shape).z()));
@@ -53,7 +54,7 @@ std::optional<RecordedTake> record_take(const RobotGrasp& grasp, std::uint64_t s
     // The glove takes its sensor's place for the hand's, and the scale that was calibrated.
     posture.X_WH = X_WG * person.hand().X_HG().inverse() * person.X_HR();
     posture.hand_scale = person.calibrated_scale();
-    posture.fingertips = person.sense(closure);
+    posture.fingertips = person.sense(closure, 0, 1 - closed);
     take.postures.push_back(posture);
   }
 

@@ -34,11 +34,14 @@ std::vector<Studied> study(const Parts& parts, const std::vector<Experiment>& ex
 Expected<std::vector<TrialResult>> benchmark(const Parts& parts, const StudyOptions& options,
                                              const grasping::ForEach& for_each,
                                              const std::function<void(double)>& progress) {
-  std::vector<BenchmarkedMode> modes{{BenchmarkMode::direct}, {BenchmarkMode::intelligent}};
-  if (!options.quick)
-    modes.insert(modes.end(), {{BenchmarkMode::cartesian}, {BenchmarkMode::retargeting}});
-  for (std::size_t i = 0, count = modes.size(); i < count; ++i)
-    modes.push_back({modes[i].mode, true});
+  std::vector<BenchmarkedMode> modes{
+      {BenchmarkMode::direct}, {BenchmarkMode::intelligent}, {BenchmarkMode::intelligent, true}};
+  if (!options.quick) {
+    modes.push_back({BenchmarkMode::direct, true});
+    for (const auto mode :
+         {BenchmarkMode::cartesian, BenchmarkMode::combined, BenchmarkMode::retargeting})
+      modes.insert(modes.end(), {{mode}, {mode, true}});
+  }
 
   std::vector<TrialResult> all;
   double done = 0;
@@ -49,7 +52,7 @@ Expected<std::vector<TrialResult>> benchmark(const Parts& parts, const StudyOpti
     for (const BenchmarkedMode& mode : modes) {
       GraspBenchmarkOptions asked;
       asked.modes = {mode};
-      asked.trials = options.quick ? 24 : 270;
+      asked.trials = options.trials > 0 ? options.trials : options.quick ? 24 : 270;
       asked.seed += options.seed;
       asked.take = options.take;
       auto trials = run_grasp_benchmark(hand, asked, for_each,

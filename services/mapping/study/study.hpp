@@ -16,6 +16,7 @@ struct StudyOptions {
   bool quick = false;
   std::uint64_t seed = 1;
   TakeOptions take;  // how people reach in the grasp benchmark, and how the camera errs
+  int trials = 0;    // of the grasp benchmark for each hand and mode; 0: 24 or 270
 };
 
 /// An experiment with what it came to.
@@ -33,9 +34,9 @@ std::vector<Studied> study(const Parts& parts, const std::vector<Experiment>& ex
 /// The hands that the grasp benchmark is made with.
 inline constexpr std::array benchmark_hands{"barrett", "dlr", "robonaut"};
 
-/// The grasp benchmark of these hands, with and without placement: quick, direct and intelligent
-/// mapping in 24 takes each; full, also Cartesian and retargeting where the hand allows them, and
-/// 270 takes.
+/// The grasp benchmark of these hands: quick, direct mapping without and intelligent mapping with
+/// and without placement in 24 takes each; full, every mode that the hand allows, with and without,
+/// in 270 takes.
 Expected<std::vector<TrialResult>> benchmark(const Parts& parts, const StudyOptions& options,
                                              const grasping::ForEach& for_each,
                                              const std::function<void(double)>& progress);

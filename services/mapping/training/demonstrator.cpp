@@ -26,6 +26,11 @@ double drawn_scale(Random& random, double sigma) {
 /// As far as index and little finger spread, rad, in HumanPosture's numbers.
 constexpr std::array<std::pair<int, double>, 2> spread_apart{{{0, 0.349}, {12, -0.524}}};
 
+/// Of the thumb's root, in the same numbers: its rotation and flexion, and how far both go from the
+/// open posture, where it opposes the fingers wide open, to beside the palm, rad.
+constexpr int thumb_root = 16;
+constexpr double thumb_turns = 1.1, thumb_flexes = 1.1;
+
 }  // namespace
 
 std::array<bool, model::finger_count> fingers_of(GraspType type) {
@@ -49,8 +54,22 @@ void Demonstrator::new_take() {
   for (Eigen::Vector3d& p : p_FS_) p = direction(random_) * random_.uniform(0, options_.mounting);
 }
 
-Fingertips Demonstrator::sense(const Closure& closure, double splay) {
+void Demonstrator::rest(bool spreading) {
+  rest_.setZero();
+  // One hand in three is held ready, as the open posture has it.
+  if (random_.index(3) == 0) return;
+  // A flexed thumb that still opposes the fingers would be closing; so it flexes as it turns away.
+  const double turned = random_.uniform();
+  const double flexed = random_.uniform() * std::min(1.0, 2 * turned);
+  rest_.segment<2>(thumb_root) << thumb_turns * turned, thumb_flexes * flexed;
+  if (!spreading) return;
+  for (const auto& [joint, limit] : spread_apart)
+    rest_[joint] = random_.uniform(-1, 1) * (limit - model::HumanHand::open_posture()[joint]);
+}
+
+Fingertips Demonstrator::sense(const Closure& closure, double splay, double resting) {
   model::HumanPosture posture = model::HumanHand::posture(closure);
+  posture += resting * rest_;
   for (const auto& [joint, limit] : spread_apart)
     posture[joint] += splay * (limit - posture[joint]);
   const auto tips = hand_.fingertip_poses(posture);
@@ -60,8 +79,8 @@ Fingertips Demonstrator::sense(const Closure& closure, double splay) {
   return sensed;
 }
 
-Features Demonstrator::read(const Closure& closure, double splay) {
-  return *features(sense(closure, splay),
+Features Demonstrator::read(const Closure& closure, double splay, double resting) {
+  return *features(sense(closure, splay, resting),
                    calibrated_scale_);  // its own fingertips are always usable
 }
 

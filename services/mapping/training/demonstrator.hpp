@@ -54,11 +54,15 @@ class Demonstrator {
   double calibrated_scale() const { return calibrated_scale_; }
   const Pose& X_HR() const { return X_HR_; }
 
+  /// Holds what has nothing to do elsewhere, as far as joints can be turned: the thumb opposite the
+  /// fingers, as around a large object, beside the palm, or anywhere between; if
+  /// `spreading`, index and little finger more or less apart, which else says something.
+  void rest(bool spreading = true);
   /// What the glove says of fingers closed so far: fingertips, and the features made of them.
   /// splay: index and little finger spread apart, from 0, as in the open hand, to 1, as far as they
-  /// go.
-  Fingertips sense(const Closure& closure, double splay = 0);
-  Features read(const Closure& closure, double splay = 0);
+  /// go. resting: from 0, all is where `closure` has it, to 1, an open hand is where it rests.
+  Fingertips sense(const Closure& closure, double splay = 0, double resting = 0);
+  Features read(const Closure& closure, double splay = 0, double resting = 0);
   /// A posture repeated as people do: never exactly.
   Closure repeat(const Closure& closure);
   /// How far the fingers close on an object until they touch it, with the grasp frame near X_OG.
@@ -72,7 +76,8 @@ class Demonstrator {
   model::HumanHand hand_;
   double calibrated_scale_;
   Pose X_HR_ = Pose::Identity();  // where the back of the hand's sensor really sits
-  std::array<Eigen::Vector3d, model::finger_count> p_FS_;  // sensors on the fingertips
+  std::array<Eigen::Vector3d, model::finger_count> p_FS_;   // sensors on the fingertips
+  model::HumanPosture rest_ = model::HumanPosture::Zero();  // rad, beside the open posture
 };
 
 }  // namespace prehend::mapping

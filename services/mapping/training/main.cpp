@@ -186,6 +186,7 @@ int main(int argc, char** argv) {
     others.seed = people.seed + 1;
     sets.validation = demonstrate(*hand, *scheme, *grasps, others);
     others.seed = people.seed + 2;
+    others.users = 30;
     sets.test = demonstrate(*hand, *scheme, *grasps, others);
     for (const std::string& file : taught)
       if (auto added = add_taught(sets.training, file); !added) return refuse(added.error());

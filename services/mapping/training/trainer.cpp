@@ -123,6 +123,9 @@ learning::TrainingSet demonstrate(const model::HandModel& hand, const Scheme& sc
 
   const std::vector<SchemePosture> postures = scheme.posture_set(options.postures);
   const SchemePosture& open = scheme.open;
+  const bool spread_says =
+      std::any_of(scheme.closed.begin(), scheme.closed.end(),
+                  [&](const SchemePosture& closed) { return closed.splay != open.splay; });
   for (int person = 0; person < options.users; ++person) {
     const std::uint64_t seed = seed_of(options, person);
     Demonstrator demonstrator(fmt::format("person {}-{}", options.seed, person), seed,
@@ -134,10 +137,12 @@ learning::TrainingSet demonstrate(const model::HandModel& hand, const Scheme& sc
       pair.user = demonstrator.user();
       pair.take = static_cast<unsigned>(take);
       pair.source = "synthetic";
+      // resting: of the hand, in this posture; the open one rests fully.
       const auto show = [&](std::string_view name, const Closure& human, double splay,
-                            const Eigen::VectorXd& robot, double complete) {
+                            double resting, const Eigen::VectorXd& robot, double complete) {
+        demonstrator.rest(!spread_says);
         pair.posture = name;
-        pair.features = demonstrator.read(human, splay);
+        pair.features = demonstrator.read(human, splay, resting);
         pair.dof = robot;
         set.pairs.push_back(pair);
         for (int i = 0; i < options.on_the_way; ++i) {
@@ -146,7 +151,8 @@ learning::TrainingSet demonstrate(const model::HandModel& hand, const Scheme& sc
           for (std::size_t f = 0; f < part.size(); ++f)
             part[f] = open.human[f] + complete * share * (human[f] - open.human[f]);
           pair.posture = on_the_way_to + std::string(name);
-          pair.features = demonstrator.read(part, open.splay + share * (splay - open.splay));
+          pair.features = demonstrator.read(part, open.splay + share * (splay - open.splay),
+                                            1 + share * (resting - 1));
           pair.dof = open.robot + share * (robot - open.robot);
           set.pairs.push_back(pair);
         }
@@ -159,11 +165,12 @@ learning::TrainingSet demonstrate(const model::HandModel& hand, const Scheme& sc
         pair.X_OG = grasp.X_OG;
         for (int i = 0; i < options.beside; ++i) {
           const SchemePosture& posture = postures[random.index(postures.size())];
-          show(posture.name, demonstrator.repeat(posture.human), posture.splay, posture.robot, 1.0);
+          show(posture.name, demonstrator.repeat(posture.human), posture.splay,
+               1 - posture.human.front(), posture.robot, 1.0);
         }
         // None: this person's hand does not fit around it.
         if (const auto human = demonstrator.reach(grasp.shape, grasp.X_OG, grasp.type))
-          show(to_string(grasp.type), human->closure, open.splay,
+          show(to_string(grasp.type), human->closure, open.splay, 0.0,
                past_contact(hand, grasp, options.past_contact), options.complete);
       }
     }

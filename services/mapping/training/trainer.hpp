@@ -59,7 +59,7 @@ std::vector<LearntPlace> learnt_places(const std::vector<RobotGrasp>& grasps);
 
 struct TrainerOptions {
   learning::TrainingOptions network{
-      .hidden = 12, .epochs = 1200, .patience = 150, .restarts = 3, .heat = 150};
+      .hidden = 16, .epochs = 1200, .patience = 150, .restarts = 3, .heat = 150};
   SizeInput size_input = SizeInput::seen;
   learning::ScalingKind scaling = learning::ScalingKind::each_feature;  // of the inputs
   Eigen::VectorXd precision;                                            // see ModelTraits
