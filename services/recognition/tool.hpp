@@ -8,6 +8,7 @@ namespace prehend::recognition {
 /// answer is no, 2 wrong use, 3 something that is needed is missing or broken.
 void add_render(CLI::App& app, int& exit_code);
 void add_train(CLI::App& app, int& exit_code);
+void add_add(CLI::App& app, int& exit_code);
 void add_detect(CLI::App& app, int& exit_code);
 void add_evaluate(CLI::App& app, int& exit_code);
 void add_scenes(CLI::App& app, int& exit_code);

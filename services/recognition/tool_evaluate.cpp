@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <iostream>
+#include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -10,6 +11,7 @@
 #include <prehend/base/progress.hpp>
 #include <prehend/recognition_evaluation/report.hpp>
 #include <prehend/recognition_evaluation/trial.hpp>
+#include <prehend/recognition_learning/answer.hpp>
 #include <prehend/recognition_learning/folds.hpp>
 #include <prehend/recognition_learning/model_file.hpp>
 
@@ -225,6 +227,27 @@ void print_result(const Trial& trial, const std::vector<Judged>& pictures) {
              percent(given.strangers_rejected, given.strangers), given.strangers);
 }
 
+/// How often each verdict was given on a dataset's pictures.
+std::map<Verdict, std::size_t> verdicts(const Trial& trial, const Dataset& dataset) {
+  std::map<Verdict, std::size_t> made;
+  for (const TrainingClass& c : dataset.classes)
+    for (const TrainingView& view : c.views)
+      ++made[answer(*trial.models, view.picture, trial.arguments.accept).verdict];
+  return made;
+}
+
+void print_verdicts(const char* what, const std::map<Verdict, std::size_t>& given) {
+  fmt::print("{}:", what);
+  for (const auto& [verdict, count] : given) fmt::print(" {} {}", to_string(verdict), count);
+  fmt::print("\n");
+}
+
+Json to_json(const std::map<Verdict, std::size_t>& given) {
+  Json made = Json::object();
+  for (const auto& [verdict, count] : given) made[std::string(to_string(verdict))] = count;
+  return made;
+}
+
 int compare(const Trial& trial, const DescriptorOptions& options) {
   if (trial.models) {
     log::error("--compare learns anew: name --train DIR or neither");
@@ -274,6 +297,11 @@ int evaluate(const EvaluateArguments& arguments) {
   }
   if (!arguments.json) {
     print_result(*trial, *pictures);
+    if (trial->models) {
+      print_verdicts("verdicts", verdicts(*trial, trial->dataset));
+      if (!arguments.strangers.empty())
+        print_verdicts("verdicts on strangers", verdicts(*trial, trial->strangers));
+    }
     return 0;
   }
   Json document = summary(*pictures, arguments.accept);
@@ -290,6 +318,11 @@ int evaluate(const EvaluateArguments& arguments) {
   document["classes"] = table;
   document["taken_for"] = {{"names", trial->classes},
                            {"counts", confusion(*pictures, trial->classes.size())}};
+  if (trial->models) {
+    document["verdicts"] = to_json(verdicts(*trial, trial->dataset));
+    if (!arguments.strangers.empty())
+      document["verdicts_on_strangers"] = to_json(verdicts(*trial, trial->strangers));
+  }
   std::cout << document << "\n";
   return 0;
 }

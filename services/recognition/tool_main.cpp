@@ -13,6 +13,7 @@ int main(int argc, char** argv) {
   int exit_code = 0;
   prehend::recognition::add_render(app, exit_code);
   prehend::recognition::add_train(app, exit_code);
+  prehend::recognition::add_add(app, exit_code);
   prehend::recognition::add_detect(app, exit_code);
   prehend::recognition::add_evaluate(app, exit_code);
   prehend::recognition::add_scenes(app, exit_code);

@@ -28,7 +28,8 @@ Grounds grounds(const Eigen::VectorXf& scores, const Eigen::VectorXf& similarity
 }
 
 double Calibration::probability(const Grounds& grounds) const {
-  return 1 / (1 + std::exp(-w.dot(row(grounds))));
+  const double made = 1 / (1 + std::exp(-w.dot(row(grounds))));
+  return std::isfinite(made) ? made : 0;
 }
 
 Calibration fit(const std::vector<Outcome>& outcomes) {

@@ -54,6 +54,7 @@ std::string to_bytes(const ObjectModels& models) {
   }
   put(models.views, *set.mutable_views());
   for (const int c : models.view_class) set.add_view_class(static_cast<std::uint32_t>(c));
+  for (const int f : models.view_fold) set.add_view_fold(static_cast<std::uint32_t>(f));
   put(models.dual, *set.mutable_dual());
   set.set_kernel_sharpness(models.kernel_sharpness);
   for (int i = 0; i < 4; ++i) set.add_calibration(models.calibration.w[i]);
@@ -86,6 +87,7 @@ Expected<ObjectModels> from_bytes(const std::string& bytes) {
     models.classes.push_back({c.name(), take_vector(c.colours()), take(c.prototypes())});
   models.views = take(set.views());
   for (const std::uint32_t c : set.view_class()) models.view_class.push_back(static_cast<int>(c));
+  for (const std::uint32_t f : set.view_fold()) models.view_fold.push_back(static_cast<int>(f));
   models.dual = take(set.dual());
   if (set.calibration_size() != 4)
     return fail("calibration is wrong", "object models", "train again: prehend objects train");

@@ -65,6 +65,12 @@ Classification classify(const ObjectModels& models, const Eigen::VectorXf& d, bo
     best = std::max(best, near[i]);
   }
   made.scores = models.dual.transpose() * kernel_of(near, models.kernel_sharpness);
+  // A damaged model may hold numbers so large that nothing is left of an answer.
+  if (!made.scores.allFinite() || !made.similarity.allFinite()) {
+    made.scores.setZero();
+    made.similarity.setZero();
+    return made;
+  }
   const Grounds seen = grounds(made.scores, made.similarity);
   made.best = seen.best;
   made.probability = models.calibration.probability(seen);
@@ -110,6 +116,9 @@ Expected<void> ObjectModels::check() const {
     return wrong("labels of views are wrong");
   for (const int c : view_class)
     if (c < 0 || c >= static_cast<int>(classes.size())) return wrong("a label is out of range");
+  if (view_fold.size() != view_class.size()) return wrong("folds of views are wrong");
+  for (const int f : view_fold)
+    if (f < 0 || f >= calibration_folds) return wrong("a fold is out of range");
   if (dual.rows() != views.cols() || dual.cols() != static_cast<Eigen::Index>(classes.size()) ||
       !dual.allFinite())
     return wrong("classifier is wrong");

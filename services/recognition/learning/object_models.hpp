@@ -35,6 +35,9 @@ struct DescriptorOptions {
 };
 DescriptorOptions photos_of_objects();
 
+/// Folds by background in which a classification's doubt is measured.
+inline constexpr int calibration_folds = 5;
+
 struct ObjectClass {
   std::string name;
   Eigen::VectorXf colours;     // share of each palette colour, sums to 1
@@ -53,6 +56,7 @@ struct ObjectModels {
   std::vector<ObjectClass> classes;
   Eigen::MatrixXf views;        // descriptors of all training views, one a column
   std::vector<int> view_class;  // of each column
+  std::vector<int> view_fold;   // by background, 0 to calibration_folds - 1
   Eigen::MatrixXf dual;         // views by classes: the kernel ridge classifier
   double kernel_sharpness = 0;  // k(a, b) = exp(sharpness (similarity(a, b) - 1))
   Calibration calibration;

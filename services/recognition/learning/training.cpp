@@ -10,14 +10,14 @@ namespace prehend::recognition {
 namespace {
 
 constexpr double sharpness = 6.0;  // of the kernel
-constexpr int calibration_folds = 5;
 
 /// Measures what the classifier says of views it has not seen: in folds by background and, as
-/// strangers, of every class when it was left out. Varied
-/// views are judged, too, because another day is what the answer is for.
-Calibration calibrate(const Eigen::MatrixXf& near, const Eigen::MatrixXf& kernel,
-                      const std::vector<int>& view_class, const std::vector<int>& fold,
-                      int classes) {
+/// strangers, of every class when it was left out. Varied views are judged, too, because another
+/// day is what the answer is for.
+Calibration calibrate(const ObjectModels& models, const Eigen::MatrixXf& near,
+                      const Eigen::MatrixXf& kernel) {
+  const std::vector<int>& view_class = models.view_class;
+  const int classes = static_cast<int>(models.classes.size());
   const std::size_t n = view_class.size();
   std::vector<Outcome> outcomes;
   const auto collect = [&](auto held_out, bool stranger, double weight) {
@@ -39,10 +39,19 @@ Calibration calibrate(const Eigen::MatrixXf& near, const Eigen::MatrixXf& kernel
     }
   };
   for (int k = 0; k < calibration_folds; ++k)
-    collect([&](std::size_t i) { return fold[i] == k; }, false, 1.0);
+    collect([&](std::size_t i) { return models.view_fold[i] == k; }, false, 1.0);
   for (int c = 0; classes > 1 && c < classes; ++c)
     collect([&](std::size_t i) { return view_class[i] == c; }, true, 0.5);
   return fit(outcomes);
+}
+
+/// The classifier over the views, and how sure it is.
+void learn_classifier(ObjectModels& models) {
+  const Eigen::MatrixXf near = similarities(models.views, models.views, models.weighting);
+  const Eigen::MatrixXf kernel = kernel_of(near, models.kernel_sharpness);
+  models.dual = solve_ridge(kernel, models.view_class, static_cast<int>(models.classes.size()),
+                            std::vector<char>(models.view_class.size(), 1));
+  models.calibration = calibrate(models, near, kernel);
 }
 
 /// Merges the palette's colours into fewer, by k-means over their centres weighted by use.
@@ -156,6 +165,61 @@ Eigen::VectorXf rarity(const Eigen::MatrixXf& counts) {
   return made;
 }
 
+/// Counts of the pairs of every view and of its varied copies, as columns. Adds class, fold and
+/// colours of each to the models; the classes are new ones behind those that are there.
+Eigen::MatrixXf count_pairs(const std::vector<TrainingClass>& classes,
+                            const DescriptorOptions& options, ObjectModels& models) {
+  const std::vector<int> background = folds_by_background(classes, calibration_folds);
+  const int colours = models.palette.size();
+  const std::vector<Offset> offsets = offsets_at(models.distances);
+  Eigen::MatrixXf counts(pair_count(colours), static_cast<Eigen::Index>(background.size()) *
+                                                  (1 + static_cast<Eigen::Index>(options.varied)));
+  Random random(options.seed);
+  auto fold = background.begin();
+  Eigen::Index column = 0;
+  for (const TrainingClass& c : classes) {
+    ObjectClass learned{c.name, Eigen::VectorXf::Zero(colours), {}};
+    for (const TrainingView& view : c.views) {
+      for (int copy = 0; copy <= options.varied; ++copy) {
+        const Plane quantised =
+            models.palette.quantise(copy == 0 ? view.picture : varied(view.picture, random));
+        counts.col(column++) = cooccurrence(quantised, colours, offsets, view.mask);
+        learned.colours += shares(quantised, view.mask, colours);
+        models.view_class.push_back(static_cast<int>(models.classes.size()));
+        models.view_fold.push_back(*fold);
+      }
+      ++fold;
+    }
+    learned.colours /= learned.colours.sum();
+    models.classes.push_back(std::move(learned));
+  }
+  return counts;
+}
+
+/// The scan's prototypes of the class, from counts of its views.
+Eigen::MatrixXf prototypes_of(const Eigen::MatrixXf& counts, const ObjectModels& models,
+                              int most_views) {
+  Eigen::MatrixXf columns(pair_count(models.coarse_colours), counts.cols());
+  Eigen::Index used = 0;
+  for (Eigen::Index i = 0; i < counts.cols(); ++i)
+    if (counts.col(i).sum() > 0)
+      columns.col(used++) =
+          fold_counts(counts.col(i), models.coarse, models.coarse_colours).cwiseSqrt().normalized();
+  if (used == 0) return Eigen::MatrixXf::Zero(columns.rows(), 1);
+  return prototypes(columns.leftCols(used), most_views);
+}
+
+/// Counts as descriptors, in place.
+void describe_counts(const ObjectModels& models, Eigen::MatrixXf& counts) {
+  for (Eigen::Index i = 0; i < counts.cols(); ++i)
+    counts.col(i) = descriptor(counts.col(i), models.idf, models.weighting);
+}
+
+void weigh_same_pairs(const ObjectModels& models, Eigen::MatrixXf& counts) {
+  for (int k = 0; k < models.palette.size(); ++k)
+    counts.row(pair_index(k, k)) *= static_cast<float>(models.same_pairs);
+}
+
 }  // namespace
 
 Expected<ObjectModels> train(const std::vector<TrainingClass>& classes,
@@ -163,70 +227,49 @@ Expected<ObjectModels> train(const std::vector<TrainingClass>& classes,
   const std::vector<TrainingClass> used = usable(classes, max_views);
   if (used.empty())
     return fail("no usable view", "training", "give a folder with a folder of pictures a class");
-  const int class_count = static_cast<int>(used.size());
-  const std::vector<int> background = folds_by_background(used, calibration_folds);
-
   ObjectModels made{.palette = learn_palette(used, options)};
   made.distances = options.distances;
   made.same_pairs = options.same_pairs;
   made.weighting = options.weighting;
   made.kernel_sharpness = sharpness;
-  const int colours = made.palette.size();
-  const std::vector<Offset> offsets = offsets_at(options.distances);
+  Eigen::MatrixXf counts = count_pairs(used, options, made);
 
-  // Every view and its varied copies: pairs counted, class and fold.
-  const auto n = static_cast<Eigen::Index>(background.size()) * (1 + options.varied);
-  Eigen::MatrixXf counts(pair_count(colours), n);
-  std::vector<int> fold;
-  Eigen::VectorXf use = Eigen::VectorXf::Zero(colours);
-  Random random(options.seed);
-  auto view_fold = background.begin();
-  for (const TrainingClass& c : used) {
-    made.classes.push_back({c.name, Eigen::VectorXf::Zero(colours), {}});
-    for (const TrainingView& view : c.views) {
-      for (int copy = 0; copy <= options.varied; ++copy) {
-        const Plane quantised =
-            made.palette.quantise(copy == 0 ? view.picture : varied(view.picture, random));
-        counts.col(static_cast<Eigen::Index>(fold.size())) =
-            cooccurrence(quantised, colours, offsets, view.mask);
-        made.view_class.push_back(static_cast<int>(made.classes.size()) - 1);
-        fold.push_back(*view_fold);
-        made.classes.back().colours += shares(quantised, view.mask, colours);
-      }
-      ++view_fold;
-    }
-    use += made.classes.back().colours;
-    made.classes.back().colours /= made.classes.back().colours.sum();
-  }
+  Eigen::VectorXf use = Eigen::VectorXf::Zero(made.palette.size());
+  for (const ObjectClass& c : made.classes) use += c.colours;
   use /= use.sum();
-
   made.coarse =
       merge_colours(made.palette, use, options.coarse_colours, options.seed, made.coarse_colours);
-  for (std::size_t c = 0; c < made.classes.size(); ++c) {
-    std::vector<Eigen::VectorXf> columns;
-    for (Eigen::Index i = 0; i < n; ++i)
-      if (made.view_class[static_cast<std::size_t>(i)] == static_cast<int>(c) &&
-          counts.col(i).sum() > 0)
-        columns.push_back(
-            fold_counts(counts.col(i), made.coarse, made.coarse_colours).cwiseSqrt().normalized());
-    if (columns.empty()) columns.push_back(Eigen::VectorXf::Zero(pair_count(made.coarse_colours)));
-    Eigen::MatrixXf together(columns.front().size(), static_cast<Eigen::Index>(columns.size()));
-    for (std::size_t i = 0; i < columns.size(); ++i)
-      together.col(static_cast<Eigen::Index>(i)) = columns[i];
-    made.classes[c].prototypes = prototypes(together, options.views_a_class);
+  Eigen::Index begin = 0;
+  for (std::size_t c = 0; c < used.size(); ++c) {
+    const auto views = static_cast<Eigen::Index>(used[c].views.size()) * (1 + options.varied);
+    made.classes[c].prototypes =
+        prototypes_of(counts.middleCols(begin, views), made, options.views_a_class);
+    begin += views;
   }
-
-  for (int k = 0; k < colours; ++k)
-    counts.row(pair_index(k, k)) *= static_cast<float>(options.same_pairs);
+  weigh_same_pairs(made, counts);
   made.idf = rarity(counts);
-  made.views.resize(counts.rows(), n);
-  for (Eigen::Index i = 0; i < n; ++i)
-    made.views.col(i) = descriptor(counts.col(i), made.idf, made.weighting);
-  const Eigen::MatrixXf near = similarities(made.views, made.views, made.weighting);
-  const Eigen::MatrixXf kernel = kernel_of(near, sharpness);
-  made.dual = solve_ridge(kernel, made.view_class, class_count, std::vector<char>(fold.size(), 1));
-  made.calibration = calibrate(near, kernel, made.view_class, fold, class_count);
+  describe_counts(made, counts);
+  made.views = std::move(counts);
+  learn_classifier(made);
   return made;
+}
+
+Expected<ObjectModels> with_class(ObjectModels models, const TrainingClass& added,
+                                  const DescriptorOptions& options, int max_views) {
+  const std::vector<TrainingClass> used = usable({added}, max_views);
+  if (used.empty()) return fail("has no usable view", added.name);
+  for (const ObjectClass& c : models.classes)
+    if (c.name == added.name)
+      return fail("is known already", added.name, "choose another name, or train anew");
+  Eigen::MatrixXf counts = count_pairs(used, options, models);
+  models.classes.back().prototypes = prototypes_of(counts, models, options.views_a_class);
+  weigh_same_pairs(models, counts);
+  describe_counts(models, counts);
+  Eigen::MatrixXf views(models.views.rows(), models.views.cols() + counts.cols());
+  views << models.views, counts;
+  models.views = std::move(views);
+  learn_classifier(models);
+  return models;
 }
 
 }  // namespace prehend::recognition

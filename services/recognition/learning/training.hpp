@@ -21,6 +21,12 @@ struct TrainingClass {
 Expected<ObjectModels> train(const std::vector<TrainingClass>& classes,
                              const DescriptorOptions& options = {}, int max_views = 60);
 
+/// The same models and one class more, in a second: palette and weights stay as they were learned,
+/// the classifier and its calibration are made anew. Fails when the class is known or has no usable
+/// view. (An object of colours that the palette lacks is better learned together with the others.)
+Expected<ObjectModels> with_class(ObjectModels models, const TrainingClass& added,
+                                  const DescriptorOptions& options = {}, int max_views = 60);
+
 /// The picture as another day might show it: brighter or darker, in light of another colour, nearer
 /// or further, not quite in the middle. The mask stays.
 Picture varied(const Picture& picture, Random& random);
