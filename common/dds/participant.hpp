@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <fastdds/dds/domain/DomainParticipantListener.hpp>
 #include <fastdds/dds/publisher/DataWriter.hpp>
@@ -33,7 +34,8 @@ struct ParticipantOptions {
 
 /// Provenance of a received sample.
 struct SampleInfo {
-  Time sent;                   // the writer's clock
+  Time sent;                                   // the writer's clock
+  std::array<std::uint8_t, 12> participant{};  // of the writer: first bytes of its identity
   std::uint64_t instance = 0;  // hash of the key, the same for all samples of an instance
   bool gone = false;  // the instance was disposed or lost its last writer: only its key is set
 };
@@ -81,6 +83,8 @@ class Reader {
       sample.info.gone = !info.valid_data;
       sample.info.sent = from_ns(info.source_timestamp.to_ns());
       sample.info.instance = instance_hash(info.instance_handle);
+      std::copy_n(info.sample_identity.writer_guid().guidPrefix.value,
+                  sample.info.participant.size(), sample.info.participant.begin());
       if (info.valid_data) {
         first_.try_emplace(sample.info.instance, sample.data);
       } else {

@@ -45,6 +45,7 @@ inline constexpr std::array topic_table{
     TopicQos{.name = "operator/reply", .writer_depth = 0, .reader_depth = 0},
     TopicQos{.name = "lab/clock", .writer_depth = 0, .reader_depth = 0},
     TopicQos{.name = "lab/progress", .writer_depth = 0, .reader_depth = 0},
+    TopicQos{.name = "lab/beacon", .reliable = false},
     TopicQos{.name = "service/status", .transient_local = true},
 };
 
@@ -75,6 +76,7 @@ inline constexpr Topic<v1::OperatorCommandPubSubType> operator_command{"operator
 inline constexpr Topic<v1::OperatorReplyPubSubType> operator_reply{"operator/reply"};
 inline constexpr Topic<v1::LabClockPubSubType> lab_clock{"lab/clock"};
 inline constexpr Topic<v1::LabProgressPubSubType> lab_progress{"lab/progress"};
+inline constexpr Topic<v1::ClockBeaconPubSubType> lab_beacon{"lab/beacon"};
 inline constexpr Topic<v1::ServiceStatusPubSubType> service_status{"service/status"};
 
 }  // namespace prehend::dds

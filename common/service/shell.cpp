@@ -1,5 +1,6 @@
 #include "shell.hpp"
 
+#include <fmt/format.h>
 #include <signal.h>
 #include <sys/signalfd.h>
 #include <unistd.h>
@@ -13,8 +14,10 @@
 #include <iostream>
 #include <limits>
 #include <mutex>
+#include <prehend/base/clock.hpp>
 #include <prehend/base/log.hpp>
 #include <prehend/base/paths.hpp>
+#include <prehend/clock/peers.hpp>
 #include <thread>
 
 #include "membership.hpp"
@@ -24,10 +27,6 @@ namespace prehend::service {
 namespace fdds = eprosima::fastdds::dds;
 
 namespace {
-
-Time system_now() {
-  return std::chrono::time_point_cast<Duration>(std::chrono::system_clock::now());
-}
 
 /// Bytes of memory in use, from the kernel.
 double resident_memory() {
@@ -43,6 +42,11 @@ std::string host_name() {
   return name;
 }
 
+/// «+3600.000 s», for people.
+std::string signed_seconds(Duration duration) {
+  return fmt::format("{:+.3f} s", to_seconds(duration));
+}
+
 /// Waited for by a thread parked in sigwait: a handler must not touch what wakes run().
 sigset_t stop_signals() {
   sigset_t set;
@@ -51,6 +55,13 @@ sigset_t stop_signals() {
   sigaddset(&set, SIGINT);
   return set;
 }
+
+constexpr Duration beacon_period = std::chrono::seconds(1);
+/// Others find us soon after the start.
+constexpr Duration early_beacon_period = std::chrono::milliseconds(100);
+constexpr Duration early = std::chrono::seconds(2);
+constexpr Duration least_between_beacons = std::chrono::milliseconds(20);
+constexpr Duration noticed_step = std::chrono::milliseconds(100);
 
 }  // namespace
 
@@ -75,12 +86,17 @@ struct Shell::State {
   std::map<std::string, std::uint64_t, std::less<>> published;
   std::function<void(Time)> tick;
   Duration period{};
-  Time next_tick{}, next_status{}, started{}, clock{};
+  Time next_tick{}, next_status{}, next_beacon{}, started{}, clock{};
 
   std::mutex wake_mutex;  // guards what follows; taken inside of `exclusive`, never around it
   std::condition_variable wake_condition;
   bool woken = false;
   std::deque<std::function<void()>> tasks;
+
+  mutable std::mutex clocks_mutex;     // guards what follows; innermost
+  std::optional<clock::Peers> clocks;  // live only
+  Time last_beacon{};
+  Duration clock_step{};
 
   std::atomic<bool> stopping = false;
   std::atomic<int> exit_code = 0;
@@ -91,6 +107,7 @@ struct Shell::State {
   std::optional<dds::Participant> participant;
   std::optional<dds::Writer<v1::ServiceStatus>> status_writer;
   std::optional<dds::Writer<v1::LabProgress>> progress_writer;
+  std::optional<dds::Writer<v1::ClockBeacon>> beacon_writer;
   std::thread signals;
 
   void wake() {
@@ -160,7 +177,7 @@ std::unique_ptr<Shell> Shell::create(int argc, char** argv, const Options& optio
     return nullptr;
   }
   state->participant.emplace(std::move(*participant));
-  state->started = system_now();
+  state->started = process_now();
 
   auto status_writer = state->participant->writer(dds::service_status);
   if (!status_writer) refuse(status_writer.error());
@@ -188,8 +205,79 @@ std::unique_ptr<Shell> Shell::create(int argc, char** argv, const Options& optio
     shell->subscribe(dds::lab_clock, [raw](const v1::LabClock& cycle, const dds::SampleInfo& info) {
       if (!info.gone) raw->cycles.push_back(cycle);
     });
+  } else {
+    shell->begin_beacons(host);
   }
   return shell;
+}
+
+/// Hears beacons in the thread that receives them, so that nothing of ours counts as the network's
+/// delay.
+class BeaconListener final : public fdds::DataReaderListener {
+ public:
+  using Hear = std::function<void(const dds::Sample<v1::ClockBeacon>&, Time received)>;
+  explicit BeaconListener(Hear hear) : hear_(std::move(hear)) {}
+  void on_data_available(fdds::DataReader* raw) override {
+    const Time received = process_now();
+    if (!reader_) reader_.emplace(raw);
+    for (const auto& sample : reader_->take())
+      if (!sample.info.gone) hear_(sample, received);
+  }
+
+ private:
+  Hear hear_;
+  std::optional<dds::Reader<v1::ClockBeacon>> reader_;
+};
+
+void Shell::begin_beacons(const std::string& host) {
+  State& state = *state_;
+  state.clocks.emplace(state.status_message.service().to_string(), host);
+  auto writer = participant().writer(dds::lab_beacon);
+  if (!writer) refuse(writer.error());
+  state.beacon_writer.emplace(std::move(*writer));
+  auto listener = std::make_unique<BeaconListener>(
+      [this, &state](const dds::Sample<v1::ClockBeacon>& sample, Time received) {
+        clock::Peers::Heard heard;
+        {
+          const std::scoped_lock lock(state.clocks_mutex);
+          heard = state.clocks->hear(sample.data, sample.info.participant, received);
+        }
+        if (heard.step)
+          log::warning("the clock of {} was set by {}; its stamps are moved to ours",
+                       sample.data.service().to_string(), signed_seconds(*heard.step));
+        if (heard.answer) send_beacon();
+      });
+  auto* raw = listener.get();
+  keep(std::move(listener));
+  if (auto made = participant().reader(dds::lab_beacon, raw); !made) refuse(made.error());
+}
+
+void Shell::send_beacon() {
+  State& state = *state_;
+  v1::ClockBeacon beacon;
+  {
+    const std::scoped_lock lock(state.clocks_mutex);
+    const Time now = process_now();
+    if (now - state.last_beacon < least_between_beacons) return;
+    state.last_beacon = now;
+    const Duration step = clock_step();
+    if (std::chrono::abs(step - state.clock_step) > noticed_step) {
+      state.clock_step = step;
+      log::warning("the system's clock was set {} away from this process, which keeps its own",
+                   signed_seconds(step));
+    }
+    beacon = state.clocks->beacon(now, state.clock_step);
+  }
+  // Our own reader hears it within this call.
+  state.beacon_writer->write(beacon);
+}
+
+Shell::Ahead Shell::ahead(const dds::SampleInfo& info) const {
+  if (state_->lockstep) return {};
+  const std::scoped_lock lock(state_->clocks_mutex);
+  const Time now = process_now();
+  return {state_->clocks->ahead(info.participant, now),
+          state_->clocks->system_ahead(info.participant, now)};
 }
 
 const Config& Shell::config() const {
@@ -202,7 +290,7 @@ bool Shell::lockstep() const {
   return state_->lockstep;
 }
 Time Shell::now() const {
-  return state_->lockstep ? state_->clock : system_now();
+  return state_->lockstep ? state_->clock : process_now();
 }
 dds::Participant& Shell::participant() {
   return *state_->participant;
@@ -278,6 +366,14 @@ int Shell::run() {
     state.status.fill(state.status_message, now);
     state.status_message.uptime(to_seconds(now - state.started));
     state.status_message.resident(resident_memory());
+    if (state.status_message.message().size() == 0) {
+      const std::scoped_lock clocks(state.clocks_mutex);
+      if (state.clock_step != Duration::zero())
+        state.status_message.message(
+            ("the system's clock was set " + signed_seconds(state.clock_step) +
+             " away from this process, which keeps its own until it is started anew")
+                .c_str());
+    }
     state.status_writer->write(state.status_message);
     state.next_status = now + std::chrono::seconds(1);
   };
@@ -339,8 +435,8 @@ int Shell::run() {
   };
 
   std::unique_lock lock(state.exclusive);
-  publish_status(system_now());
-  state.next_tick = system_now();
+  publish_status(process_now());
+  state.next_tick = process_now();
   state.running = true;
   if (!state.lockstep) {
     std::vector<Arrival> early;
@@ -353,20 +449,27 @@ int Shell::run() {
     if (state.lockstep) {
       while (run_cycle()) {
       }
-    } else if (const Time now = system_now(); state.tick && now >= state.next_tick) {
+    } else if (const Time now = process_now(); state.tick && now >= state.next_tick) {
       state.tick(now);
       // A late tick is not made up for: the next one sees all the time that has passed.
       state.next_tick = std::max(state.next_tick + state.period, now);
     }
-    if (const Time now = system_now(); now >= state.next_status) publish_status(now);
+    const Time then = process_now();
+    if (then >= state.next_status) publish_status(then);
+    if (!state.lockstep && then >= state.next_beacon) {
+      send_beacon();
+      state.next_beacon =
+          then + (then - state.started < early ? early_beacon_period : beacon_period);
+    }
 
     Time wake_at = state.next_status;
+    if (!state.lockstep) wake_at = std::min(wake_at, state.next_beacon);
     if (state.tick && !state.lockstep) wake_at = std::min(wake_at, state.next_tick);
     lock.unlock();
     {
       std::unique_lock sleep(state.wake_mutex);
-      state.wake_condition.wait_until(sleep, wake_at,
-                                      [&] { return state.woken || state.stopping; });
+      state.wake_condition.wait_for(sleep, wake_at - process_now(),
+                                    [&] { return state.woken || state.stopping; });
       state.woken = false;
     }
     lock.lock();

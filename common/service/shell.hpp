@@ -40,7 +40,8 @@ class Shell {
   const Config& config() const;
   Status& status();
   bool lockstep() const;
-  /// Now: of the system live, of lab/clock in lockstep.
+  /// Now: process_now() live, of lab/clock in lockstep. What subscribers are handed is stamped by
+  /// the same clock, wherever it comes from (common/clock).
   Time now() const;
 
   /// A function that publishes a sample on the topic, and one that disposes an instance by its key.
@@ -89,6 +90,15 @@ class Shell {
 
   dds::Participant& participant();
   Input& add_input(std::string_view topic);
+  /// Moves stamps from the writer's clock to ours.
+  template <class T>
+  void to_our_clock(dds::Sample<T>& sample) const;
+  struct Ahead {
+    Duration stamps{}, sent{};
+  };
+  Ahead ahead(const dds::SampleInfo& info) const;
+  void begin_beacons(const std::string& host);
+  void send_beacon();
   void keep(std::unique_ptr<eprosima::fastdds::dds::DataReaderListener> listener);
   /// Called by the thread that received samples.
   void arrive(Input& input, std::vector<Arrival> arrivals);
@@ -128,6 +138,7 @@ class Shell::Listener : public eprosima::fastdds::dds::DataReaderListener {
     if (!reader_) reader_.emplace(raw);
     std::vector<Arrival> arrivals;
     for (dds::Sample<T>& sample : reader_->take()) {
+      shell_.to_our_clock(sample);
       // A vanished instance carries no stamp of its own: it follows the topic's last sample.
       if (!sample.info.gone) stamp_ns_ = sample.data.stamp_ns();
       auto kept = std::make_shared<dds::Sample<T>>(std::move(sample));
@@ -143,6 +154,17 @@ class Shell::Listener : public eprosima::fastdds::dds::DataReaderListener {
   std::optional<dds::Reader<T>> reader_;
   std::int64_t stamp_ns_ = 0;
 };
+
+template <class T>
+void Shell::to_our_clock(dds::Sample<T>& sample) const {
+  const Ahead by = ahead(sample.info);
+  sample.info.sent -= by.sent;
+  if (by.stamps == Duration::zero()) return;
+  sample.data.stamp_ns(sample.data.stamp_ns() - by.stamps.count());
+  if constexpr (requires { sample.data.origin_ns(); })
+    if (sample.data.origin_ns() != 0)
+      sample.data.origin_ns(sample.data.origin_ns() - by.stamps.count());
+}
 
 template <class P>
 void Shell::subscribe(

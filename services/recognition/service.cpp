@@ -3,6 +3,7 @@
 #include <condition_variable>
 #include <mutex>
 #include <optional>
+#include <prehend/base/clock.hpp>
 #include <prehend/base/log.hpp>
 #include <prehend/dds/convert.hpp>
 #include <prehend/dds/topics.hpp>
@@ -17,7 +18,7 @@
 namespace prehend::recognition {
 namespace {
 
-using Clock = std::chrono::system_clock;
+using Clock = std::chrono::steady_clock;
 
 /// Pictures are worked on at this width at most; more costs time and finds nothing more.
 constexpr int longest_side = 640;
@@ -40,7 +41,8 @@ class CameraThread {
     while (!stop.stop_requested()) {
       if (!camera_->paces_itself() && !sleep_until(stop, due)) return;
       auto picture = camera_->next();
-      const auto now = std::chrono::time_point_cast<Duration>(Clock::now());
+      const Time stamp = process_now();
+      const Clock::time_point now = Clock::now();
       if (!picture) {
         complain(picture.error());
         if (camera_->finished()) return;
@@ -56,7 +58,7 @@ class CameraThread {
       // A tenth of a period early is in time: a camera of the same rate must not lose every other.
       if (camera_->paces_itself() && now < due - period_ / 10) continue;
       due = std::max<Clock::time_point>(due + period_, now - period_);
-      hand_over(std::move(*picture), now);
+      hand_over(std::move(*picture), stamp);
     }
   }
 

@@ -18,10 +18,10 @@
 #include <fstream>
 #include <iostream>
 #include <nlohmann/json.hpp>
+#include <prehend/base/clock.hpp>
 #include <prehend/base/paths.hpp>
 #include <prehend/dds/participant.hpp>
 #include <prehend/glove_devices/device.hpp>
-#include <prehend/glove_devices/paced.hpp>
 #include <prehend/glove_devices/pseudo_terminal.hpp>
 #include <prehend/service/process.hpp>
 #include <random>
@@ -65,7 +65,7 @@ int floor(const std::string& port, int domain, const std::string& rig, std::size
     if (seen < bytes) continue;
     seen -= bytes;
     posture.sequence_number(posture.sequence_number() + 1);
-    posture.stamp_ns(to_ns(glove::system_now()));
+    posture.stamp_ns(to_ns(process_now()));
     writer.write(posture);
   }
 }
@@ -222,10 +222,10 @@ Figures measure(const std::string& kind, const std::string& format, double lengt
     const std::string to_floor(bytes, 'x');
     floor_line.write(std::string_view(to_floor).substr(1));
     std::this_thread::sleep_for(2ms);
-    floor_sent = glove::system_now();
+    floor_sent = process_now();
     floor_line.write("x");
     std::this_thread::sleep_for(2ms);
-    service_sent = glove::system_now();
+    service_sent = process_now();
     if (any) service_line.finish();
     std::this_thread::sleep_for(2ms);
     for (const auto& sample : reader.take()) {

@@ -3,13 +3,13 @@
 #include <fmt/format.h>
 
 #include <mutex>
+#include <prehend/base/clock.hpp>
 #include <prehend/base/log.hpp>
 
 #include "frame_clock.hpp"
 #include "joint_emulator.hpp"
 #include "joint_protocol.hpp"
 #include "nest_of_birds.hpp"
-#include "paced.hpp"
 #include "persistent.hpp"
 #include "serial_port.hpp"
 
@@ -135,7 +135,7 @@ class JointGlove final : public Device {
     while (!stop.stop_requested()) {
       auto bytes = port.read(milliseconds(50));
       if (!bytes) return tl::unexpected(bytes.error());
-      const Time now = system_now();
+      const Time now = process_now();
       for (const joint::Counts& counts : parser.feed(*bytes)) {
         last = Clock::now();
         deliver(counts, now);

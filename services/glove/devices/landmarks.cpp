@@ -1,10 +1,11 @@
 #include "landmarks.hpp"
 
+#include <prehend/base/clock.hpp>
+
 #include "datagrams.hpp"
 #include "frame_clock.hpp"
 #include "hand_in_frame.hpp"
 #include "landmark_line.hpp"
-#include "paced.hpp"
 #include "persistent.hpp"
 
 namespace prehend::glove {
@@ -52,7 +53,7 @@ class LandmarksDevice final : public Device {
     while (!stop.stop_requested()) {
       const auto datagram = socket->read(milliseconds(50));
       if (!datagram) return tl::unexpected(datagram.error());
-      if (!datagram->empty() && receive(*datagram, system_now())) last = Clock::now();
+      if (!datagram->empty() && receive(*datagram, process_now())) last = Clock::now();
       if (Clock::now() - last > longest_silence)
         return fail("no usable landmarks come", address_, "start the hand tracking program");
     }

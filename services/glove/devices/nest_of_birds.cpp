@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <prehend/base/clock.hpp>
 #include <prehend/base/log.hpp>
 #include <set>
 
@@ -9,7 +10,6 @@
 #include "bird_protocol.hpp"
 #include "bird_words.hpp"
 #include "frame_clock.hpp"
-#include "paced.hpp"
 #include "persistent.hpp"
 #include "serial_port.hpp"
 
@@ -235,7 +235,7 @@ class NestOfBirds final : public Device {
     Expected<int> read(Duration timeout) {
       auto bytes = port_.read(timeout);
       if (!bytes) return tl::unexpected(bytes.error());
-      const Time now = system_now();
+      const Time now = process_now();
       int frames = 0;
       for (const bird::Record& record : parser_.feed(*bytes)) {
         last_ = Clock::now();

@@ -3,12 +3,9 @@
 #include <algorithm>
 #include <condition_variable>
 #include <mutex>
+#include <prehend/base/clock.hpp>
 
 namespace prehend::glove {
-
-Time system_now() {
-  return std::chrono::time_point_cast<Duration>(std::chrono::system_clock::now());
-}
 
 PacedDevice::PacedDevice(std::unique_ptr<FrameSource> source, PacedOptions options)
     : source_(std::move(source)), options_(std::move(options)) {}
@@ -24,7 +21,7 @@ void PacedDevice::run(const std::stop_token& stop, const DeviceSink& sink) const
   std::condition_variable_any wake;
   std::unique_lock lock(mutex);
   const Clock::time_point start = Clock::now();
-  const Time start_stamp = system_now();
+  const Time start_stamp = process_now();
   for (std::uint64_t n = 0;; ++n) {
     if (!options_.every_frame) {
       const double elapsed = std::chrono::duration<double>(Clock::now() - start).count();
@@ -38,7 +35,7 @@ void PacedDevice::run(const std::stop_token& stop, const DeviceSink& sink) const
     const Duration offset = frame->stamp.time_since_epoch();
     wake.wait_until(lock, stop, start + offset, [] { return false; });
     if (stop.stop_requested()) return;
-    frame->stamp = options_.every_frame ? start_stamp + offset : system_now();
+    frame->stamp = options_.every_frame ? start_stamp + offset : process_now();
     sink.frame(std::move(*frame));
   }
 }

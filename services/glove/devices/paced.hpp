@@ -16,7 +16,7 @@ struct PacedOptions {
   std::string at_end = {};  // said when the source has ended
 };
 
-/// Plays a source at its own pace on the system clock.
+/// Plays a source at its own pace.
 class PacedDevice final : public Device {
  public:
   PacedDevice(std::unique_ptr<FrameSource> source, PacedOptions options);
@@ -29,8 +29,5 @@ class PacedDevice final : public Device {
   PacedOptions options_;
   std::jthread thread_;  // last: joined before the rest goes
 };
-
-/// The clock that devices stamp frames by.
-Time system_now();
 
 }  // namespace prehend::glove

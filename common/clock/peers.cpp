@@ -1,0 +1,99 @@
+#include "peers.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace prehend::clock {
+namespace {
+
+constexpr std::size_t most_peers = 256;                // more than a rig has services
+constexpr std::size_t most_told = 64;                  // idl/Operation.idl
+constexpr Duration memory = std::chrono::seconds(10);  // of who says nothing any more
+constexpr std::size_t process_bytes = 8;               // of a Participant
+
+}  // namespace
+
+Peers::Peers(std::string service, std::string host)
+    : service_(std::move(service)), host_(std::move(host)) {}
+
+Peers::Heard Peers::hear(const v1::ClockBeacon& beacon, const Participant& from, Time received) {
+  forget(received);
+  const std::string service = beacon.service().to_string();
+  if (service == service_) return {};
+  if (!peers_.contains(service) && peers_.size() >= most_peers) return {};
+  Peer& peer = peers_[service];
+  const Time sent = from_ns(beacon.stamp_ns());
+  peer.service = service;
+  peer.from = from;
+  peer.step = Duration(beacon.step_ns());
+  Heard heard{.answer = true};
+  for (const v1::ClockPeer& told : beacon.peers()) {
+    if (told.service().to_string() != service_) continue;
+    heard.answer = !told.known();
+    const auto before = peer.filter.at(received);
+    const std::uint64_t steps = peer.filter.steps();
+    peer.filter.add({from_ns(told.sent_ns()), from_ns(told.received_ns()), sent, received});
+    if (peer.filter.steps() > steps) heard.step = peer.filter.at(received)->offset - before->offset;
+  }
+  peer.sent = sent;
+  peer.received = received;
+  return heard;
+}
+
+v1::ClockBeacon Peers::beacon(Time now, Duration step) {
+  forget(now);
+  v1::ClockBeacon beacon;
+  beacon.service(service_.c_str());
+  beacon.host(host_.c_str());
+  beacon.stamp_ns(to_ns(now));
+  beacon.step_ns(step.count());
+  for (const auto& [service, peer] : peers_) {
+    if (beacon.peers().size() == most_told) break;
+    v1::ClockPeer told;
+    told.service(service.c_str());
+    told.sent_ns(to_ns(peer.sent));
+    told.received_ns(to_ns(peer.received));
+    if (const auto offset = peer.filter.at(now)) {
+      told.known(true);
+      told.offset_ns(offset->offset.count());
+      told.uncertainty_ns(offset->uncertainty.count());
+    }
+    beacon.peers().push_back(told);
+  }
+  return beacon;
+}
+
+Duration Peers::ahead(const Participant& writer, Time now) const {
+  const Peer* peer = find(writer);
+  const auto offset = peer ? peer->filter.at(now) : std::nullopt;
+  return offset && std::chrono::abs(offset->offset) > offset->uncertainty ? offset->offset
+                                                                          : Duration::zero();
+}
+
+Duration Peers::system_ahead(const Participant& writer, Time now) const {
+  const Peer* peer = find(writer);
+  return ahead(writer, now) + (peer ? peer->step : Duration::zero());
+}
+
+std::optional<Offset> Peers::offset(const std::string& service, Time now) const {
+  const auto found = peers_.find(service);
+  return found == peers_.end() ? std::nullopt : found->second.filter.at(now);
+}
+
+/// The participant itself, else another one of its process: the replayer plays through its own.
+const Peers::Peer* Peers::find(const Participant& writer) const {
+  const Peer* same_process = nullptr;
+  for (const auto& [service, peer] : peers_) {
+    if (!peer.filter.at(peer.received)) continue;
+    if (peer.from == writer) return &peer;
+    if (std::equal(writer.begin(), writer.begin() + process_bytes, peer.from.begin()))
+      same_process = &peer;
+  }
+  return same_process;
+}
+
+void Peers::forget(Time now) {
+  std::erase_if(peers_, [&](const auto& entry) { return now - entry.second.received > memory; });
+}
+
+}  // namespace prehend::clock

@@ -1,0 +1,59 @@
+#pragma once
+
+#include <prehend/idl/Operation.h>
+
+#include <array>
+#include <map>
+#include <optional>
+#include <prehend/base/time.hpp>
+#include <string>
+
+#include "offset_filter.hpp"
+
+namespace prehend::clock {
+
+/// The first twelve bytes of the identity of a DDS writer: its participant. Fast DDS makes the
+/// first eight of them from host and process.
+using Participant = std::array<std::uint8_t, 12>;
+
+/// The clocks of the others as one process sees them. Pure: beacons in, beacons and offsets out.
+/// Beacons are both question and answer: each takes back when the last one of everybody came.
+class Peers {
+ public:
+  /// service: our own key, as in our ServiceStatus.
+  Peers(std::string service, std::string host);
+
+  struct Heard {
+    bool answer = false;           // the sender does not know our clock: send a beacon at once
+    std::optional<Duration> step;  // its clock was found to have stepped by that, theirs minus ours
+  };
+  /// received: by our clock, when the beacon came. Our own beacons are left out.
+  Heard hear(const v1::ClockBeacon& beacon, const Participant& from, Time received);
+
+  /// What to send now. step: how far the system's clock has left ours since the start.
+  v1::ClockBeacon beacon(Time now, Duration step);
+
+  /// By how much stamps of this writer are ahead of our clock: zero where that is not known, or not
+  /// known to be more than its uncertainty.
+  Duration ahead(const Participant& writer, Time now) const;
+  /// The same for the times that DDS itself notes, which follow steps of the system's clock.
+  Duration system_ahead(const Participant& writer, Time now) const;
+  /// By the key of the service; nullopt: not known.
+  std::optional<Offset> offset(const std::string& service, Time now) const;
+
+ private:
+  struct Peer {
+    std::string service;
+    Participant from{};
+    Time sent, received;
+    Duration step{};
+    OffsetFilter filter;
+  };
+  const Peer* find(const Participant& writer) const;
+  void forget(Time now);
+
+  std::string service_, host_;
+  std::map<std::string, Peer> peers_;  // by service
+};
+
+}  // namespace prehend::clock
