@@ -2,13 +2,13 @@
 
 #include <iostream>
 #include <prehend/base/log.hpp>
+#include <prehend/cli_status/status_command.hpp>
 
 #include "arguments.hpp"
 #include "demo.hpp"
 #include "dispatch.hpp"
 #include "scene_command.hpp"
 #include "server_command.hpp"
-#include "status_command.hpp"
 
 using namespace prehend;
 

@@ -3,7 +3,6 @@
 
 #include <nlohmann/json.hpp>
 #include <prehend/cli/outcome.hpp>
-#include <prehend/cli/status_command.hpp>
 
 namespace prehend::cli {
 namespace {
@@ -76,32 +75,6 @@ TEST(Outcome, TableSaysWhetherAndWhyNot) {
   EXPECT_NE(to_table(dropped).find("dropped: slipped 31 mm"), std::string::npos);
   dropped.judged = false;
   EXPECT_NE(to_table(dropped).find("no grasp: slipped 31 mm"), std::string::npos);
-}
-
-TEST(Status, Document) {
-  v1::ServiceStatus status;
-  status.name("glove");
-  status.host("here");
-  status.state(v1::STATE_DEGRADED);
-  status.rates().resize(1);
-  status.rates()[0].name("frames");
-  status.rates()[0].per_second(30);
-  status.rates()[0].total(90);
-  status.drops().resize(1);
-  status.drops()[0].reason("stale");
-  status.drops()[0].count(4);
-  status.latency().resize(1);
-  status.latency()[0].stage("filter");
-  status.latency()[0].p50_us(12);
-  const json document = json::parse(status_json({{"glove@here/1", status}}));
-  ASSERT_EQ(document["services"].size(), 1u);
-  const json& service = document["services"][0];
-  EXPECT_EQ(service["name"], "glove");
-  EXPECT_EQ(service["host"], "here");
-  EXPECT_EQ(service["state"], "degraded");
-  EXPECT_EQ(service["rates"]["frames"]["per_second"], 30);
-  EXPECT_EQ(service["dropped"]["stale"], 4);
-  EXPECT_EQ(service["latency_us"]["filter"]["p50"], 12);
 }
 
 }  // namespace

@@ -1,0 +1,147 @@
+// The table is checked by what it says, the document by its keys, which others rely on.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+#include <prehend/cli_status/status_view.hpp>
+
+namespace prehend::cli {
+namespace {
+
+using json = nlohmann::json;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::Not;
+
+const Time start = from_ns(1'700'000'000'000'000'000);
+
+v1::ServiceStatus status(const std::string& name, const std::string& host = "here") {
+  v1::ServiceStatus message;
+  message.service(name + "@" + host + "/1");
+  message.name(name);
+  message.host(host);
+  message.state(v1::STATE_RUNNING);
+  return message;
+}
+
+v1::ClockBeacon beacon(const std::string& name, const std::string& of = "", double offset = 0) {
+  v1::ClockBeacon message;
+  message.service(name + "@here/1");
+  if (of.empty()) return message;
+  v1::ClockPeer peer;
+  peer.service(of + "@here/1");
+  peer.known(true);
+  peer.offset_ns(static_cast<std::int64_t>(offset * 1e9));
+  peer.uncertainty_ns(200'000);
+  message.peers().push_back(peer);
+  return message;
+}
+
+TEST(StatusView, Document) {
+  v1::ServiceStatus glove = status("glove");
+  glove.state(v1::STATE_DEGRADED);
+  glove.message("no frames");
+  glove.rates().resize(1);
+  glove.rates()[0].name("frames");
+  glove.rates()[0].per_second(30);
+  glove.rates()[0].total(90);
+  glove.drops().resize(1);
+  glove.drops()[0].reason("stale");
+  glove.drops()[0].count(4);
+  glove.latency().resize(1);
+  glove.latency()[0].stage("filter");
+  glove.latency()[0].p50_us(12);
+  StatusView view({"glove", "mapping"});
+  view.hear(glove, start);
+  view.hear(beacon("mapping", "glove", 3600), start);
+  const json document = json::parse(view.json(start));
+  EXPECT_EQ(document["missing"], json({"mapping"}));
+  ASSERT_EQ(document["services"].size(), 1u);
+  const json& service = document["services"][0];
+  EXPECT_EQ(service["name"], "glove");
+  EXPECT_EQ(service["host"], "here");
+  EXPECT_EQ(service["state"], "degraded");
+  EXPECT_EQ(service["message"], "no frames");
+  EXPECT_EQ(service["rates"]["frames"]["per_second"], 30);
+  EXPECT_EQ(service["dropped"]["stale"], 4);
+  EXPECT_EQ(service["latency_us"]["filter"]["p50"], 12);
+  EXPECT_EQ(service["clock"]["offset_s"], 3600);
+  EXPECT_EQ(service["clock"]["uncertainty_s"], 200e-6);
+  EXPECT_EQ(service["clock"]["against"], "mapping@here/1");
+}
+
+TEST(StatusView, ThePageSaysWhatGoesOn) {
+  v1::ServiceStatus mapping = status("mapping", "far");
+  mapping.state(v1::STATE_DEGRADED);
+  mapping.message("nobody sends hand/posture; the hand stays as it is");
+  mapping.drops().resize(1);
+  mapping.drops()[0].reason("posture stale");
+  mapping.drops()[0].count(4);
+  StatusView view({"glove", "mapping"});
+  view.hear(status("glove"), start);
+  view.hear(mapping, start);
+  mapping.drops()[0].count(11);
+  view.hear(mapping, start + seconds(1));
+  const std::string page = view.page(start + seconds(1));
+  EXPECT_THAT(page, HasSubstr("2 services on 2 hosts"));
+  EXPECT_THAT(page, Not(HasSubstr("missing")));
+  EXPECT_THAT(page, HasSubstr("nobody sends hand/posture"));
+  EXPECT_THAT(page, testing::ContainsRegex("posture stale +\\+7 +11\n"));
+  EXPECT_THAT(StatusView({}).page(start), HasSubstr("no service is there"));
+}
+
+TEST(StatusView, WhoFallsSilentOrSaysGoodbyeIsMissing) {
+  StatusView view({"glove", "mapping"});
+  view.hear(status("glove"), start);
+  EXPECT_TRUE(view.is_up("glove", start + seconds(1)));
+  EXPECT_THAT(view.missing(start + seconds(1)), ElementsAre("mapping"));
+  // Killed: nobody says so, but nothing is heard any more.
+  EXPECT_FALSE(view.is_up("glove", start + seconds(4)));
+  EXPECT_THAT(view.missing(start + seconds(4)), ElementsAre("glove", "mapping"));
+  EXPECT_THAT(view.page(start + seconds(4)), HasSubstr("silent 4 s"));
+  // Heard again, then stopped as it should be.
+  view.hear(status("glove"), start + seconds(5));
+  view.lose("glove@here/1", start + seconds(5));
+  EXPECT_FALSE(view.is_up("glove", start + seconds(5)));
+  EXPECT_EQ(json::parse(view.json(start + seconds(5)))["services"][0]["state"], "gone");
+}
+
+// Two lives of one service: the one that speaks counts.
+TEST(StatusView, ARestartedServiceIsUp) {
+  StatusView view({"glove"});
+  view.hear(status("glove"), start);
+  v1::ServiceStatus second = status("glove");
+  second.service("glove@here/2");
+  view.hear(second, start + seconds(4));
+  EXPECT_TRUE(view.is_up("glove", start + seconds(4)));
+  EXPECT_TRUE(view.missing(start + seconds(4)).empty());
+}
+
+TEST(StatusView, ClocksAreMeasuredByWhoKnowsMost) {
+  StatusView view({});
+  view.hear(status("glove"), start);
+  view.hear(status("mapping"), start);
+  view.hear(beacon("glove"), start);
+  view.hear(beacon("mapping", "glove", -0.25), start);
+  const std::string page = view.page(start);
+  EXPECT_THAT(page, HasSubstr("-0.2500 s ± 200 µs"));
+  EXPECT_THAT(page, HasSubstr("the measure"));
+  // What was said long ago says nothing.
+  EXPECT_THAT(view.page(start + seconds(10)), Not(HasSubstr("the measure")));
+}
+
+TEST(StatusView, NothingGrowsWithoutBound) {
+  StatusView view({});
+  for (int i = 0; i < 3000; ++i) {
+    v1::ServiceStatus one = status("service");
+    one.service("service@here/" + std::to_string(i));
+    view.hear(one, start);
+    view.hear(beacon("service" + std::to_string(i)), start);
+  }
+  EXPECT_EQ(json::parse(view.json(start))["services"].size(), 1000u);
+  view.hear(status("glove"), start + seconds(120));
+  EXPECT_EQ(json::parse(view.json(start + seconds(120)))["services"].size(), 1u);
+}
+
+}  // namespace
+}  // namespace prehend::cli
