@@ -1,5 +1,7 @@
 #include "service.hpp"
 
+#include <algorithm>
+#include <map>
 #include <optional>
 #include <prehend/base/log.hpp>
 #include <prehend/base/paths.hpp>
@@ -14,6 +16,11 @@
 namespace prehend::mapping {
 
 namespace {
+
+constexpr Duration patience = std::chrono::milliseconds(300);  // with a silent glove
+constexpr Duration start_up = std::chrono::seconds(3);         // until one is there
+constexpr Duration camera_patience = std::chrono::seconds(2);  // with objects that are not seen
+constexpr std::size_t most_tracks = 1000;
 
 v1::MappingMode to_message(Mode mode) {
   switch (mode) {
@@ -70,7 +77,8 @@ class Service {
         modes_(modes),
         hand_name_(shell.config().text("mapping.hand_name")),
         output_(shell.publish(dds::robot_command)),
-        replies_(shell.publish(dds::operator_reply)) {
+        replies_(shell.publish(dds::operator_reply)),
+        last_posture_(shell.now() + start_up) {
     message_.hand(hand_name_);
     message_.model(hand.name());
     shell.subscribe(dds::hand_posture,
@@ -86,6 +94,7 @@ class Service {
         shell_.status().count("hold commands");
         publish(*command);
       }
+      if (!shell_.lockstep()) look_around(now);
     });
   }
 
@@ -102,9 +111,12 @@ class Service {
         posture.and_then([&](const Posture& value) { return mapping_.on_posture(value, now); });
     if (!command) {
       status.drop(command.error().what);
+      last_reject_ = command.error().what;
       return;
     }
     publish(*command);
+    last_posture_ = now;
+    last_reject_.clear();
     status.latency("posture hop", now - info.sent);
     status.latency("glove to command", shell_.now() - from_ns(message.origin_ns()));
   }
@@ -112,8 +124,10 @@ class Service {
   void on_detection(const v1::ObjectDetection& message, const dds::SampleInfo& info) {
     if (info.gone) {
       mapping_.on_detection_gone(message.track());
+      seen_.erase(message.track());
       return;
     }
+    if (seen_.size() < most_tracks) seen_[message.track()] = shell_.now();
     const auto taken = from_message(message).and_then(
         [&](const Detection& detection) { return mapping_.on_detection(detection); });
     if (!taken) shell_.status().drop(taken.error().what);
@@ -155,6 +169,26 @@ class Service {
     return {};
   }
 
+  /// Says what is missing; that the hand holds still then is the mapping's own doing.
+  void look_around(Time now) {
+    std::string missing;
+    if (now - last_posture_ > patience)
+      missing = last_reject_.empty() ? "nobody sends hand/posture; the hand stays as it is"
+                                     : "no hand/posture is usable: " + last_reject_;
+    // A recognition that works says of each object that it is gone.
+    else if (std::any_of(seen_.begin(), seen_.end(),
+                         [&](const auto& track) { return now - track.second > camera_patience; }))
+      missing = "recognition has fallen silent; objects are no longer known";
+    if (missing == missing_) return;
+    missing_ = missing;
+    if (missing.empty()) {
+      log::info("nothing is missing any more");
+      return shell_.status().running();
+    }
+    log::warning("{}", missing);
+    shell_.status().degraded(missing);
+  }
+
   void publish(const Command& command) {
     message_.sequence_number(sequence_number_++);
     message_.stamp_ns(to_ns(command.stamp));
@@ -177,6 +211,9 @@ class Service {
   service::Shell::Output<v1::OperatorReply> replies_;
   v1::HandCommand message_;  // reused, so that a command costs no allocation
   std::uint64_t sequence_number_ = 0;
+  Time last_posture_;  // that was answered
+  std::string last_reject_, missing_;
+  std::map<std::uint32_t, Time> seen_;  // tracks, when they last came
 };
 
 }  // namespace

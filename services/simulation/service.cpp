@@ -12,7 +12,11 @@
 namespace prehend::simulation {
 namespace {
 
-constexpr std::size_t most_waiting = 4;  // closures for the judge
+constexpr std::size_t most_waiting = 4;                        // closures for the judge
+constexpr Duration patience = std::chrono::milliseconds(300);  // with silent commands
+constexpr Duration start_up = std::chrono::seconds(3);         // until some come
+
+constexpr const char* unled = "nobody sends robot/command; the hand stays as it is";
 
 }  // namespace
 
@@ -79,6 +83,7 @@ Expected<void> Service::start() {
                      }));
   shell_.on_tick(seconds(1.0 / rate), [this](Time now) { on_tick(now); });
   if (!shell_.lockstep()) judge_ = std::thread([this] { judge_queued(); });
+  last_command_ = shell_.now() + start_up;
   shell_.status().running();
   return {};
 }
@@ -100,6 +105,7 @@ void Service::on_command(const v1::HandCommand& message, const dds::SampleInfo& 
     shell_.status().drop(accepted.error().what);
     return;
   }
+  last_command_ = now;
   shell_.status().count("commands");
   if (command->origin != Time{})  // a hand that is told to hold still answers no glove frame
     shell_.status().latency("glove to accepted", now - command->origin);
@@ -124,12 +130,23 @@ void Service::on_tick(Time now) {
   if (const Duration dropped = simulation_->follow(now, shell_.lockstep()); dropped.count() > 0)
     shell_.status().drop("time (ms)",
                          static_cast<std::uint64_t>(std::max(1.0, 1e3 * to_seconds(dropped))));
+  if (!shell_.lockstep()) look_around(now);
   if (scene_changed_) publish_scene();
   while (simulation_->step()) {
     shell_.status().count("steps");
     if (auto closure = simulation_->take_closure()) judge_soon(std::move(*closure));
     if (simulation_->time() >= next_state_) publish_state();
   }
+}
+
+/// Says that nobody commands; that the hand holds still then is the world's own doing.
+void Service::look_around(Time now) {
+  const bool led = now - last_command_ <= patience;
+  if (led == led_) return;
+  led_ = led;
+  if (led) return shell_.status().running();
+  log::warning("{}", unled);
+  shell_.status().degraded(unled);
 }
 
 void Service::publish_state() {

@@ -28,6 +28,7 @@ class Service {
   void on_command(const v1::HandCommand& message, const dds::SampleInfo& info);
   void on_detection(const v1::ObjectDetection& message);
   void on_tick(Time now);
+  void look_around(Time now);
   void publish_state();
   void publish_scene();
   void judge_soon(Closure closure);
@@ -46,7 +47,8 @@ class Service {
   service::Shell::Output<v1::GraspReport> reports_;
   std::uint64_t sequence_ = 0, scene_sequence_ = 0;
   Duration state_period_{};
-  Time next_state_{};
+  Time next_state_{}, last_command_{};
+  bool led_ = true;  // commands come
   bool scene_changed_ = true;
 
   std::mutex mutex_;
