@@ -28,7 +28,8 @@ struct Answer {
 /// removed at the end. The test takes part in it.
 class Rig : public testing::Test {
  protected:
-  Rig();
+  /// network: as lab.network.
+  explicit Rig(const std::string& network = "laptop");
   ~Rig() override;
 
   /// A program of the build.
@@ -67,6 +68,7 @@ class Rig : public testing::Test {
     }));
   }
 
+  std::string network_;
   int domain_;
   std::string name_;
   std::filesystem::path folder_;

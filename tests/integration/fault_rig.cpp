@@ -1,0 +1,176 @@
+#include "fault_rig.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <numeric>
+
+namespace prehend::integration {
+namespace {
+
+double quantile(std::vector<double> values, double q) {
+  if (values.empty()) return -1;
+  std::sort(values.begin(), values.end());
+  return values[static_cast<std::size_t>(q * static_cast<double>(values.size() - 1) + 0.5)];
+}
+
+/// Prints the table when all tests have run.
+class Table : public testing::Environment {
+ public:
+  void add(const FaultRow& row) { rows_.push_back(row); }
+  void TearDown() override {
+    if (rows_.empty()) return;
+    fmt::print(
+        "\n| fault | rounds | lost | recovery p50, s | p99, s | memory before, MB | after, MB |\n"
+        "|---|---|---|---|---|---|---|\n");
+    for (const FaultRow& row : rows_)
+      fmt::print("| {} | {} | {} | {:.3f} | {:.3f} | {:.1f} | {:.1f} |\n", row.fault, row.rounds,
+                 row.lost, quantile(row.recoveries, 0.5), quantile(row.recoveries, 0.99),
+                 row.memory_before / 1e6, row.memory_after / 1e6);
+  }
+
+ private:
+  std::vector<FaultRow> rows_;
+};
+
+Table& table() {
+  static auto* made = dynamic_cast<Table*>(testing::AddGlobalTestEnvironment(new Table));
+  return *made;
+}
+[[maybe_unused]] const Table& at_start = table();
+
+}  // namespace
+
+void report(const FaultRow& row) {
+  table().add(row);
+}
+
+int rounds(int usual, int many) {
+  return std::getenv("PREHEND_LONG") ? many : usual;
+}
+
+OnHosts::OnHosts() {
+  if (const auto why = Hosts::unavailable()) {
+    skip_ = *why;
+    return;
+  }
+  hosts_.emplace(std::string(PREHEND_PROGRAMS) + "/prehend-delay-line");
+  hosts_->add("operator");
+  hosts_->enter("operator");
+}
+
+void FaultRig::SetUp() {
+  if (!hosts_) GTEST_SKIP() << skip_;
+  states_.emplace(reader(dds::robot_state));
+  grasps_.emplace(reader(dds::grasp_report));
+  health_.emplace(reader(dds::service_status));
+  replies_.emplace(reader(dds::operator_reply));
+  commands_.emplace(writer(dds::operator_command));
+  sets_ = {"lab.scene=" + scene(1), "glove.device=synthetic"};
+}
+
+std::string FaultRig::host_of(const std::string& service) const {
+  return service == "glove" ? "hand" : service == "recognition" ? "eye" : "robot";
+}
+
+service::Process FaultRig::launch(const std::string& service, const Strings& prefix,
+                                  const Strings& sets, const std::string& log) {
+  Strings command = prefix;
+  command.push_back(program("prehend-" + service));
+  Strings all = sets_;
+  all.insert(all.end(), sets.begin(), sets.end());
+  for (std::string& argument : lab_arguments(all)) command.push_back(std::move(argument));
+  auto made = service::Process::start({.command = hosts_->on(host_of(service), command),
+                                       .log = folder_ / ((log.empty() ? service : log) + ".log")});
+  if (!made) throw std::runtime_error(made.error().message());
+  return std::move(*made);
+}
+
+void FaultRig::start_lab() {
+  for (const char* name : {"recognition", "mapping", "simulation", "glove"})
+    processes_.insert_or_assign(name, launch(name));
+  ASSERT_TRUE(operate(40, [&] {
+    return moved_by_ > 0 && statuses_.contains("recognition") &&
+           !statuses_["mapping"].rates().empty();
+  })) << "the lab does not start";
+}
+
+bool FaultRig::operate(double limit_s, const std::function<bool()>& condition) {
+  return eventually(limit_s, [&] {
+    for (auto& sample : states_->take())
+      if (!sample.info.gone) {
+        moved_by_ = sample.data.origin_ns();
+        dof_ = sample.data.dof();
+      }
+    for (auto& sample : grasps_->take())
+      if (!sample.info.gone) reports_.insert(sample.data.sequence_number());
+    for (auto& sample : health_->take())
+      if (!sample.info.gone) statuses_[sample.data.name().to_string()] = sample.data;
+    for (auto& sample : replies_->take())
+      if (!sample.info.gone) open_.erase(sample.data.id().to_string());
+    if (orders_ && processes_.contains("mapping") && now_ns() > next_order_) {
+      next_order_ = now_ns() + static_cast<std::int64_t>(operating_period * 1e9);
+      eprosima::fastdds::dds::PublicationMatchedStatus matched;
+      commands_->raw().get_publication_matched_status(matched);
+      if (matched.current_count > 0) {  // nobody has promised anything to who is not there
+        v1::OperatorCommand command;
+        command.id(fmt::format("order-{}", ++given_));
+        command.stamp_ns(now_ns());
+        command.action(v1::ACTION_SET_MODE);
+        command.target("mapping");
+        command.argument("joints");
+        open_.insert(command.id().to_string());
+        commands_->write(command);
+      }
+    }
+    return condition();
+  });
+}
+
+double FaultRig::recovery(std::int64_t time, double limit_s) {
+  if (!operate(limit_s, [&] { return moved_by_ > time; })) return -1;
+  return static_cast<double>(now_ns() - time) * 1e-9;
+}
+
+std::uint64_t FaultRig::unanswered() {
+  orders_ = false;
+  operate(5, [&] { return open_.empty(); });
+  orders_ = true;
+  const std::uint64_t lost = open_.size();
+  open_.clear();
+  return lost;
+}
+
+std::uint64_t FaultRig::unreported() {
+  auto late = dds::Participant::create(
+      {.name = "late", .domain = domain_, .rig = name_, .network = {.profile = network_}});
+  if (!late) throw std::runtime_error(late.error().message());
+  auto reader = late->reader(dds::grasp_report);
+  if (!reader) throw std::runtime_error(reader.error().message());
+  std::set<std::uint64_t> all;
+  std::int64_t last = now_ns();
+  // All come at once; when nothing more has come for a second, these are all.
+  operate(5, [&] {
+    for (auto& sample : reader->take())
+      if (!sample.info.gone) {
+        all.insert(sample.data.sequence_number());
+        last = now_ns();
+      }
+    return now_ns() - last > 1'000'000'000;
+  });
+  return static_cast<std::uint64_t>(std::count_if(
+      all.begin(), all.end(), [&](std::uint64_t number) { return !reports_.contains(number); }));
+}
+
+double FaultRig::memory() const {
+  return std::accumulate(
+      statuses_.begin(), statuses_.end(), 0.0,
+      [](double sum, const auto& entry) { return sum + entry.second.resident(); });
+}
+
+void FaultRig::expect_alive() {
+  for (auto& [name, process] : processes_)
+    EXPECT_FALSE(process.exit()) << name << " ended: " << service::last_lines(process.log(), 5);
+}
+
+}  // namespace prehend::integration

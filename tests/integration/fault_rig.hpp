@@ -1,0 +1,80 @@
+#pragma once
+
+#include <map>
+#include <memory>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "hosts.hpp"
+#include "rig.hpp"
+
+namespace prehend::integration {
+
+/// What became of one kind of fault: a row of the table that the program prints at its end.
+struct FaultRow {
+  std::string fault;
+  int rounds = 0;
+  std::uint64_t lost = 0;          // samples of operator/* and grasp/report
+  std::vector<double> recoveries;  // s, from the fault's end until a new frame moved the hand
+  double memory_before = 0, memory_after = 0;  // bytes, of all services together
+};
+void report(const FaultRow& row);
+
+/// Moves the test to a host of its own before the Rig takes part in the domain.
+class OnHosts {
+ protected:
+  OnHosts();
+  std::optional<Hosts> hosts_;
+  std::string skip_;  // why there are none
+};
+
+/// A lab spread over hosts: glove on «hand», recognition on «eye», mapping and simulation on
+/// «robot»; the test is an operator on a host of its own, who gives orders and reads everything.
+class FaultRig : public OnHosts, public Rig {
+ protected:
+  FaultRig() : Rig("lan") {}
+  static constexpr double operating_period = 0.1;  // s, between orders
+
+  void SetUp() override;
+  /// Starts all four and waits until a frame of the glove moves the hand.
+  void start_lab();
+  virtual std::string host_of(const std::string& service) const;
+  service::Process launch(const std::string& service, const Strings& prefix = {},
+                          const Strings& sets = {}, const std::string& log = {});
+  /// Lets the lab run, giving orders and reading, until the condition holds; false: not in time.
+  bool operate(
+      double limit_s, const std::function<bool()>& condition = [] { return false; });
+  /// Until a frame that was taken after `time` moved the hand; s since then. -1: never.
+  double recovery(std::int64_t time, double limit_s = 15);
+  /// Orders that were given and never answered, once they have had their time.
+  std::uint64_t unanswered();
+  /// Reports of grasps that a late joiner gets and the operator did not.
+  std::uint64_t unreported();
+  double memory() const;
+  /// Every service is still the process that it was.
+  void expect_alive();
+
+  Strings sets_;
+  std::map<std::string, service::Process> processes_;
+  std::int64_t moved_by_ = 0;                          // origin of the last state of the hand
+  std::vector<double> dof_;                            // of the last state, rad
+  std::map<std::string, v1::ServiceStatus> statuses_;  // last of each name
+  bool orders_ = true;                                 // give any
+
+ private:
+  std::uint64_t given_ = 0;
+  std::set<std::string> open_;  // orders without an answer
+  std::int64_t next_order_ = 0;
+  std::set<std::uint64_t> reports_;
+  std::optional<dds::Reader<v1::HandState>> states_;
+  std::optional<dds::Reader<v1::GraspReport>> grasps_;
+  std::optional<dds::Reader<v1::ServiceStatus>> health_;
+  std::optional<dds::Reader<v1::OperatorReply>> replies_;
+  std::optional<dds::Writer<v1::OperatorCommand>> commands_;
+};
+
+/// Rounds of a fault: few by default, many under PREHEND_LONG.
+int rounds(int usual, int many);
+
+}  // namespace prehend::integration

@@ -1,0 +1,58 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <prehend/service/process.hpp>
+#include <string>
+#include <vector>
+
+namespace prehend::integration {
+
+/// How far away a host is.
+struct Distance {
+  double delay_ms = 0, jitter_ms = 0;  // each way; the jitter is uniform to both sides
+};
+
+/// Several hosts on one machine: network and host name spaces, joined by a bridge in a space of its
+/// own, so that neither the machine's network nor its packet filter is touched and nothing is left
+/// behind, however the test ends. Needs root.
+class Hosts {
+ public:
+  /// nullopt when spaces can be made; else why not, for a skip.
+  static std::optional<std::string> unavailable();
+
+  /// way: the program prehend-delay-line, for hosts that are far away.
+  explicit Hosts(std::string way = {});
+  ~Hosts();
+
+  /// Joins a host with an address of its own.
+  void add(const std::string& name, const Distance& distance = {});
+  std::string address(const std::string& name) const;
+
+  /// A command line that runs a command on the host.
+  std::vector<std::string> on(const std::string& host, std::vector<std::string> command) const;
+  /// Moves this thread, and those that it will start, to the host. The destructor moves it back.
+  void enter(const std::string& host);
+
+  /// The cable.
+  void link(const std::string& host, bool up);
+  /// Part of the packets that are dropped on their way to and from the host; 0: none.
+  void lose(const std::string& host, double share);
+
+ private:
+  struct Host {
+    std::string name;
+    int number;
+    service::Process keeper;
+    std::optional<service::Process> delay_line;
+  };
+  const Host& host(const std::string& name) const;
+  std::vector<std::string> bridge(std::vector<std::string> command) const;
+
+  std::string way_;
+  std::vector<std::unique_ptr<Host>> hosts_;
+  std::optional<service::Process> bridge_;
+  int home_ = -1;  // this thread's space before enter()
+};
+
+}  // namespace prehend::integration
