@@ -63,6 +63,7 @@ void FaultRig::SetUp() {
   if (!hosts_) GTEST_SKIP() << skip_;
   states_.emplace(reader(dds::robot_state));
   grasps_.emplace(reader(dds::grasp_report));
+  commanded_.emplace(reader(dds::robot_command));
   health_.emplace(reader(dds::service_status));
   replies_.emplace(reader(dds::operator_reply));
   commands_.emplace(writer(dds::operator_command));
@@ -80,8 +81,10 @@ service::Process FaultRig::launch(const std::string& service, const Strings& pre
   Strings all = sets_;
   all.insert(all.end(), sets.begin(), sets.end());
   for (std::string& argument : lab_arguments(all)) command.push_back(std::move(argument));
-  auto made = service::Process::start({.command = hosts_->on(host_of(service), command),
-                                       .log = folder_ / ((log.empty() ? service : log) + ".log")});
+  auto made = service::Process::start(
+      {.command = hosts_->on(host_of(service), command),
+       .log = log.starts_with('/') ? std::filesystem::path(log)
+                                   : folder_ / ((log.empty() ? service : log) + ".log")});
   if (!made) throw std::runtime_error(made.error().message());
   return std::move(*made);
 }
@@ -104,6 +107,11 @@ bool FaultRig::operate(double limit_s, const std::function<bool()>& condition) {
       }
     for (auto& sample : grasps_->take())
       if (!sample.info.gone) reports_.insert(sample.data.sequence_number());
+    for (auto& sample : commanded_->take())
+      if (!sample.info.gone) {
+        const auto& leader = sample.info.participant;
+        if (leaders_.empty() || leaders_.back() != leader) leaders_.push_back(leader);
+      }
     for (auto& sample : health_->take())
       if (!sample.info.gone) statuses_[sample.data.name().to_string()] = sample.data;
     for (auto& sample : replies_->take())

@@ -40,6 +40,7 @@ class FaultRig : public OnHosts, public Rig {
   /// Starts all four and waits until a frame of the glove moves the hand.
   void start_lab();
   virtual std::string host_of(const std::string& service) const;
+  /// prefix: before the command; log: a name, or a path; the service's name where it is empty.
   service::Process launch(const std::string& service, const Strings& prefix = {},
                           const Strings& sets = {}, const std::string& log = {});
   /// Lets the lab run, giving orders and reading, until the condition holds; false: not in time.
@@ -69,6 +70,7 @@ class FaultRig : public OnHosts, public Rig {
   std::set<std::uint64_t> reports_;
   std::optional<dds::Reader<v1::HandState>> states_;
   std::optional<dds::Reader<v1::GraspReport>> grasps_;
+  std::optional<dds::Reader<v1::HandCommand>> commanded_;
   std::optional<dds::Reader<v1::ServiceStatus>> health_;
   std::optional<dds::Reader<v1::OperatorReply>> replies_;
   std::optional<dds::Writer<v1::OperatorCommand>> commands_;

@@ -8,6 +8,8 @@
 #include <cmath>
 #include <csignal>
 #include <fstream>
+#include <iterator>
+#include <nlohmann/json.hpp>
 
 #include "fault_rig.hpp"
 
@@ -48,6 +50,34 @@ class Faults : public FaultRig {
                                  status.message().to_string().find(words) != std::string::npos;
                         }))
         << service << " says: " << statuses_[service].message().to_string();
+  }
+
+  /// The command `prehend` on a host, to its end.
+  Answer run_on(const std::string& host, Strings arguments) {
+    static int count = 0;
+    arguments.insert(arguments.begin(), program("prehend"));
+    for (const std::string& argument : lab_arguments()) arguments.push_back(argument);
+    const auto output = folder_ / ("out-" + std::to_string(++count));
+    auto process = service::Process::start(
+        {.command = hosts_->on(host, arguments), .log = folder_ / "command.log", .output = output});
+    if (!process) throw std::runtime_error(process.error().message());
+    std::optional<service::Process::Exit> exit;
+    operate(20, [&] { return (exit = process->exit()).has_value(); });
+    std::ifstream stream(output);
+    return {exit ? exit->code : -1, {std::istreambuf_iterator<char>(stream), {}}, ""};
+  }
+
+  /// The glove's clock minus the robot's, s, as `prehend status --json` has it.
+  static double apart(const std::string& json) {
+    const auto document = nlohmann::json::parse(json, nullptr, false);
+    double glove = 0, mapping = 0;
+    if (document.is_object())
+      for (const auto& service : document["services"]) {
+        if (service["state"] != "running" || service["clock"].is_null()) continue;
+        if (service["name"] == "glove") glove = service["clock"]["offset_s"];
+        if (service["name"] == "mapping") mapping = service["clock"]["offset_s"];
+      }
+    return glove - mapping;
   }
 
   FaultRow begin(const std::string& name) {
@@ -153,6 +183,187 @@ TEST_F(Faults, WhatIsLostIsSaid) {
   orders_ = false;
   expect_degraded("simulation", "robot/command");
   processes_.clear();
+}
+
+// Two mappings, as after a mistake, or a mapping and a recording that is played: exclusive
+// ownership lets one of them lead the hand, and the other takes over when that one dies.
+TEST_F(Faults, TwoLeadersNeverBothMoveTheHand) {
+  const auto commands_a_second = [&] {
+    for (const auto& rate : statuses_["simulation"].rates())
+      if (rate.name().to_string() == "commands") return rate.per_second();
+    return 0.0;
+  };
+  FaultRow row = begin("second mapping");
+  processes_.insert_or_assign("second mapping", launch("mapping", {}, {}, "second-mapping"));
+  orders_ = false;  // both would obey
+  operate(2);       // its start may take the lead over, once
+  leaders_.clear();
+  operate(3);
+  EXPECT_EQ(leaders_.size(), 1u) << "the lead changed hands";
+  EXPECT_LT(commands_a_second(), 45) << "a glove of 30 Hz, and both lead";
+  for (const std::string victim : {"mapping", "second mapping"}) {
+    processes_.at(victim).signal(SIGKILL);
+    ASSERT_TRUE(processes_.at(victim).wait(seconds(5)));
+    row.recoveries.push_back(recovery(now_ns()));
+    EXPECT_GT(row.recoveries.back(), 0) << "nobody leads after the end of the " << victim;
+    EXPECT_LT(row.recoveries.back(), slowest);
+    processes_.insert_or_assign(victim, launch("mapping", {}, {}, "again"));
+    operate(2);
+    ++row.rounds;
+  }
+  processes_.erase("second mapping");
+  row.recoveries.push_back(recovery(now_ns()));
+  EXPECT_GT(row.recoveries.back(), 0);
+
+  Strings replay = hosts_->on(
+      "eye", {program("prehend-replay"), PREHEND_SOURCE "/deploy/samples/intelligent-grasp.mcap",
+              "--topics", "robot/command", "--loop", "--stamps", "now"});
+  for (const std::string& argument : lab_arguments()) replay.push_back(argument);
+  auto player = service::Process::start({.command = replay, .log = folder_ / "replay.log"});
+  ASSERT_TRUE(player);
+  ASSERT_TRUE(operate(15, [&] { return statuses_.contains("replayer"); }));
+  operate(3);
+  leaders_.clear();
+  operate(3);
+  EXPECT_EQ(leaders_.size(), 1u) << "the lead changed hands";
+  player->stop(seconds(5));
+  statuses_.erase("replayer");
+  row.recoveries.push_back(recovery(now_ns()));
+  EXPECT_GT(row.recoveries.back(), 0);
+  ++row.rounds;
+  orders_ = true;
+  finish(row);
+}
+
+TEST_F(Faults, FullDisk) {
+  FaultRow row = begin("disk full");
+  // What a service says goes nowhere, and the recorder's disk takes 1 MB.
+  for (const std::string name : {"glove", "mapping"}) {
+    processes_.at(name).stop(seconds(5));
+    processes_.insert_or_assign(name, launch(name, {}, {"glove.rate=100"}, "/dev/full"));
+  }
+  ASSERT_GT(recovery(now_ns()), 0);
+  const auto disk = folder_ / "disk";
+  std::filesystem::create_directory(disk);
+  Strings record =
+      hosts_->on("eye", {"unshare", "--mount", "sh", "-c",
+                         "mount -t tmpfs -o size=1m none \"$0\" && exec \"$@\"", disk.string(),
+                         program("prehend-record"), "-o", (disk / "lab.mcap").string(),
+                         "--compression", "none", "--duration", "20"});
+  for (const std::string& argument : lab_arguments()) record.push_back(argument);
+  auto recorder = service::Process::start({.command = record, .log = folder_ / "record.log"});
+  ASSERT_TRUE(recorder);
+  std::optional<service::Process::Exit> exit;
+  operate(30, [&] { return (exit = recorder->exit()).has_value(); });
+  ASSERT_TRUE(exit) << "the recorder hangs";
+  EXPECT_EQ(exit->signal, 0) << "it must not crash";
+  EXPECT_NE(exit->code, 0) << "a recording with a hole is no success";
+  const std::string said = service::last_lines(folder_ / "record.log", 20);
+  EXPECT_NE(said.find("space"), std::string::npos) << said;
+  row.rounds = 1;
+  row.recoveries.push_back(recovery(now_ns()));
+  EXPECT_LT(row.recoveries.back(), healed);
+  finish(row);
+}
+
+/// Runs a program by a clock of its own; the file holds how far that is off, for example +3600s.
+Strings by_clock(const std::filesystem::path& file) {
+  return {"env", "LD_PRELOAD=/usr/lib/x86_64-linux-gnu/faketime/libfaketimeMT.so.1",
+          "FAKETIME_DONT_FAKE_MONOTONIC=1", "FAKETIME_NO_CACHE=1",
+          "FAKETIME_TIMESTAMP_FILE=" + file.string()};
+}
+
+void write_clock(const std::filesystem::path& file, const std::string& offset) {
+  std::ofstream(file) << offset << "\n";
+}
+
+TEST_F(Faults, ClocksAnHourApart) {
+  if (!std::filesystem::exists("/usr/lib/x86_64-linux-gnu/faketime/libfaketimeMT.so.1"))
+    GTEST_SKIP() << "libfaketime is not installed";
+  FaultRow row = begin("clock set by an hour");
+  const auto file = folder_ / "clock";
+  for (const std::string offset : {"+3600s", "-3600s"}) {
+    write_clock(file, offset);
+    processes_.at("glove").stop(seconds(5));
+    const std::int64_t start = now_ns();
+    processes_.insert_or_assign("glove", launch("glove", by_clock(file)));
+    // The stamps that come out at the robot are by the robot's clock.
+    ASSERT_TRUE(operate(15, [&] { return moved_by_ > start && moved_by_ < now_ns(); }));
+    row.recoveries.push_back(1e-9 * static_cast<double>(now_ns() - start));
+    const auto find_clock = [&] {
+      const Answer answer = run_on("eye", {"status", "--json", "--timeout", "3"});
+      return answer.output;
+    };
+    const std::string answer = find_clock();
+    const auto sign = offset[0] == '+' ? 1.0 : -1.0;
+    EXPECT_NEAR(apart(answer), sign * 3600, 1.0) << answer;
+    ++row.rounds;
+  }
+  // Set while the process runs: nothing happens but that it is said.
+  write_clock(file, "+0s");
+  processes_.at("glove").stop(seconds(5));
+  processes_.insert_or_assign("glove", launch("glove", by_clock(file)));
+  ASSERT_GT(recovery(now_ns()), 0);
+  operate(2);
+  write_clock(file, "+3600s");
+  std::int64_t last = now_ns(), moved = moved_by_;
+  double longest = 0;
+  EXPECT_TRUE(operate(6,
+                      [&] {
+                        if (moved_by_ != moved) {
+                          moved = moved_by_;
+                          last = now_ns();
+                        }
+                        longest = std::max(longest, static_cast<double>(now_ns() - last) * 1e-9);
+                        return statuses_["glove"].message().to_string().find("clock was set") !=
+                               std::string::npos;
+                      }))
+      << "the glove says: " << statuses_["glove"].message().to_string();
+  operate(2);
+  EXPECT_LT(longest, healed) << "s without a frame that moved the hand";
+  row.recoveries.push_back(longest);
+  ++row.rounds;
+  finish(row);
+}
+
+/// The glove is 50 ms away, give or take 10, each way.
+class FarAway : public FaultRig {
+ protected:
+  void SetUp() override {
+    FaultRig::SetUp();
+    if (!hosts_) return;
+    hosts_->add("hand", {.delay_ms = 50, .jitter_ms = 10});
+    hosts_->add("eye");
+    hosts_->add("robot");
+    start_lab();
+  }
+};
+
+TEST_F(FarAway, FiftyMillisecondsEachWay) {
+  FaultRow row;
+  row.fault = "delay 50 ± 10 ms";
+  row.rounds = 1;
+  operate(rounds(4, 60));
+  row.memory_before = memory();
+  double p50 = 0;
+  for (const auto& stage : statuses_["simulation"].latency())
+    if (stage.stage().to_string() == "glove to accepted") p50 = stage.p50_us() * 1e-3;
+  EXPECT_GT(p50, 40) << "ms: the delay is not there";
+  EXPECT_LT(p50, 100) << "ms";
+  for (const auto& drop : statuses_["mapping"].drops())
+    EXPECT_NE(drop.reason().to_string(), "posture stale");
+  hosts_->link("hand", false);
+  operate(2);
+  hosts_->link("hand", true);
+  row.recoveries.push_back(recovery(now_ns()));
+  EXPECT_GT(row.recoveries.back(), 0);
+  EXPECT_LT(row.recoveries.back(), healed);
+  operate(1.5);
+  row.memory_after = memory();
+  row.lost = unanswered() + unreported();
+  EXPECT_EQ(row.lost, 0u);
+  report(row);
+  expect_alive();
 }
 
 }  // namespace

@@ -130,11 +130,19 @@ void Hosts::add(const std::string& name, const Distance& distance) {
 
 void Hosts::enter(const std::string& name) {
   if (home_ < 0) home_ = ::open("/proc/thread-self/ns/net", O_RDONLY | O_CLOEXEC);
+  enter_for_good(name);
+}
+
+void Hosts::enter_for_good(const std::string& name) const {
   const int there =
       ::open(fmt::format("/proc/{}/ns/net", host(name).keeper.pid()).c_str(), O_RDONLY | O_CLOEXEC);
   const bool moved = there >= 0 && ::setns(there, CLONE_NEWNET) == 0;
   ::close(there);
   if (!moved) throw std::runtime_error("cannot enter host " + name);
+}
+
+void Hosts::refuse(const std::string& name, const std::string& other) {
+  run(on(name, {"iptables", "-A", "INPUT", "-s", address(other), "-j", "DROP"}));
 }
 
 void Hosts::link(const std::string& name, bool up) {

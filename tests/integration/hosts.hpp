@@ -34,6 +34,11 @@ class Hosts {
   /// Moves this thread, and those that it will start, to the host. The destructor moves it back.
   void enter(const std::string& host);
 
+  /// The same without a way back, for a thread that ends there.
+  void enter_for_good(const std::string& host) const;
+
+  /// From now on `host` hears nothing of `other`.
+  void refuse(const std::string& host, const std::string& other);
   /// The cable.
   void link(const std::string& host, bool up);
   /// Part of the packets that are dropped on their way to and from the host; 0: none.
