@@ -62,6 +62,8 @@ class FaultRig : public OnHosts, public Rig {
   std::vector<double> dof_;                            // of the last state, rad
   std::map<std::string, v1::ServiceStatus> statuses_;  // last of each name
   bool orders_ = true;                                 // give any
+  /// Whose commands came, one entry for each change.
+  std::vector<std::array<std::uint8_t, 12>> leaders_;
 
  private:
   std::uint64_t given_ = 0;

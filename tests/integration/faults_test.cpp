@@ -18,6 +18,7 @@ namespace {
 
 constexpr double healed = 1.0;     // s, after a fault of the network
 constexpr double restarted = 0.5;  // s, after a start
+constexpr double slowest = 2.0;    // s, the same on a machine that has no time
 constexpr double still = 0.02;     // rad
 
 class Faults : public FaultRig {

@@ -34,13 +34,14 @@ class Capture {
   void take(std::vector<Packet>& packets) const {
     Bytes frame(65536);
     for (ssize_t n; (n = ::recv(socket_, frame.data(), frame.size(), 0)) > 0;) {
-      const auto size = static_cast<std::size_t>(n), header = 4u * (frame[0] & 15u);
+      const auto size = static_cast<std::size_t>(n);
+      const std::size_t header = 4u * (frame[0] & 15u);
       constexpr std::size_t udp = 8;
       if (size < header + udp + 4 || frame[9] != IPPROTO_UDP) continue;
       const std::uint8_t* data = frame.data() + header;
       if (!std::equal(data + udp, data + udp + 4, "RTPS")) continue;
       packets.push_back({static_cast<std::uint16_t>(data[2] << 8 | data[3]),
-                         Bytes(data + udp, frame.data() + size)});
+                         Bytes(data + udp, static_cast<const std::uint8_t*>(frame.data()) + size)});
     }
   }
 

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <prehend/base/clock.hpp>
 #include <prehend/base/random.hpp>
 #include <prehend/glove_devices/datagrams.hpp>
 #include <prehend/glove_devices/landmark_line.hpp>
@@ -52,7 +53,7 @@ class LandmarksTest : public ::testing::Test {
     }
   }
   void send(const LandmarkLine& line) { sender_->write(to_line(line) + "\n"); }
-  double now() { return to_seconds(system_now().time_since_epoch()); }
+  double now() { return to_seconds(process_now().time_since_epoch()); }
   /// Sent again and again until it has been counted.
   bool refused(const std::string& reason, const std::string& text) {
     for (int n = 0; n < 500; ++n) {
