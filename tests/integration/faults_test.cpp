@@ -250,7 +250,7 @@ TEST_F(Faults, FullDisk) {
       hosts_->on("eye", {"unshare", "--mount", "sh", "-c",
                          "mount -t tmpfs -o size=1m none \"$0\" && exec \"$@\"", disk.string(),
                          program("prehend-record"), "-o", (disk / "lab.mcap").string(),
-                         "--compression", "none", "--duration", "20"});
+                         "--compression", "none", "--keep-free", "0", "--duration", "20"});
   for (const std::string& argument : lab_arguments()) record.push_back(argument);
   auto recorder = service::Process::start({.command = record, .log = folder_ / "record.log"});
   ASSERT_TRUE(recorder);
