@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <prehend/base/log.hpp>
 #include <prehend/base/paths.hpp>
+#include <prehend/recognition_learning/answer.hpp>
 #include <prehend/recognition_learning/dataset.hpp>
 #include <prehend/recognition_learning/model_file.hpp>
 #include <prehend/recognition_picture/picture_file.hpp>
@@ -50,6 +51,15 @@ std::vector<Sighting> look(const Detector& detector, const Picture& picture,
     sighting.box.height *= factor;
   }
   return found;
+}
+
+/// Where no object was found: is there something unknown, or nothing?
+Verdict verdict_of(const Detector& detector, const Picture& picture,
+                   const std::vector<Sighting>& found) {
+  if (!found.empty()) return found.size() > 1 ? Verdict::two_objects : Verdict::object;
+  const Answer whole =
+      answer(detector.models(), shrink(picture, view_side), detector.options().accept);
+  return whole.verdict == Verdict::nothing ? Verdict::nothing : Verdict::unknown;
 }
 
 Json to_json(const Sighting& sighting) {
@@ -119,10 +129,13 @@ int detect(const DetectArguments& arguments) {
     if (arguments.json) {
       Json objects = Json::array();
       for (const Sighting& sighting : found) objects.push_back(to_json(sighting));
-      std::cout << Json{{"image", image}, {"objects", objects}} << "\n";
+      std::cout << Json{{"image", image},
+                        {"objects", objects},
+                        {"verdict", to_string(verdict_of(detector, *picture, found))}}
+                << "\n";
       continue;
     }
-    fmt::print("{}{}\n", image, found.empty() ? ": nothing known" : "");
+    fmt::print("{}: {}\n", image, to_string(verdict_of(detector, *picture, found)));
     for (const Sighting& sighting : found) {
       fmt::print("  {:24} {:5.1f} %", sighting.name, 100 * sighting.probability);
       if (sighting.at) fmt::print("  at {:.3f} {:.3f} m", sighting.at->x, sighting.at->y);
