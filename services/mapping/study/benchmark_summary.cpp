@@ -51,8 +51,7 @@ std::vector<ModeSummary> summarise(const std::vector<TrialResult>& trials) {
     for (const TrialResult& trial : trials) {
       if (trial.hand != first.hand) continue;
       if (same(trial.mode, first.mode)) mine.push_back(&trial);
-      if (same(trial.mode, {BenchmarkMode::direct}))
-        direct[trial.take] = trial.held;
+      if (same(trial.mode, {BenchmarkMode::direct})) direct[trial.take] = trial.held;
     }
     std::vector<double> here, there;
     for (const TrialResult* trial : mine)

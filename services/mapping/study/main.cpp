@@ -3,6 +3,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <iostream>
 #include <mutex>
@@ -60,12 +61,16 @@ Json to_json(const ModeSummary& one) {
 
 constexpr const char* benchmark_name = "benchmark";
 
+constexpr std::array every_mode{BenchmarkMode::direct, BenchmarkMode::cartesian,
+                                BenchmarkMode::combined, BenchmarkMode::retargeting,
+                                BenchmarkMode::intelligent};
+
 }  // namespace
 
 int main(int argc, char** argv) {
   log::set_name("study");
   StudyOptions options;
-  std::vector<std::string> only;
+  std::vector<std::string> only, modes;
   std::string out, recordings;
   if (const char* data = std::getenv("PREHEND_SHARED_DATA"))
     recordings = std::string(data) + "/leap_hand_recordings";
@@ -93,6 +98,9 @@ int main(int argc, char** argv) {
   app.add_option("--trials", options.trials,
                  "of the grasp benchmark for each hand and mode; default: 24 quick, 270 full")
       ->check(CLI::Range(1, 100'000));
+  app.add_option("--modes", modes, "that the grasp benchmark judges, with and without placement")
+      ->delimiter(',')
+      ->check(CLI::IsMember({"direct", "cartesian", "combined", "retargeting", "intelligent"}));
   app.add_option("--size-error", options.take.size_error,
                  "grasp benchmark: objects are seen larger or smaller by this share")
       ->check(CLI::Range(0.0, 0.5));
@@ -111,6 +119,9 @@ int main(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : 2;
   }
+  for (const BenchmarkMode mode : every_mode)
+    if (std::find(modes.begin(), modes.end(), to_string(mode)) != modes.end())
+      options.modes.push_back(mode);
   const auto asked = [&](const std::string& name) {
     return only.empty() || std::find(only.begin(), only.end(), name) != only.end();
   };

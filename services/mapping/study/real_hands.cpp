@@ -125,8 +125,9 @@ Followed follow(const StudiedHand& hand, const RealTake& take, const Sensors& se
     const auto seen = features(sensors.read(frame.fingertips), take.hand_scale);
     if (!seen) continue;
     const Answer answer =
-        intelligent ? hand.model->intelligent(*seen, pringles, X_OG).value_or(hand.model->direct(*seen))
-                    : hand.model->direct(*seen);
+        intelligent
+            ? hand.model->intelligent(*seen, pringles, X_OG).value_or(hand.model->direct(*seen))
+            : hand.model->direct(*seen);
     ++made.frames;
     made.extrapolating += answer.extrapolating;
     made.thumb += answer.extrapolating && thumb_is_outside(*hand.model, *seen);

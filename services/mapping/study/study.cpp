@@ -36,7 +36,10 @@ Expected<std::vector<TrialResult>> benchmark(const Parts& parts, const StudyOpti
                                              const std::function<void(double)>& progress) {
   std::vector<BenchmarkedMode> modes{
       {BenchmarkMode::direct}, {BenchmarkMode::intelligent}, {BenchmarkMode::intelligent, true}};
-  if (!options.quick) {
+  if (!options.modes.empty()) {
+    modes.clear();
+    for (const auto mode : options.modes) modes.insert(modes.end(), {{mode}, {mode, true}});
+  } else if (!options.quick) {
     modes.push_back({BenchmarkMode::direct, true});
     for (const auto mode :
          {BenchmarkMode::cartesian, BenchmarkMode::combined, BenchmarkMode::retargeting})

@@ -17,6 +17,7 @@ struct StudyOptions {
   std::uint64_t seed = 1;
   TakeOptions take;  // how people reach in the grasp benchmark, and how the camera errs
   int trials = 0;    // of the grasp benchmark for each hand and mode; 0: 24 or 270
+  std::vector<BenchmarkMode> modes;  // that it judges, with and without placement; none: see there
 };
 
 /// An experiment with what it came to.
