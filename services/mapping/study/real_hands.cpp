@@ -234,10 +234,9 @@ Outcome judge(const Table& table) {
         Claim{"splay", "Who spreads the fingers leaves the robot hand open", "mean closing, 0 to 1",
               0.25, false}})
     outcome.findings.push_back(judge_claim(table, claim));
-  outcome.findings.front().reason += fmt::format(
-      "; in {} of those frames the thumb is outside: real ones lie beside the palm, those of the "
-      "synthetic people across it",
-      to_text(mean_interval(table[column(hands.front(), answerers.front(), "thumb")])));
+  outcome.findings.front().reason +=
+      fmt::format("; in {} of those frames the thumb is outside",
+                  to_text(mean_interval(table[column(hands.front(), answerers.front(), "thumb")])));
   outcome.chart = {"", "share, or rank correlation", {}, false, false, {}};
   for (const char* measure : measures) outcome.chart.names.emplace_back(measure);
   for (const char* hand : hands)
