@@ -28,7 +28,7 @@ struct EvaluateArguments {
   DescriptorChoice choice;
   double accept = 0.5;
   int folds = 5;
-  bool json = false, nearest_view = false, compare = false, leave_out = false;
+  bool json = false, nearest_view = false, compare = false, leave_out = false, other_light = false;
 };
 
 int broken(const Error& error) {
@@ -109,7 +109,8 @@ Expected<std::vector<Judged>> judge(const Trial& trial, Method method,
     return judge_all(*recogniser_of(*trial.models, method), trial.dataset, trial.number,
                      trial.strangers, told);
   if (!trial.training)
-    return cross_validate(method, options, trial.dataset, trial.fold, trial.strangers, told);
+    return cross_validate(method, options, trial.dataset, trial.fold, trial.strangers,
+                          trial.arguments.other_light, told);
   const auto recogniser = make_recogniser(method, options);
   if (const auto learned = recogniser->learn(trial.training->classes); !learned)
     return tl::unexpected(learned.error());
@@ -354,6 +355,11 @@ void add_evaluate(CLI::App& app, int& exit_code) {
   command
       ->add_flag("--leave-out", arguments->leave_out,
                  "leave each class out and see whether its pictures are rejected")
+      ->excludes(model)
+      ->excludes(training);
+  command
+      ->add_flag("--other-light", arguments->other_light,
+                 "in folds: name the pictures in other light, size and place than they are in")
       ->excludes(model)
       ->excludes(training);
   command->add_option("--accept", arguments->accept, "least probability of an accepted answer");

@@ -29,14 +29,16 @@ std::vector<TrainingClass> choose(const Dataset& dataset, auto wanted) {
   return made;
 }
 
-/// One judged picture a wanted view.
+/// One judged picture a wanted view, or a varied copy of it.
 void judge(const Recogniser& recogniser, const Dataset& dataset, bool strangers, auto wanted,
-           std::vector<Judged>& made) {
+           std::vector<Judged>& made, Random* other_light = nullptr) {
   std::size_t i = 0;
   for (std::size_t c = 0; c < dataset.classes.size(); ++c)
     for (std::size_t v = 0; v < dataset.classes[c].views.size(); ++v) {
       if (!wanted(i++)) continue;
-      const Recogniser::Answer answer = recogniser.name(dataset.classes[c].views[v]);
+      const TrainingView& view = dataset.classes[c].views[v];
+      const Recogniser::Answer answer = recogniser.name(
+          other_light ? TrainingView{varied(view.picture, *other_light), view.mask} : view);
       made.push_back({dataset.files[c][v], strangers ? -1 : static_cast<int>(c), answer.best,
                       answer.probability});
     }
@@ -46,8 +48,10 @@ void judge(const Recogniser& recogniser, const Dataset& dataset, bool strangers,
 
 Expected<std::vector<Judged>> cross_validate(Method method, const DescriptorOptions& options,
                                              const Dataset& dataset, const std::vector<int>& fold,
-                                             const Dataset& strangers, const Told& told) {
+                                             const Dataset& strangers, bool other_light,
+                                             const Told& told) {
   std::vector<Judged> made;
+  Random random(17);  // another one than the training's
   const int folds = fold.empty() ? 0 : *std::max_element(fold.begin(), fold.end()) + 1;
   const std::size_t all = views_of(dataset) + views_of(strangers);
   for (int f = 0; f < folds; ++f) {
@@ -56,10 +60,12 @@ Expected<std::vector<Judged>> cross_validate(Method method, const DescriptorOpti
         recogniser->learn(choose(dataset, [&](std::size_t i) { return fold[i] != f; }));
     if (!learned) return tl::unexpected(learned.error());
     judge(
-        *recogniser, dataset, false, [&](std::size_t i) { return fold[i] == f; }, made);
+        *recogniser, dataset, false, [&](std::size_t i) { return fold[i] == f; }, made,
+        other_light ? &random : nullptr);
     judge(
         *recogniser, strangers, true,
-        [&](std::size_t i) { return static_cast<int>(i) % folds == f; }, made);
+        [&](std::size_t i) { return static_cast<int>(i) % folds == f; }, made,
+        other_light ? &random : nullptr);
     told(made.size(), all);
   }
   return made;

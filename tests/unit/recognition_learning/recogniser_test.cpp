@@ -36,13 +36,28 @@ TEST(Recogniser, EveryMethodTellsPaintedThingsApartInFolds) {
   options.coarse_colours = 8;
   for (const Method method :
        {Method::learned, Method::nearest_view, Method::false_alarm, Method::histogram}) {
-    const auto judged = cross_validate(method, options, dataset, fold, {}, ignore);
+    const auto judged = cross_validate(method, options, dataset, fold, {}, false, ignore);
     ASSERT_TRUE(judged) << judged.error().message();
     EXPECT_EQ(judged->size(), 45u);
     const Accepted all = accept(*judged, 0);
     EXPECT_EQ(all.known, 45u);
     EXPECT_EQ(all.wrong_accepted, 0u) << to_string(method);
   }
+}
+
+// Other light must change what is judged, and what was learned in varied light must bear it.
+TEST(Recogniser, OtherLightIsBorneByVariedCopies) {
+  const Dataset dataset = painted_dataset(5, 1);
+  const std::vector<int> fold = folds_by_background(dataset.classes, 5);
+  DescriptorOptions options;
+  options.colours = 16;
+  options.coarse_colours = 8;
+  options.varied = 3;
+  const auto plain = cross_validate(Method::learned, options, dataset, fold, {}, false, ignore);
+  const auto other = cross_validate(Method::learned, options, dataset, fold, {}, true, ignore);
+  ASSERT_TRUE(plain && other);
+  EXPECT_NE(plain->front().probability, other->front().probability);
+  EXPECT_LE(accept(*other, 0).wrong_accepted, 2u);
 }
 
 TEST(Recogniser, LeavingAClassOutMakesItsPicturesStrangers) {
