@@ -1,6 +1,7 @@
 #include "participant.hpp"
 
 #include <fastdds/rtps/transport/SocketTransportDescriptor.h>
+#include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
 
 #include <algorithm>
 #include <fastdds/dds/domain/DomainParticipant.hpp>
@@ -10,6 +11,8 @@
 #include <fastdds/dds/topic/Topic.hpp>
 #include <map>
 #include <mutex>
+
+#include "packet.hpp"
 
 namespace prehend::dds {
 
@@ -113,6 +116,9 @@ Expected<Participant> Participant::create(const ParticipantOptions& options) {
       if (auto* socket =
               dynamic_cast<eprosima::fastdds::rtps::SocketTransportDescriptor*>(transport.get()))
         socket->receiveBufferSize = 1 << 24;
+  for (auto& transport : qos->transport().user_transports)
+    if (dynamic_cast<eprosima::fastdds::rtps::UDPv4TransportDescriptor*>(transport.get()))
+      transport = guarded(transport);
   auto* factory = fdds::DomainParticipantFactory::get_instance();
   state->participant =
       factory->create_participant(options.domain, *qos, options.listener, fdds::StatusMask::none());

@@ -18,6 +18,7 @@
 #include <prehend/base/log.hpp>
 #include <prehend/base/paths.hpp>
 #include <prehend/clock/peers.hpp>
+#include <prehend/dds/packet.hpp>
 #include <thread>
 
 #include "membership.hpp"
@@ -102,6 +103,7 @@ struct Shell::State {
   std::atomic<int> exit_code = 0;
 
   v1::ServiceStatus status_message;
+  std::uint64_t unsound = 0;  // messages that were told of
   std::vector<std::unique_ptr<fdds::DataReaderListener>> listeners;
   // Goes before all that its threads may still touch.
   std::optional<dds::Participant> participant;
@@ -363,6 +365,9 @@ void Shell::stop(int exit_code) {
 int Shell::run() {
   State& state = *state_;
   const auto publish_status = [&](Time now) {
+    const std::uint64_t unsound = dds::unsound_messages();
+    if (unsound > state.unsound)
+      state.status.drop("malformed packet", unsound - std::exchange(state.unsound, unsound));
     state.status.fill(state.status_message, now);
     state.status_message.uptime(to_seconds(now - state.started));
     state.status_message.resident(resident_memory());
