@@ -58,6 +58,8 @@ const std::vector<ConfigKey>& config_keys() {
       {"recognition.path", Text(""), "device file, video file or stream, or folder of pictures"},
       {"recognition.rate", 10.0, "Hz, at which pictures are taken"},
       {"recognition.model", Text("share:trained/objects.model"), "trained object models"},
+      {"recognition.preview", Text(""),
+       "jpeg that always shows the last picture and what is in it"},
       {"recognition.accept", 0.7, "least probability of a published detection"},
 
       {"mapping.hand", Text("barrett"), "kind of robot hand"},

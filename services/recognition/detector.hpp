@@ -18,6 +18,7 @@ struct Box {
 
 /// An object seen in one picture.
 struct Sighting {
+  int class_index = -1;  // in the models
   std::string name;
   double probability = 0;  // that the name is right
   Box box;
@@ -25,15 +26,21 @@ struct Sighting {
   /// With a calibrated camera and a known shape: where it stands.
   std::optional<Standing> at;
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  // of x, y (m), yaw (rad)
+  double agreement = 0;                                  // of the outline with the picture, 0..1
+  /// Width and height measured in the picture, as shares of the catalogue's.
+  Eigen::Vector2d measured = {1, 1};
+  double contrast = 0;  // share of the outline along which the picture's colours change
+  Silhouette region;    // pixels it covers there
+  bool fresh = true;    // measured in this picture; false: nothing moved since it was
 };
 
 struct DetectorOptions {
   ScanOptions scan;
-  double accept = 0.5;   // least probability of what is taken for true, and reported
-  double doubtful = 1;   // least probability of what is reported although it is not accepted
-  int most_objects = 6;  // in a picture
-  int hypotheses = 4;    // classes tried at each place
-  int most_tries = 5;    // places in a pass that turn out to be nothing before it ends
+  double accept = 0.5;    // least probability of what is taken for true, and reported
+  double doubtful = 1;    // least probability of what is reported although it is not accepted
+  int most_objects = 12;  // in a picture
+  int hypotheses = 4;     // classes tried at each place
+  int most_tries = 5;     // places in a pass that turn out to be nothing before it ends
   /// The table top where objects are looked for: low x, high x, low y, high y in W, m.
   std::array<double, 4> table = {-0.65, 0.65, -0.5, 0.65};
 };
@@ -47,6 +54,20 @@ class Detector {
   /// On the lab's table, in the picture of its calibrated camera: name, place and turn of every
   /// object. Fails when the picture has not the camera's size.
   Expected<std::vector<Sighting>> on_table(const Picture& picture, const CameraModel& camera) const;
+
+  /// The parts of on_table, for whoever looks at picture after picture.
+  Frame prepare(const Picture& picture) const {
+    return recognition::prepare(picture, models_.palette);
+  }
+  /// Adds what stands where no object is known yet to `found`, whose places are taken out of the
+  /// frame. Examined are the cells of the scan that are 1 in `open`; they become 0, or stay 1 when
+  /// `most` places have been examined before their turn came. What is doubtful goes to `doubtful`
+  /// when there is one. Returns how many places were examined.
+  int search(Frame& frame, const CameraModel& camera, Plane& open, int most,
+             std::vector<Sighting>& found, std::vector<Sighting>* doubtful = nullptr) const;
+  /// The same object near where it was; none when it is not surely there.
+  std::optional<Sighting> follow(const Frame& frame, const CameraModel& camera,
+                                 const Sighting& before) const;
 
   /// In any picture, without knowledge of the camera: names and boxes. Objects that fill the
   /// picture are found, too.

@@ -1,5 +1,7 @@
 #include "service.hpp"
 
+#include <fmt/format.h>
+
 #include <condition_variable>
 #include <mutex>
 #include <optional>
@@ -13,7 +15,7 @@
 #include <thread>
 
 #include "detector.hpp"
-#include "tracker.hpp"
+#include "watcher.hpp"
 
 namespace prehend::recognition {
 namespace {
@@ -58,7 +60,7 @@ class CameraThread {
       // A tenth of a period early is in time: a camera of the same rate must not lose every other.
       if (camera_->paces_itself() && now < due - period_ / 10) continue;
       due = std::max<Clock::time_point>(due + period_, now - period_);
-      hand_over(std::move(*picture), stamp);
+      hand_over(std::move(*picture), stamp - camera_->age());
     }
   }
 
@@ -107,14 +109,17 @@ class CameraThread {
   std::jthread thread_;  // last: it uses all of the above
 };
 
-/// The topics' side of Detector and Tracker. Lives as long as the shell runs.
+/// The topics' side of Watcher. Lives as long as the shell runs.
 class Service {
  public:
-  Service(service::Shell& shell, Detector detector, const CameraModel& camera, bool publishes)
+  /// `preview`: a jpeg that shows the last picture with what was recognised; empty: none.
+  Service(service::Shell& shell, Detector detector, const CameraModel& camera, bool publishes,
+          std::filesystem::path preview)
       : shell_(shell),
-        detector_(std::move(detector)),
+        watcher_(std::move(detector)),
         camera_(camera),
         name_(shell.config().text("camera.name")),
+        preview_(std::move(preview)),
         output_(shell.publish(dds::object_detection)) {
     if (publishes) images_ = shell.publish(dds::camera_image);
     shell.on_tick(std::chrono::milliseconds(50), [this](Time now) { dispose_gone(now); });
@@ -150,20 +155,27 @@ class Service {
                      "camera", "the sides are not in the ratio of camera.width and camera.height"});
     CameraModel camera = camera_.scaled(factor);
     camera.height = small.height;
-    const auto sightings = detector_.on_table(small, camera);
-    if (!sightings) return refuse("picture that cannot be used", sightings.error());
+    const Time stamp = from_ns(image.stamp_ns());
+    const auto tracks = watcher_.look(stamp, small, camera);
+    if (!tracks) return refuse("picture that cannot be used", tracks.error());
+    if (const int times = watcher_.movement().relearned(); times > relearned_) {
+      shell_.status().count("background learned anew",
+                            static_cast<std::uint64_t>(times - relearned_));
+      relearned_ = times;
+    }
     if (!said_.empty()) shell_.status().running();
     said_.clear();
-    const Time stamp = from_ns(image.stamp_ns());
-    for (const Track& track : tracker_.update(stamp, *sightings))
-      publish(track, stamp, image.sequence_number());
+    const double larger = static_cast<double>(picture->width) / small.width;
+    for (const Track& track : *tracks) publish(track, larger, stamp, image.sequence_number());
+    if (!preview_.empty()) show(*tracks, small);
     shell_.status().count("pictures");
     shell_.status().latency(
         "picture", std::chrono::duration_cast<Duration>(std::chrono::steady_clock::now() - begin));
   }
 
  private:
-  void publish(const Track& track, Time stamp, std::uint64_t number) {
+  /// `larger`: the published picture is than the one that was looked at.
+  void publish(const Track& track, double larger, Time stamp, std::uint64_t number) {
     v1::ObjectDetection message;
     message.track(track.id);
     message.sequence_number(number);
@@ -184,16 +196,33 @@ class Service {
       message.covariance()[static_cast<std::size_t>(i)] = covariance(i / 4, i % 4);
     message.probability(track.seen.probability);
     message.moving(track.moving);
-    message.box().x(track.seen.box.x);
-    message.box().y(track.seen.box.y);
-    message.box().width(track.seen.box.width);
-    message.box().height(track.seen.box.height);
+    message.box().x(larger * track.seen.box.x);
+    message.box().y(larger * track.seen.box.y);
+    message.box().width(larger * track.seen.box.width);
+    message.box().height(larger * track.seen.box.height);
     output_.publish(message);
     shell_.status().count("detections");
   }
 
+  /// Beside it first: a viewer never sees half a file.
+  void show(const std::vector<Track>& tracks, Picture picture) {
+    for (const Track& track : tracks) {
+      const Box& box = track.seen.box;
+      draw_frame(picture, box.x, box.y, box.width, box.height,
+                 fmt::format("{} {:.0f} %{}", track.seen.name, 100 * track.seen.probability,
+                             track.moving ? ", moving" : ""));
+    }
+    const std::filesystem::path beside = preview_.string() + ".new";
+    std::error_code error;
+    if (const auto saved = save_jpeg(beside, picture); saved)
+      std::filesystem::rename(beside, preview_, error);
+    else
+      error = std::make_error_code(std::errc::io_error);
+    if (error) shell_.status().drop("preview that could not be written");
+  }
+
   void dispose_gone(Time now) {
-    for (const std::uint32_t id : tracker_.expire(now)) {
+    for (const std::uint32_t id : watcher_.expire(now)) {
       v1::ObjectDetection key;
       key.track(id);
       output_.dispose(key);
@@ -208,13 +237,14 @@ class Service {
   }
 
   service::Shell& shell_;
-  Detector detector_;
+  Watcher watcher_;
   CameraModel camera_;
   std::string name_;
+  std::filesystem::path preview_;
   service::Shell::Output<v1::ObjectDetection> output_;
   std::optional<service::Shell::Output<v1::CameraImage>> images_;
-  Tracker tracker_;
   std::uint64_t number_ = 0;
+  int relearned_ = 0;
   std::string said_;
 };
 
@@ -246,9 +276,10 @@ int run_service(service::Shell& shell) {
   options.accept = config.number("recognition.accept");
   Detector detector(std::move(*models), *catalogue, options);
 
+  const std::filesystem::path preview = config.path("recognition.preview");
   const std::string& source = config.text("recognition.source");
   if (source == "topic") {
-    Service service(shell, std::move(detector), *camera, false);
+    Service service(shell, std::move(detector), *camera, false, preview);
     const std::string name = config.text("camera.name");
     shell.subscribe(dds::camera_image,
                     std::function<void(const v1::CameraImage&, const dds::SampleInfo&)>(
@@ -270,7 +301,7 @@ int run_service(service::Shell& shell) {
     wanted.path = config.path("recognition.path").string();
   auto opened = open_camera(wanted, *catalogue, scene ? &*scene : nullptr);
   if (!opened) return broken(opened.error());
-  Service service(shell, std::move(detector), *camera, true);
+  Service service(shell, std::move(detector), *camera, true, preview);
   const CameraThread thread(
       std::move(*opened), rate, shell,
       [&](const Picture& picture, Time stamp) { service.on_picture(picture, stamp); });

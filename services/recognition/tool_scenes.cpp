@@ -80,7 +80,7 @@ Expected<void> draw_roc(const std::vector<TrialResult>& results, const std::stri
   for (const TrialResult& r : results) {
     with_target += !r.target.empty();
     if (r.probability > 0) thresholds.insert(r.probability);
-    for (const auto& [name, p] : r.false_alarms) thresholds.insert(p);
+    for (const Sighting& alarm : r.false_alarms) thresholds.insert(alarm.probability);
   }
   std::string points;
   for (const double t : thresholds) {
@@ -88,7 +88,7 @@ Expected<void> draw_roc(const std::vector<TrialResult>& results, const std::stri
     for (const TrialResult& r : results) {
       detected += r.probability >= t;
       alarms += std::any_of(r.false_alarms.begin(), r.false_alarms.end(),
-                            [&](const auto& alarm) { return alarm.second >= t; });
+                            [&](const auto& alarm) { return alarm.probability >= t; });
     }
     points += fmt::format("{} {} {}\n", 100.0 * alarms / static_cast<double>(results.size()),
                           100.0 * detected / std::max(1, with_target), t);
@@ -125,7 +125,7 @@ int run(const Arguments& arguments) {
   if (!arguments.list.empty()) {
     list.open(arguments.list);
     list << "kind,seed,target,probability,error_mm,turn_deg,distance_m,normalised,normalised_turn,"
-            "false_alarms\n";
+            "agreement,contrast,width,height,hidden,false_alarms\n";
   }
   const auto look = [&](Trial kind, const CameraModel& camera, Progress& progress) {
     const TrialScenes scenes(*catalogue, camera);
@@ -139,10 +139,16 @@ int run(const Arguments& arguments) {
         r.trial = kind;
         r.seed = seed;
         if (list.is_open()) {
-          list << fmt::format("{},{},{},{:.3f},{:.1f},{:.1f},{:.2f},{:.2f},{:.2f}", to_string(kind),
-                              seed, r.target, r.probability, 1000 * r.error, degrees(r.turn_error),
-                              r.distance, r.normalised, r.normalised_turn);
-          for (const auto& [name, p] : r.false_alarms) list << fmt::format(",{} {:.3f}", name, p);
+          list << fmt::format(
+              "{},{},{},{:.3f},{:.1f},{:.1f},{:.2f},{:.2f},{:.2f},{:.2f},{:.2f},{:.2f},{:.2f},{:."
+              "2f}",
+              to_string(kind), seed, r.target, r.probability, 1000 * r.error, degrees(r.turn_error),
+              r.distance, r.normalised, r.normalised_turn, r.agreement, r.contrast, r.measured.x(),
+              r.measured.y(), r.hidden);
+          for (const Sighting& alarm : r.false_alarms)
+            list << fmt::format(",{} {:.3f} {:.2f} {:.2f} {:.2f} {:.2f}", alarm.name,
+                                alarm.probability, alarm.agreement, alarm.contrast,
+                                alarm.measured.x(), alarm.measured.y());
           list << std::endl;
         }
       }

@@ -40,6 +40,12 @@ std::vector<Track> Tracker::update(Time stamp, const std::vector<Sighting>& sigh
     }
     used[nearest] = 1;
     Track& track = tracks_[nearest];
+    track.last_seen = std::max(track.last_seen, stamp);
+    if (!sighting.fresh) {  // nothing moved there: no news
+      track.moving = false;
+      shown.push_back(track);
+      continue;
+    }
     const Standing before = *track.seen.at;
     const double turn = turn_between(sighting.shape, at.yaw, before.yaw);
     const double step = std::hypot(at.x - before.x, at.y - before.y);
@@ -52,7 +58,6 @@ std::vector<Track> Tracker::update(Time stamp, const std::vector<Sighting>& sigh
     // The turn keeps its branch: a box that looks the same from behind does not flip.
     track.seen.at = Standing{before.x + share * (at.x - before.x),
                              before.y + share * (at.y - before.y), before.yaw + share * turn};
-    track.last_seen = std::max(track.last_seen, stamp);
     shown.push_back(track);
   }
   return shown;

@@ -2,6 +2,7 @@
 
 #include <memory>
 #include <prehend/base/error.hpp>
+#include <prehend/base/time.hpp>
 #include <prehend/model/scene.hpp>
 #include <prehend/recognition_geometry/camera_model.hpp>
 #include <prehend/recognition_picture/picture.hpp>
@@ -20,13 +21,15 @@ class Camera {
   virtual bool finished() const { return false; }
   /// The last picture arrived at a pace of its own, so the caller need not wait.
   virtual bool paces_itself() const { return false; }
+  /// How long before `next` returned the last picture was exposed, as far as the camera tells.
+  virtual Duration age() const { return {}; }
 };
 
 struct CameraOptions {
   std::string source;  // device, video, folder or synthetic
   std::string path;    // device file or number, video file or address, folder
   CameraModel model;   // wanted size; for synthetic: the calibration
-  double rate = 10;    // Hz, asked of a device
+  double rate = 10;    // Hz, asked of a device; of a file's pictures those between are left out
 };
 
 /// The scene and the catalogue are used by `synthetic` only.

@@ -1,9 +1,10 @@
 // V4L2 devices, video files and streams, all through OpenCV.
 #include <algorithm>
 #include <cctype>
-#include <opencv2/imgproc.hpp>
+#include <chrono>
 #include <opencv2/videoio.hpp>
 
+#include "frame.hpp"
 #include "sources.hpp"
 
 namespace prehend::recognition {
@@ -37,7 +38,9 @@ class CaptureCamera final : public Camera {
           capture_.set(cv::CAP_PROP_BUFFERSIZE, 1);
         }
       } else {
-        capture_.open(options_.path, cv::CAP_FFMPEG);
+        // A stream that stalls is given up after three seconds, and opened anew.
+        capture_.open(options_.path, cv::CAP_FFMPEG,
+                      {cv::CAP_PROP_OPEN_TIMEOUT_MSEC, 3000, cv::CAP_PROP_READ_TIMEOUT_MSEC, 3000});
       }
     } catch (const cv::Exception&) {
       capture_.release();
@@ -54,7 +57,7 @@ class CaptureCamera final : public Camera {
     cv::Mat image;
     bool good = false;
     try {
-      good = capture_.read(image) && !image.empty();
+      good = leave_out() && capture_.read(image) && !image.empty();
     } catch (const cv::Exception&) {
     }
     if (!good) {
@@ -64,21 +67,37 @@ class CaptureCamera final : public Camera {
                   finished_ ? "" : "check the cable; it is tried again");
     }
     seen_ = true;
-    if (image.channels() == 1) cv::cvtColor(image, image, cv::COLOR_GRAY2BGR);
-    if (image.type() != CV_8UC3) return fail("gives pictures of an unknown format", where());
-    Picture picture(image.cols, image.rows);
-    cv::Mat rgb(image.rows, image.cols, CV_8UC3, picture.rgb.data());
-    cv::cvtColor(image, rgb, cv::COLOR_BGR2RGB);
-    return picture;
+    age_ = device_ ? since(capture_.get(cv::CAP_PROP_POS_MSEC)) : Duration{};
+    return to_picture(image, where());
   }
   bool finished() const override { return finished_; }
   bool paces_itself() const override { return !file_; }
+  Duration age() const override { return age_; }
 
  private:
+  /// Of a file that has more pictures a second than are wanted, those between.
+  bool leave_out() {
+    const double rate = file_ ? capture_.get(cv::CAP_PROP_FPS) : 0;
+    if (!(rate > options_.rate) || rate > 1000) return true;
+    for (owed_ += rate / options_.rate; owed_ >= 2; owed_ -= 1)
+      if (!capture_.grab()) return false;
+    owed_ -= 1;
+    return true;
+  }
+  /// V4L2 stamps a buffer on the monotonic clock, when its exposure has ended.
+  static Duration since(double milliseconds) {
+    const auto now = std::chrono::steady_clock::now().time_since_epoch();
+    const auto age = std::chrono::duration_cast<Duration>(now) - seconds(milliseconds / 1000);
+    const bool sound = age > Duration::zero() && age < std::chrono::seconds(2);
+    return sound ? age : Duration{};
+  }
+
   std::string where() const { return options_.path.empty() ? "/dev/video0" : options_.path; }
 
   CameraOptions options_;
   bool device_, file_, seen_ = false, finished_ = false;
+  double owed_ = 0;  // pictures of the file that are due
+  Duration age_{};
   cv::VideoCapture capture_;
 };
 

@@ -38,6 +38,12 @@ int Silhouette::area() const {
   return sum;
 }
 
+void Silhouette::mark(Plane& plane, std::uint8_t value) const {
+  for (std::size_t i = 0; i < rows.size(); ++i)
+    for (int x = rows[i].left; x < rows[i].right; ++x)
+      plane.at(x, top + static_cast<int>(i)) = value;
+}
+
 Pose standing_pose(const model::Shape& shape, const Standing& at) {
   return make_pose({at.x, at.y, model::half_extents(shape).z()},
                    Eigen::AngleAxisd(at.yaw, Eigen::Vector3d::UnitZ()).toRotationMatrix());

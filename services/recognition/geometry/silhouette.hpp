@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <prehend/model/shape.hpp>
+#include <prehend/recognition_picture/picture.hpp>
 #include <vector>
 
 #include "camera_model.hpp"
@@ -18,6 +19,8 @@ struct Silhouette {
   std::vector<Span> rows;
 
   int area() const;  // px
+  /// Sets its pixels in a plane of the picture's size.
+  void mark(Plane& plane, std::uint8_t value) const;
 };
 
 /// Where an object stands on the table: centre of its base and turn about the vertical.

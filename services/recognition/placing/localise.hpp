@@ -11,10 +11,16 @@ struct Fit {
   Standing at;
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  // of x, y (m), yaw (rad)
   Silhouette region;
+  Plane visible;      // 1: pixels of the region that show this object and nothing before it
+  double hidden = 0;  // share of the region that something unknown stands before
   /// How well the picture agrees with that outline, 0..1: overlap (intersection over union) of the
   /// region with what looks like the object nearby, by the learned colours and by the picture's
   /// own.
   double agreement = 0;
+  /// Width and height measured in the picture, through the table's plane, as shares of those that
+  /// the shape has.
+  Eigen::Vector2d measured = {1, 1};
+  double contrast = 0.5;  // share of the outline along which the picture's colours change
 };
 
 /// Finds where a shape that stands on the table near (x, y) covers the picture best: the sum over

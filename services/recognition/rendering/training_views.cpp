@@ -24,8 +24,8 @@ std::vector<TrainingView> training_views(const Renderer& renderer,
     scene.light.to_light_W = {std::cos(azimuth) * std::cos(height),
                               std::sin(azimuth) * std::cos(height), std::sin(height)};
     scene.light.ambient = random.uniform(0.3, 0.7);
-    scene.light.gain = random.uniform(0.7, 1.2);
-    for (double& channel : scene.light.colour) channel = random.uniform(0.92, 1.08);
+    scene.light.gain = random.uniform(0.55, 1.4);
+    for (double& channel : scene.light.colour) channel = random.uniform(0.85, 1.15);
     for (double& channel : scene.table_colour) channel = random.uniform(0.05, 0.95);
     scene.texture_seed = random.bits();
 

@@ -212,19 +212,21 @@ Votes scan(const ObjectModels& models, const Plane& colours, const ScanOptions& 
   return votes;
 }
 
-Region grow_strongest(const Votes& votes) {
+Region grow_strongest(const Votes& votes, const Plane& open) {
   Region region;
   Eigen::Index row = 0, column = 0;
-  for (std::size_t c = 0; c < votes.classes.size(); ++c) {
-    if (votes.classes[c].size() == 0) continue;
-    Eigen::Index r, k;
-    const float strength = votes.classes[c].maxCoeff(&r, &k);
-    if (strength <= region.strength) continue;
-    region.strength = strength;
-    region.class_index = static_cast<int>(c);
-    row = r;
-    column = k;
-  }
+  for (std::size_t c = 0; c < votes.classes.size(); ++c)
+    for (int k = 0; k < votes.columns; ++k)
+      for (int r = 0; r < votes.rows; ++r) {
+        if (!open.values.empty() && (k >= open.width || r >= open.height || !open.at(k, r)))
+          continue;
+        const float strength = votes.classes[c](r, k);
+        if (strength <= region.strength) continue;
+        region.strength = strength;
+        region.class_index = static_cast<int>(c);
+        row = r;
+        column = k;
+      }
   if (region.class_index < 0) return region;
   const Eigen::MatrixXf& matrix = votes.classes[static_cast<std::size_t>(region.class_index)];
   Eigen::Matrix<bool, Eigen::Dynamic, Eigen::Dynamic> seen(votes.rows, votes.columns);

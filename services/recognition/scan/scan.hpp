@@ -50,8 +50,9 @@ struct Region {
   std::vector<Eigen::Vector2i> cells;            // column, row
 };
 
-/// Grows the region of the strongest cell of all classes. None left: class_index is -1.
-Region grow_strongest(const Votes& votes);
+/// Grows the region of the strongest cell of all classes; only cells that are 1 in `open` (empty:
+/// all) can be the strongest, but the region grows beyond them. None left: class_index is -1.
+Region grow_strongest(const Votes& votes, const Plane& open = {});
 /// Removes the votes of all classes in a rectangle of the picture, px.
 void erase(Votes& votes, int left, int top, int right, int bottom);
 

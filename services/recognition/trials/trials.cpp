@@ -42,7 +42,7 @@ TrialResult try_scene(const Detector& detector, const CameraModel& camera,
       }
     }
     if (nearest > same_place) {
-      made.false_alarms.push_back({sighting.name, sighting.probability});
+      made.false_alarms.push_back(sighting);
       continue;
     }
     if (object != &given.scene.objects.front() || given.target.empty()) continue;
@@ -51,6 +51,10 @@ TrialResult try_scene(const Detector& detector, const CameraModel& camera,
     const Eigen::Vector2d off(sighting.at->x - p.x(), sighting.at->y - p.y());
     made.probability = sighting.probability;
     made.error = off.norm();
+    made.agreement = sighting.agreement;
+    made.contrast = sighting.contrast;
+    made.measured = sighting.measured;
+    made.hidden = given.hidden;
     made.normalised = off.dot(sighting.covariance.topLeftCorner<2, 2>().inverse() * off);
     made.distance = (camera.X_WC.translation() - p).norm();
     made.box = sighting.shape.kind == model::ShapeKind::box;
@@ -74,7 +78,7 @@ TrialSummary summarise(Trial trial, const std::vector<TrialResult>& results, dou
     ++made.scenes;
     made.frames_with_false_alarm +=
         std::any_of(result.false_alarms.begin(), result.false_alarms.end(),
-                    [&](const auto& alarm) { return alarm.second >= accept; });
+                    [&](const auto& alarm) { return alarm.probability >= accept; });
     if (result.target.empty() || result.probability < accept) continue;
     ++made.detected;
     errors.push_back(result.error);

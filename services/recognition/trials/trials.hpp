@@ -19,8 +19,10 @@ struct TrialResult {
   double normalised = 0;       // squared error of x, y over its covariance: chi-square of 2
   double normalised_turn = 0;  // the same of a box' turn: chi-square of 1
   bool box = false;
-  /// Names and probabilities of what is said to stand where nothing of that name stands.
-  std::vector<std::pair<std::string, double>> false_alarms;
+  double agreement = 0, contrast = 0, hidden = 0;
+  Eigen::Vector2d measured = {1, 1};
+  /// What is said to stand where nothing of that name stands.
+  std::vector<Sighting> false_alarms;
 };
 
 /// A sighting belongs to an object when it is at most this far from it, m.

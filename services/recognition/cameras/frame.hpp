@@ -1,0 +1,14 @@
+#pragma once
+
+#include <opencv2/core.hpp>
+#include <prehend/base/error.hpp>
+#include <prehend/recognition_picture/picture.hpp>
+#include <string>
+
+namespace prehend::recognition {
+
+/// A frame as OpenCV hands it over, whatever its format: grey, BGR or BGRA, 8 or 16 bits. Fails
+/// when it has another one, less than 8 px or more than 40 million.
+Expected<Picture> to_picture(const cv::Mat& frame, const std::string& where);
+
+}  // namespace prehend::recognition
