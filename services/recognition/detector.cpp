@@ -114,7 +114,7 @@ std::optional<Detector::Hypothesis> Detector::examine(const Frame& frame, const 
   std::sort(classes.rbegin(), classes.rend());
   if (static_cast<int>(classes.size()) > options_.hypotheses)
     classes.resize(static_cast<std::size_t>(options_.hypotheses));
-  std::erase_if(classes, [&](const auto& c) { return c.first < 0.3f * classes.front().first; });
+  std::erase_if(classes, [&](const auto& c) { return c.first < 0.2f * classes.front().first; });
 
   std::optional<Hypothesis> best;
   for (const auto& [votes_of_class, c] : classes) {

@@ -75,6 +75,8 @@ Json to_json(const Sighting& sighting) {
   if (sighting.at) {
     made["position_m"] = {sighting.at->x, sighting.at->y, model::half_extents(sighting.shape).z()};
     made["yaw_rad"] = sighting.at->yaw;
+    made["outline"] = {{"agreement", sighting.agreement}, {"contrast", sighting.contrast}};
+    made["size_seen"] = {sighting.measured.x(), sighting.measured.y()};  // shares of size_m
   }
   return made;
 }

@@ -224,26 +224,26 @@ std::vector<std::vector<std::uint8_t>> film(bool moving) {
 
 /// A whole live step but for the two writes to DDS: jpeg in and out, movement, search, pose, track.
 void live_step(benchmark::State& state, bool moving) {
-  const auto pictures = film(moving);
+  const auto reel = film(moving);
   const CameraModel camera = lab_camera();
   DetectorOptions options;
   options.accept = 0.7;
   Watcher watcher(Detector(models(), catalogue(), options));
   std::int64_t k = 0;
   std::size_t seen = 0;
-  const auto step = [&] {
-    const auto picture = decode_picture(pictures[static_cast<std::size_t>(k % 24)], "film");
+  const auto one = [&] {
+    const auto picture = decode_picture(reel[static_cast<std::size_t>(k % 24)], "film");
     const auto tracks =
         watcher.look(Time(std::chrono::milliseconds(33 * k)), picture.value(), camera);
     benchmark::DoNotOptimize(encode_jpeg(picture.value()));
     seen = tracks->size();
     ++k;
   };
-  for (int i = 0; i < 12; ++i) step();  // until all are known
+  for (int i = 0; i < 12; ++i) one();  // until all are known
   double total = 0, worst = 0;
   for (auto _ : state) {
     const std::clock_t begin = std::clock();
-    step();
+    one();
     const double ms = 1e3 * static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
     worst = std::max(worst, ms);
     total += ms;

@@ -1,14 +1,15 @@
 #include "localise.hpp"
 
-#include <Eigen/Eigenvalues>
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
+#include "area.hpp"
+#include "certainty.hpp"
 #include "colour_bins.hpp"
 #include "contrast.hpp"
 #include "evidence.hpp"
+#include "hidden.hpp"
 
 namespace prehend::recognition {
 namespace {
@@ -16,6 +17,8 @@ namespace {
 constexpr double pi = std::numbers::pi;
 /// An outline that agrees less with the first evidence is not looked at any further.
 constexpr double least_promise = 0.25;
+/// An outline with less contrast may be in the wrong place.
+constexpr double clear_outline = 0.9;
 
 struct Candidate {
   Standing at;
@@ -36,8 +39,8 @@ class Fitter {
 
   std::optional<Fit> run(double x, double y, double reach) {
     if (!choose_area(x, y, reach)) return std::nullopt;
-    Evidence evidence(left_, top_, right_ - left_, bottom_ - top_);
-    initial_.resize(static_cast<std::size_t>((right_ - left_) * (bottom_ - top_)));
+    Evidence evidence(area_.left, area_.top, area_.width(), area_.height());
+    initial_.resize(static_cast<std::size_t>(area_.width() * area_.height()));
     hidden_.assign(initial_.size(), 0);
     const Eigen::VectorXf unlike = log_unlike_surroundings();
     const Eigen::VectorXf like = log_like_object();
@@ -74,9 +77,12 @@ class Fitter {
       sharp = own;
     };
     for (Candidate& candidate : best) compete(candidate);
+    // On a table of the object's colour the regions mislead; its edges may still show.
+    if (contrast(winner.at) < clear_outline)
+      for (Candidate& candidate : clearest(winner.at)) compete(candidate);
     // Something before it? Then what is seen of it counts.
     Fit fit;
-    if (find_hidden(winner.at)) {
+    if (look_for_hidden(winner.at)) {
       most = -1;
       Candidate again = winner;
       compete(again);
@@ -88,25 +94,23 @@ class Fitter {
     fit.at.yaw = wrap(fit.at.yaw);
     fit.region = *region;
     fit.visible = Plane(frame_.taken.width, frame_.taken.height);
-    visit(*region, [&](int px, int py) { fit.visible.at(px, py) = seen(px, py); });
-    fit.measured = measure(sharp, winner.at);
+    area_.visit(*region, [&](int px, int py) { fit.visible.at(px, py) = seen(px, py); });
+    fit.measured = measured_size(sharp, camera_, shape_, winner.at);
     fit.contrast = contrast(winner.at);
     fit.agreement = (most - fit.contrast) / 2;
-    fit.covariance = covariance(sharp, winner);
-    // An outline that agrees badly may lie elsewhere altogether: two centimetres at an agreement of
+    fit.covariance = covariance(sharp, camera_, shape_, winner.at);
+    // An outline that agrees badly may lie elsewhere altogether: a centimetre at an agreement of
     // 0.4.
-    const double elsewhere = 0.05 * std::max(0.0, 0.8 - fit.agreement);
+    const double elsewhere = 0.025 * std::max(0.0, 0.8 - fit.agreement);
     fit.covariance.diagonal().head<2>().array() += elsewhere * elsewhere;
-    // What is hidden says nothing of where its outline is: 4 mm and 5 degrees at a third.
-    const Eigen::Vector3d unseen = fit.hidden * Eigen::Vector3d(0.012, 0.012, 0.25);
+    // What is hidden says nothing of where its outline is: 1 mm and 1 degree at a third.
+    const Eigen::Vector3d unseen = fit.hidden * Eigen::Vector3d(0.003, 0.003, 0.05);
     fit.covariance.diagonal() += unseen.cwiseAbs2();
     return fit;
   }
 
  private:
-  std::size_t local(int px, int py) const {
-    return static_cast<std::size_t>((py - top_) * (right_ - left_) + px - left_);
-  }
+  std::size_t local(int px, int py) const { return area_.index(px, py); }
 
   /// Moves a hypothesis until it stands still, re-estimating what is object and what is not; two
   /// rounds are enough where object and table part well. Returns the last estimate.
@@ -125,150 +129,53 @@ class Fitter {
     return own;
   }
 
-  template <class Use>
-  void visit(const Silhouette& region, Use use) const {
-    for (std::size_t i = 0; i < region.rows.size(); ++i) {
-      const int py = region.top + static_cast<int>(i);
-      if (py < top_ || py >= bottom_) continue;
-      const int end = std::min(right_, region.rows[i].right);
-      for (int px = std::max(left_, region.rows[i].left); px < end; ++px) use(px, py);
-    }
-  }
   /// Shows neither another known object nor what stands before this one.
   bool seen(int px, int py) const {
     return !frame_.taken.values[frame_.colours.index(px, py)] && !hidden_[local(px, py)];
   }
 
-  /// Finds what stands before the object: patches inside the outline, in colours that it does not
-  /// have, which go on beyond the outline. True when they cover enough to matter and not so much
-  /// that it is another object altogether.
-  bool find_hidden(const Standing& at) {
+  /// True when something before the object was found.
+  bool look_for_hidden(const Standing& at) {
     const auto inside = silhouette(camera_, shape_, at);
     const auto around = silhouette(camera_, shape_, at, 0.05);
-    if (!inside || !around) return false;
-    constexpr int block = 4;  // px
-    // A patch is strange where its colours are a fifth as frequent on the object as its own are.
-    const float not_its = 0.2f * known_.squaredNorm();
-    const int across = (right_ - left_ + block - 1) / block;
-    const int down = (bottom_ - top_ + block - 1) / block;
-    Eigen::ArrayXXi all = Eigen::ArrayXXi::Zero(down, across);
-    Eigen::ArrayXXf frequency = Eigen::ArrayXXf::Zero(down, across);  // of its colours, summed
-    visit(*inside, [&](int px, int py) {
-      if (!seen(px, py)) return;
-      const int row = (py - top_) / block, column = (px - left_) / block;
-      ++all(row, column);
-      frequency(row, column) += known_[frame_.colours.at(px, py)];
-    });
-    Eigen::ArrayXXi label = Eigen::ArrayXXi::Zero(down, across);
-    const double area = all.sum();
-    int labels = 0;
-    for (int r = 0; r < down; ++r)
-      for (int c = 0; c < across; ++c) {
-        const auto foreign = [&](int y, int x) {
-          return y >= 0 && x >= 0 && y < down && x < across && !label(y, x) && all(y, x) > 0 &&
-                 frequency(y, x) < not_its * static_cast<float>(all(y, x));
-        };
-        if (!foreign(r, c)) continue;
-        std::vector<std::pair<int, int>> patch{{r, c}};
-        label(r, c) = ++labels;
-        for (std::size_t i = 0; i < patch.size(); ++i)
-          for (const auto& [dy, dx] :
-               {std::pair(0, 1), std::pair(1, 0), std::pair(0, -1), std::pair(-1, 0)}) {
-            const auto [y, x] = patch[i];
-            if (!foreign(y + dy, x + dx)) continue;
-            label(y + dy, x + dx) = labels;
-            patch.push_back({y + dy, x + dx});
-          }
-      }
-    for (int k = 1; k <= labels; ++k) {
-      const double share = (label == k).select(all, 0).sum() / area;
-      if (share > 0.04 && share < 0.6) hide(*inside, *around, label, k, block);
-    }
-    const double share = hidden_share(at);
-    if (share > 0.05 && share < 0.5) return true;
-    std::fill(hidden_.begin(), hidden_.end(), std::uint8_t{0});
-    return false;
-  }
-
-  /// Marks a patch and what is of its colours around it as hidden, if it goes on outside.
-  void hide(const Silhouette& inside, const Silhouette& around, const Eigen::ArrayXXi& label, int k,
-            int block) {
-    Eigen::VectorXf patch = Eigen::VectorXf::Zero(bin_count), object = patch;
-    visit(inside, [&](int px, int py) {
-      if (!seen(px, py)) return;
-      const int here = label((py - top_) / block, (px - left_) / block);
-      (here == k ? patch : object)[bin(px, py)] += here == k || here == 0 ? 1.f : 0.f;
-    });
-    smooth(patch);
-    smooth(object);
-    const auto of_patch = [&](int px, int py) {
-      const auto b = bin(px, py);
-      return patch[b] > 2 * frame_.bin_share[b] && patch[b] > 2 * object[b];
-    };
-    // Does it cross the outline? Of the pixels just outside, beside the patch, many are like it.
-    int beside = 0, alike = 0;
-    visit(around, [&](int px, int py) {
-      const int row = (py - top_) / block, column = (px - left_) / block;
-      if (frame_.taken.values[frame_.colours.index(px, py)]) return;
-      const std::size_t line = static_cast<std::size_t>(py - inside.top);
-      const bool within = py >= inside.top && line < inside.rows.size() &&
-                          px >= inside.rows[line].left && px < inside.rows[line].right;
-      if (within) return;
-      for (int r = std::max(0, row - 1); r <= std::min<int>(row + 1, int(label.rows()) - 1); ++r)
-        for (int c = std::max(0, column - 1); c <= std::min<int>(column + 1, int(label.cols()) - 1);
-             ++c)
-          if (label(r, c) == k) {
-            ++beside;
-            alike += of_patch(px, py);
-            return;
-          }
-    });
-    if (beside == 0 || alike < 0.4 * beside) return;
-    visit(around, [&](int px, int py) {
-      if (label((py - top_) / block, (px - left_) / block) == k || of_patch(px, py))
-        hidden_[local(px, py)] = 1;
-    });
-  }
-
-  /// The width and the height with which the outline holds most evidence, each by itself.
-  Eigen::Vector2d measure(const Evidence& evidence, const Standing& at) const {
-    const auto best = [&](bool height) {
-      double most = -1e18, ratio = 1;
-      for (int k = -8; k <= 8; ++k) {
-        const double factor = std::exp(0.05 * k);  // 0.67 to 1.5
-        model::Shape changed = shape_;
-        if (height || shape_.kind == model::ShapeKind::sphere) changed.size.z() *= factor;
-        if (!height || shape_.kind == model::ShapeKind::sphere) changed.size.head<2>() *= factor;
-        const auto region = silhouette(camera_, changed, at);
-        const double value = region ? evidence.sum(*region) : -1e18;
-        // Of equals the one nearest to what is known.
-        if (value > most + 1e-9 || (value > most - 1e-9 && factor <= 1)) {
-          most = value;
-          ratio = factor;
-        }
-      }
-      return ratio;
-    };
-    return {best(false), best(true)};
+    if (inside && around) hidden_ = find_hidden(frame_, area_, *inside, *around, known_);
+    return std::find(hidden_.begin(), hidden_.end(), 1) != hidden_.end();
   }
 
   double contrast(const Standing& at) const {
     const auto polygon = outline(camera_, shape_, at);
     if (!polygon) return 0;
-    return outline_contrast(frame_.picture, *polygon, [&](int px, int py) {
-      return px < left_ || py < top_ || px >= right_ || py >= bottom_ || seen(px, py);
-    });
+    return outline_contrast(frame_.picture, *polygon,
+                            [&](int px, int py) { return !area_.holds(px, py) || seen(px, py); });
+  }
+
+  /// The two places within 8 cm, well parted, at which the outline has most contrast.
+  std::vector<Candidate> clearest(const Standing& from) const {
+    std::vector<Candidate> tried;
+    const std::vector<double> turns =
+        yaw_period(shape_) > 0 ? std::vector<double>{-0.25, 0, 0.25} : std::vector<double>{0};
+    for (const double turn : turns)
+      for (int i = -8; i <= 8; ++i)
+        for (int j = -8; j <= 8; ++j) {
+          const Standing at{from.x + 0.01 * i, from.y + 0.01 * j, from.yaw + turn};
+          tried.push_back({at, contrast(at)});
+        }
+    std::sort(tried.begin(), tried.end(),
+              [](const Candidate& a, const Candidate& b) { return a.score > b.score; });
+    std::vector<Candidate> kept{tried.front()};
+    for (const Candidate& candidate : tried)
+      if (kept.size() < 2 &&
+          std::hypot(candidate.at.x - kept[0].at.x, candidate.at.y - kept[0].at.y) > 0.025)
+        kept.push_back(candidate);
+    return kept;
   }
 
   double hidden_share(const Standing& at) const {
     const auto region = silhouette(camera_, shape_, at);
     if (!region) return 0;
-    int all = 0, hidden = 0;
-    visit(*region, [&](int px, int py) {
-      ++all;
-      hidden += hidden_[local(px, py)];
-    });
-    return all > 0 ? static_cast<double>(hidden) / all : 0;
+    int hidden = 0;
+    area_.visit(*region, [&](int px, int py) { hidden += hidden_[local(px, py)]; });
+    return static_cast<double>(hidden) / std::max(1, region->area());
   }
 
   double wrap(double yaw) const {
@@ -279,19 +186,19 @@ class Fitter {
   /// Room for evidence around a hypothesis that only moves a little any more.
   Evidence nearby(const Standing& at) const {
     const auto around = silhouette(camera_, shape_, at, 0.06);
-    if (!around) return Evidence(left_, top_, right_ - left_, bottom_ - top_);
-    int low = right_, high = left_;
+    if (!around) return Evidence(area_.left, area_.top, area_.width(), area_.height());
+    int low = area_.right, high = area_.left;
     for (const Silhouette::Span& span : around->rows) {
       if (span.right <= span.left) continue;
       low = std::min(low, span.left);
       high = std::max(high, span.right);
     }
     // Below, the outline does not grow with the margin: some rows for moving nearer.
-    const int first = std::clamp(around->top, top_, bottom_);
+    const int first = std::clamp(around->top, area_.top, area_.bottom);
     const int last =
-        std::clamp(around->top + static_cast<int>(around->rows.size()) + 30, first, bottom_);
-    low = std::clamp(low, left_, right_);
-    high = std::clamp(high, low, right_);
+        std::clamp(around->top + static_cast<int>(around->rows.size()) + 30, first, area_.bottom);
+    low = std::clamp(low, area_.left, area_.right);
+    high = std::clamp(high, low, area_.right);
     return Evidence(low, first, high - low, last - first);
   }
 
@@ -313,11 +220,11 @@ class Fitter {
     const auto limit = [](double v, int size) {
       return static_cast<int>(std::clamp(v, 0.0, double(size)));
     };
-    left_ = limit(low_x, camera_.width);
-    right_ = limit(high_x + 1, camera_.width);
-    top_ = limit(low_y, camera_.height);
-    bottom_ = limit(high_y + 1, camera_.height);
-    return right_ - left_ > 4 && bottom_ - top_ > 4;
+    area_.left = limit(low_x, camera_.width);
+    area_.right = limit(high_x + 1, camera_.width);
+    area_.top = limit(low_y, camera_.height);
+    area_.bottom = limit(high_y + 1, camera_.height);
+    return area_.width() > 4 && area_.height() > 4;
   }
 
   /// What is rare in the picture is likely no table. Mild: shadows are rare, too.
@@ -423,9 +330,9 @@ class Fitter {
     const auto around = silhouette(camera_, shape_, at, 0.05);
     if (!inside || !near || !around) return;
     Eigen::VectorXf object = Eigen::VectorXf::Zero(bin_count), ring = object;
-    visit(*inside, [&](int px, int py) { object[bin(px, py)] += free(px, py); });
-    visit(*around, [&](int px, int py) { ring[bin(px, py)] += free(px, py); });
-    visit(*near, [&](int px, int py) { ring[bin(px, py)] -= free(px, py); });
+    area_.visit(*inside, [&](int px, int py) { object[bin(px, py)] += free(px, py); });
+    area_.visit(*around, [&](int px, int py) { ring[bin(px, py)] += free(px, py); });
+    area_.visit(*near, [&](int px, int py) { ring[bin(px, py)] -= free(px, py); });
     ring = ring.cwiseMax(0);
     add_shadows(ring);
     smooth(object);
@@ -452,7 +359,7 @@ class Fitter {
     if (!region || !around) return 0;
     const auto count = [&](const Silhouette& r, bool all) {
       int sum = 0;
-      visit(r, [&](int px, int py) { sum += seen(px, py) && (all || yes(px, py)); });
+      area_.visit(r, [&](int px, int py) { sum += seen(px, py) && (all || yes(px, py)); });
       return sum;
     };
     const int inside = count(*region, false);
@@ -463,50 +370,13 @@ class Fitter {
     return agreement(at, [&](int px, int py) { return initial_[local(px, py)] > 0; });
   }
 
-  /// From the curvature of the score at its maximum. Neighbouring pixels repeat each other, so a
-  /// score counts for a tenth; eight tenths of a millimetre and half a degree are the least that is
-  /// claimed.
-  Eigen::Matrix3d covariance(const Evidence& evidence, const Candidate& best) const {
-    const Eigen::Vector3d h(0.004, 0.004, 0.07);
-    const auto value = [&](const Eigen::Vector3d& d) {
-      return 0.1 * score(evidence, {best.at.x + d.x(), best.at.y + d.y(), best.at.yaw + d.z()});
-    };
-    Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
-    const double middle = value(Eigen::Vector3d::Zero());
-    for (int i = 0; i < 3; ++i)
-      for (int j = 0; j <= i; ++j) {
-        Eigen::Vector3d a = Eigen::Vector3d::Zero(), b = a;
-        a[i] = h[i];
-        b[j] = h[j];
-        const double second =
-            i == j ? value(a) - 2 * middle + value(-a)
-                   : (value(a + b) - value(a - b) - value(b - a) + value(-a - b)) / 4;
-        information(i, j) = information(j, i) = -second / (h[i] * h[j]);
-      }
-    if (!information.allFinite()) information.setZero();
-    // Clamp to what is positive and within what was searched: 5 cm and a quarter turn at most.
-    Eigen::Matrix3d scaled = h.asDiagonal() * information * h.asDiagonal();
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(scaled);
-    const Eigen::Vector3d kept = eigen.eigenvalues().cwiseMax(0.01);
-    const Eigen::Matrix3d inverse =
-        eigen.eigenvectors() * kept.cwiseInverse().asDiagonal() * eigen.eigenvectors().transpose();
-    Eigen::Matrix3d made = h.asDiagonal() * inverse * h.asDiagonal();
-    made.diagonal() += Eigen::Vector3d(6e-7, 6e-7, 6e-5);
-    if (yaw_period(shape_) == 0) {
-      made.row(2).setZero();
-      made.col(2).setZero();
-      made(2, 2) = pi * pi / 3;  // any turn
-    }
-    return made;
-  }
-
   const Frame& frame_;
   const CameraModel& camera_;
   const model::Shape& shape_;
   const Eigen::VectorXf& known_;
-  int left_ = 0, right_ = 0, top_ = 0, bottom_ = 0;  // the area that is looked at, px
-  std::vector<float> initial_;                       // evidence before re-estimation
-  std::vector<std::uint8_t> hidden_;                 // 1: something stands before the object
+  Area area_;                         // that is looked at
+  std::vector<float> initial_;        // evidence before re-estimation
+  std::vector<std::uint8_t> hidden_;  // 1: something stands before the object
 };
 
 }  // namespace

@@ -12,7 +12,7 @@ namespace prehend::recognition {
 enum class Trial {
   open,       // the target and two other objects of the catalogue, nothing hides the target
   clutter,    // also four strangers: things that no model knows
-  light,      // as open, in light of another strength and colour than any training view had
+  light,      // as open, half to one and a half times as bright, up to 20 % warmer or colder
   occluded,   // a stranger stands before the target and hides 25 to 35 % of it
   empty,      // a table without objects
   strangers,  // four strangers and nothing else

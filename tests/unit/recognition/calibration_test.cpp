@@ -7,9 +7,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <numbers>
 #include <prehend/base/random.hpp>
 #include <prehend/recognition_calibration/board_taker.hpp>
+#include <prehend/recognition_picture/picture_file.hpp>
 
 #include "fixture.hpp"
 
@@ -118,16 +123,23 @@ TEST(Chessboard, NoneInPicturesWithoutOne) {
   EXPECT_FALSE(find_chessboard(renderer().render(scene, lab_camera()), board));
 }
 
+/// Sixteen pictures; in the first the board lies on the table.
+const std::vector<Picture>& shots() {
+  static const std::vector<Picture> made = [] {
+    Random random(2);
+    std::vector<Picture> all{draw(true_camera(), lying(-0.1, 0.05, 0.3), 0)};
+    for (std::uint64_t i = 1; i < 16; ++i)
+      all.push_back(draw(true_camera(), held(true_camera(), random), i));
+    return all;
+  }();
+  return made;
+}
+
 TEST(Calibration, FindsLensAndPlaceOfTheCameraThatDrewTheBoards) {
   const CameraModel truth = true_camera();
-  Random random(2);
   std::vector<BoardView> views;
-  const Pose on_table = lying(-0.1, 0.05, 0.3);
-  for (int i = 0; i < 16; ++i) {
-    const Pose X_WB = i == 0 ? on_table : held(truth, random);
-    if (const auto view = find_chessboard(draw(truth, X_WB, static_cast<std::uint64_t>(i)), board))
-      views.push_back(*view);
-  }
+  for (const Picture& picture : shots())
+    if (const auto view = find_chessboard(picture, board)) views.push_back(*view);
   ASSERT_GE(views.size(), 12u);
   const auto made = calibrate(views, board, truth.width, truth.height);
   ASSERT_TRUE(made) << made.error().message();
@@ -190,6 +202,48 @@ TEST(Calibration, ViewsThatDetermineNothingAreRefused) {
   EXPECT_FALSE(calibrate(flat, board, 640, 480));
   EXPECT_FALSE(locate_camera(truth, flat.front(), board, {}));
   EXPECT_FALSE(locate_camera(truth, {}, board, {}));
+}
+
+TEST(Calibration, CommandWritesTheLabsKeys) {
+  const auto folder =
+      std::filesystem::temp_directory_path() / ("boards" + std::to_string(getpid()));
+  std::filesystem::create_directories(folder / "pictures");
+  for (std::size_t i = 0; i < shots().size(); ++i)
+    ASSERT_TRUE(save_png(folder / "pictures" / (std::to_string(100 + i) + ".png"), shots()[i]));
+  std::ofstream(folder / "pictures" / "200.png") << "no picture";
+  std::ofstream(folder / "lab.toml")
+      << "[lab]\nrig = \"test\"\n[camera]  # ours\nname = \"left\"\n";
+  const auto run = [&](const std::string& arguments) {
+    const std::string command = std::string(PREHEND_CAMERA) + " calibrate --config " +
+                                (folder / "lab.toml").string() + " " + arguments + " >" +
+                                (folder / "out").string() + " 2>" + (folder / "err").string();
+    const int status = std::system(command.c_str());
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  };
+  const std::string pictures = (folder / "pictures").string();
+  EXPECT_EQ(run(pictures + " --place -0.1,0.05,0.3 --write --json"), 0);
+  std::ifstream out(folder / "out");
+  std::string line;
+  std::getline(out, line);
+  EXPECT_NE(line.find("\"X_WC\":["), std::string::npos) << line;
+  EXPECT_FALSE(std::getline(out, line));  // nothing else
+  std::ifstream lab(folder / "lab.toml");
+  const std::string text(std::istreambuf_iterator<char>(lab), {});
+  for (const char* key : {"[camera]  # ours", "name = \"left\"", "width = 640", "height = 480",
+                          "focal = [60", "centre = [32", "distortion = [-0.1", "X_WC = ["})
+    EXPECT_NE(text.find(key), std::string::npos) << key << " in " << text;
+  // What it wrote is a configuration that the same command takes.
+  EXPECT_EQ(run(pictures + " --only place --place -0.1,0.05,0.3"), 0);
+  EXPECT_EQ(run(pictures + " --worst 0.01"), 1);
+  EXPECT_EQ(run(pictures + " --columns 8"), 2);  // looks the same upside down
+  EXPECT_EQ(run(pictures + " --place 1,2"), 2);  // three numbers
+  std::filesystem::create_directories(folder / "bare");
+  ASSERT_TRUE(save_png(folder / "bare" / "1.png", Picture(640, 480)));
+  EXPECT_EQ(run((folder / "bare").string()), 1);  // no board in sight
+  EXPECT_EQ(run((folder / "none").string()), 3);
+  EXPECT_EQ(run("device:/dev/none"), 3);
+  EXPECT_EQ(run(""), 2);
+  std::filesystem::remove_all(folder);
 }
 
 TEST(BoardTaker, TakesStillAndDifferentViewsOnly) {

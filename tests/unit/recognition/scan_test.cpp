@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <prehend/base/random.hpp>
+#include <prehend/recognition_geometry/silhouette.hpp>
 #include <prehend/recognition_scan/scan.hpp>
 #include <prehend/recognition_scan/window_sums.hpp>
 
@@ -142,6 +143,25 @@ TEST(Scan, ErasedRegionsLeaveTheOthers) {
   const bool apart = second.right <= first.left || second.left >= first.right ||
                      second.bottom <= first.top || second.top >= first.bottom;
   EXPECT_TRUE(apart);
+}
+
+TEST(Scan, ScalesFindWhatIsSeenSmaller) {
+  // Twice as far away as in training an object is half as large: so are its pairs' distances.
+  CameraModel far = lab_camera();
+  far.X_WC.translation() *= 2;
+  model::Scene scene = *model::make_scene(catalogue(), 3, {});
+  float once = 0, scaled = 0;
+  for (const auto& object : catalogue().objects()) {
+    scene.objects = {{object.name, standing_pose(object.shape, {0, 0, 0.3})}};
+    const Plane fine = trained().palette.quantise(renderer().render(scene, far));
+    std::size_t c = 0;
+    while (trained().classes[c].name != object.name) ++c;
+    ScanOptions options;
+    once += scan(trained(), fine, options).best[c].score;
+    options.scales = {1, 0.5};
+    scaled += scan(trained(), fine, options).best[c].score;
+  }
+  EXPECT_GT(scaled, once + 0.02f * static_cast<float>(catalogue().objects().size()));
 }
 
 TEST(Scan, PictureSmallerThanACellHasNoVotes) {
