@@ -39,11 +39,11 @@ Box to_box(const Bounds& b) {
 /// of their own, measured on rendered scenes:
 /// - agreement: full multiplies the odds by seven, 0.7 leaves them, 0.4 divides them by seven;
 /// below
-///   0.35 there is no such object;
+///   0.35 there is no such object, nor where agreement and contrast together stay below 1.2;
 /// - contrast: objects have 0.85 to 1 along their outline, what is mistaken for one 0.5 to 0.85;
 /// - size: objects measure as the catalogue says, within 5 %; what is mistaken for one does not.
 double with_outline(double probability, const Fit& fit) {
-  if (fit.agreement < 0.35) return 0;
+  if (fit.agreement < 0.35 || fit.agreement + fit.contrast < 1.2) return 0;
   const double p = std::clamp(probability, 1e-9, 1 - 1e-9);
   const double size = 0.7 - 0.5 * (fit.measured.array().log() / 0.08).matrix().squaredNorm();
   const double evidence =
