@@ -17,8 +17,6 @@ namespace {
 constexpr double pi = std::numbers::pi;
 /// An outline that agrees less with the first evidence is not looked at any further.
 constexpr double least_promise = 0.25;
-/// An outline with less contrast may be in the wrong place.
-constexpr double clear_outline = 0.9;
 
 struct Candidate {
   Standing at;
@@ -77,9 +75,6 @@ class Fitter {
       sharp = own;
     };
     for (Candidate& candidate : best) compete(candidate);
-    // On a table of the object's colour the regions mislead; its edges may still show.
-    if (contrast(winner.at) < clear_outline)
-      for (Candidate& candidate : clearest(winner.at)) compete(candidate);
     // Something before it? Then what is seen of it counts.
     Fit fit;
     if (look_for_hidden(winner.at)) {
@@ -147,27 +142,6 @@ class Fitter {
     if (!polygon) return 0;
     return outline_contrast(frame_.picture, *polygon,
                             [&](int px, int py) { return !area_.holds(px, py) || seen(px, py); });
-  }
-
-  /// The two places within 8 cm, well parted, at which the outline has most contrast.
-  std::vector<Candidate> clearest(const Standing& from) const {
-    std::vector<Candidate> tried;
-    const std::vector<double> turns =
-        yaw_period(shape_) > 0 ? std::vector<double>{-0.25, 0, 0.25} : std::vector<double>{0};
-    for (const double turn : turns)
-      for (int i = -8; i <= 8; ++i)
-        for (int j = -8; j <= 8; ++j) {
-          const Standing at{from.x + 0.01 * i, from.y + 0.01 * j, from.yaw + turn};
-          tried.push_back({at, contrast(at)});
-        }
-    std::sort(tried.begin(), tried.end(),
-              [](const Candidate& a, const Candidate& b) { return a.score > b.score; });
-    std::vector<Candidate> kept{tried.front()};
-    for (const Candidate& candidate : tried)
-      if (kept.size() < 2 &&
-          std::hypot(candidate.at.x - kept[0].at.x, candidate.at.y - kept[0].at.y) > 0.025)
-        kept.push_back(candidate);
-    return kept;
   }
 
   double hidden_share(const Standing& at) const {
