@@ -3,7 +3,9 @@
 // the same two hops, with the same QoS, paced at the same rate, in the same run. Both run side by
 // side in slices, so that a machine that changes its speed changes both.
 //
-//   benchmark_latency [--json] [--seconds S]      at 30 and at 500 Hz
+//   benchmark_latency [--json] [--seconds S] [--network laptop|lan|server]      at 30 and at 500 Hz
+//
+// Floor and lab use the same network; for `server` one is started for the run.
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -35,10 +37,23 @@ Time now() {
 struct Place {
   int domain;
   std::string rig;
+  std::string network = "laptop";
 };
 
+/// Where the discovery server of the run listens, by its domain: other runs have other numbers.
+std::string server_of(const Place& place) {
+  return "127.0.0.1:" + std::to_string(21000 + place.domain);
+}
+
+dds::Network network_of(const Place& place) {
+  dds::Network network{.profile = place.network};
+  if (place.network == "server") network.servers = {server_of(place)};
+  return network;
+}
+
 dds::Participant join(const Place& place, const char* name) {
-  auto made = dds::Participant::create({.name = name, .domain = place.domain, .rig = place.rig});
+  auto made = dds::Participant::create(
+      {.name = name, .domain = place.domain, .rig = place.rig, .network = network_of(place)});
   if (!made) {
     std::cerr << made.error().message() << "\n";
     std::exit(3);
@@ -103,11 +118,12 @@ struct Figures {
 };
 
 /// The floor's last process is this one: latencies of `wanted` commands.
-Figures measure_floor(double rate, std::size_t wanted, const std::string& self, int domain) {
-  const Place place{domain, fmt::format("floor-{}-{}", getpid(), rate)};
+Figures measure_floor(double rate, std::size_t wanted, const std::string& self, Place place) {
+  place.rig = fmt::format("floor-{}-{}", getpid(), rate);
   const auto spawn = [&](const char* role) {
-    auto made = service::Process::start(
-        {.command = {self, role, std::to_string(place.domain), place.rig, std::to_string(rate)}});
+    auto made =
+        service::Process::start({.command = {self, role, std::to_string(place.domain), place.rig,
+                                             std::to_string(rate), place.network}});
     if (!made) {
       std::cerr << made.error().message() << "\n";
       std::exit(3);
@@ -136,13 +152,20 @@ Figures measure_floor(double rate, std::size_t wanted, const std::string& self, 
 }
 
 /// The real chain: the world's own measure, from its status.
-Figures measure_lab(double rate, std::size_t wanted, int domain) {
+Figures measure_lab(double rate, std::size_t wanted, Place place) {
   const std::string rig = fmt::format("lab-{}-{}", getpid(), rate);
+  place.rig = rig;
   const auto bin = program_directory();
   const auto spawn = [&](const std::string& name, std::vector<std::string> more) {
-    std::vector<std::string> command{(bin / ("prehend-" + name)).string(), "--set",
-                                     "lab.rig=" + rig, "--set",
-                                     "lab.domain=" + std::to_string(domain)};
+    std::vector<std::string> command{(bin / ("prehend-" + name)).string(),
+                                     "--set",
+                                     "lab.rig=" + rig,
+                                     "--set",
+                                     "lab.domain=" + std::to_string(place.domain),
+                                     "--set",
+                                     "lab.network=" + place.network,
+                                     "--set",
+                                     "lab.server=[\"" + server_of(place) + "\"]"};
     for (std::string& argument : more) {
       command.push_back("--set");
       command.push_back(std::move(argument));
@@ -155,7 +178,7 @@ Figures measure_lab(double rate, std::size_t wanted, int domain) {
     }
     return std::move(*made);
   };
-  auto participant = join({domain, rig}, "watcher");
+  auto participant = join(place, "watcher");
   auto statuses = *participant.reader(dds::service_status);
   auto simulation = spawn("simulation", {});
   auto mapping = spawn("mapping", {});
@@ -185,14 +208,27 @@ Figures measure_lab(double rate, std::size_t wanted, int domain) {
   return figures;
 }
 
-int run(bool json, double seconds, const std::string& self) {
-  const int domain = static_cast<int>(std::random_device{}() % 200);
+int run(bool json, double seconds, const std::string& network, const std::string& self) {
+  const Place place{static_cast<int>(std::random_device{}() % 200), "", network};
+  std::optional<service::Process> server;
+  if (network == "server") {
+    auto made =
+        service::Process::start({.command = {(program_directory() / "prehend").string(),
+                                             "discovery-server", "--listen", server_of(place)},
+                                 .log = "/dev/null"});
+    if (!made) {
+      std::cerr << made.error().message() << "\n";
+      return 3;
+    }
+    server.emplace(std::move(*made));
+    std::this_thread::sleep_for(2s);  // it listens 1.2 s after its start
+  }
   nlohmann::json rows = nlohmann::json::array();
   for (const double rate : {30.0, 500.0}) {
     const auto wanted = static_cast<std::size_t>(std::min(1024.0, rate * seconds));
-    const Figures before = measure_floor(rate, wanted, self, domain);
-    const Figures lab = measure_lab(rate, wanted, domain);
-    const Figures after = measure_floor(rate, wanted, self, domain);
+    const Figures before = measure_floor(rate, wanted, self, place);
+    const Figures lab = measure_lab(rate, wanted, place);
+    const Figures after = measure_floor(rate, wanted, self, place);
     const double floor = 0.5 * (before.p50 + after.p50);
     rows.push_back({{"rate_hz", rate},
                     {"floor_us", {{"p50", floor}, {"p99", 0.5 * (before.p99 + after.p99)}}},
@@ -214,16 +250,18 @@ int run(bool json, double seconds, const std::string& self) {
 
 int main(int argc, char** argv) {
   using namespace prehend;
-  if (argc == 5 && std::string_view(argv[1]).starts_with("--floor-")) {
-    const Place place{std::atoi(argv[2]), argv[3]};
+  if (argc == 6 && std::string_view(argv[1]).starts_with("--floor-")) {
+    const Place place{std::atoi(argv[2]), argv[3], argv[5]};
     return std::string_view(argv[1]) == "--floor-source" ? floor_source(place, std::atof(argv[4]))
                                                          : floor_relay(place);
   }
   bool json = false;
   double seconds = 8;
+  std::string network = "laptop";
   for (int i = 1; i < argc; ++i) {
     if (std::string_view(argv[i]) == "--json") json = true;
     if (std::string_view(argv[i]) == "--seconds" && i + 1 < argc) seconds = std::atof(argv[++i]);
+    if (std::string_view(argv[i]) == "--network" && i + 1 < argc) network = argv[++i];
   }
-  return run(json, seconds, std::filesystem::read_symlink("/proc/self/exe").string());
+  return run(json, seconds, network, std::filesystem::read_symlink("/proc/self/exe").string());
 }
