@@ -128,6 +128,10 @@ Expected<void> need_interface(const std::string& profile) {
 Expected<void> use_servers(fdds::DomainParticipantQos& qos, const Network& network,
                            const Discovering& discovering) {
   auto& builtin = qos.wire_protocol().builtin;
+  // Seen with 2.9.1: such clients never find each other.
+  if (!network.keys.empty())
+    return fail("discovery servers of Fast DDS 2.9 cannot be secured", "lab.keys",
+                "use lab.network = lan");
   if (!discovering.serves.empty()) {
     const auto own = resolve(discovering.serves, first_server_port);
     if (!own) return tl::unexpected(own.error());
@@ -207,6 +211,12 @@ Expected<fdds::DomainParticipantQos> participant_qos(const Network& network,
     if (const auto* udp = dynamic_cast<transport::UDPv4TransportDescriptor*>(given.get()))
       given = std::make_shared<transport::UDPv4TransportDescriptor>(*udp);
   return qos;
+}
+
+bool is_server(const rtps::GuidPrefix_t& prefix) {
+  rtps::GuidPrefix_t pattern = server_prefix(first_server_port);
+  pattern.value[2] = prefix.value[2];
+  return prefix == pattern;
 }
 
 std::vector<Error> outside_influence() {

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <fastdds/dds/domain/qos/DomainParticipantQos.hpp>
+#include <filesystem>
 #include <optional>
 #include <prehend/base/error.hpp>
 #include <string>
@@ -15,6 +16,7 @@ namespace prehend::dds {
 struct Network {
   std::string profile = "laptop";    // laptop, lan or server
   std::vector<std::string> servers;  // server: ADDRESS:PORT of each discovery server
+  std::filesystem::path keys;        // of this process, see security.hpp; empty: not secured
 };
 
 /// What a participant is to the discovery of a network.
@@ -38,6 +40,9 @@ Expected<Address> resolve(const std::string& text, std::optional<std::uint16_t> 
 /// says.
 Expected<eprosima::fastdds::dds::DomainParticipantQos> participant_qos(
     const Network& network, const Discovering& discovering = {});
+
+/// Is this the prefix of a discovery server's GUID?
+bool is_server(const eprosima::fastrtps::rtps::GuidPrefix_t& prefix);
 
 /// What in the environment and the working directory would have changed DDS behind our back.
 std::vector<Error> outside_influence();

@@ -17,6 +17,7 @@
 namespace prehend::dds {
 
 namespace fdds = eprosima::fastdds::dds;
+namespace rtps = eprosima::fastrtps::rtps;
 
 namespace {
 
@@ -64,8 +65,91 @@ std::uint64_t instance_hash(const eprosima::fastrtps::rtps::InstanceHandle_t& ha
   return instance_hash(key);
 }
 
+/// Hears of every peer before anybody else does, and keeps count of those that are refused.
+class Participant::Guard : public fdds::DomainParticipantListener {
+ public:
+  /// authority: of our own keys; nothing: we have none.
+  Guard(fdds::DomainParticipantListener* next, std::optional<std::string> authority)
+      : next_(next), authority_(std::move(authority)) {}
+
+  std::map<std::string, std::uint64_t> refused() const {
+    const std::scoped_lock lock(mutex_);
+    return refused_;
+  }
+
+  void on_participant_discovery(fdds::DomainParticipant* participant,
+                                rtps::ParticipantDiscoveryInfo&& found) override {
+    using Found = rtps::ParticipantDiscoveryInfo;
+    if (found.status == Found::DISCOVERED_PARTICIPANT)
+      meet(found.info);
+    else if (found.status != Found::CHANGED_QOS_PARTICIPANT)
+      leave(found.info.m_guid);
+    if (next_) next_->on_participant_discovery(participant, std::move(found));
+  }
+  void onParticipantAuthentication(fdds::DomainParticipant* participant,
+                                   rtps::ParticipantAuthenticationInfo&& info) override {
+    if (info.status == rtps::ParticipantAuthenticationInfo::UNAUTHORIZED_PARTICIPANT)
+      refuse(info.guid);
+    if (next_) next_->onParticipantAuthentication(participant, std::move(info));
+  }
+  void on_publisher_discovery(fdds::DomainParticipant* participant,
+                              rtps::WriterDiscoveryInfo&& info) override {
+    if (next_) next_->on_publisher_discovery(participant, std::move(info));
+  }
+  void on_subscriber_discovery(fdds::DomainParticipant* participant,
+                               rtps::ReaderDiscoveryInfo&& info) override {
+    if (next_) next_->on_subscriber_discovery(participant, std::move(info));
+  }
+
+ private:
+  struct Peer {
+    std::string name, authority;
+    bool secured = false;
+  };
+
+  void meet(const rtps::ParticipantProxyData& info) {
+    Peer peer;
+    peer.name = info.m_participantName.to_string();
+    for (const rtps::Property& property : info.identity_token_.properties()) {
+      peer.secured = true;
+      if (property.name() == "dds.ca.sn") peer.authority = property.value();
+    }
+    const std::scoped_lock lock(mutex_);
+    if (peer.secured && !authority_)
+      note(peer.name + ", which is secured while this process is not");
+    // Only who is to be judged, and not without bound.
+    if (authority_ && peers_.size() < 1024) peers_.insert_or_assign(info.m_guid, std::move(peer));
+  }
+  void leave(const rtps::GUID_t& guid) {
+    const std::scoped_lock lock(mutex_);
+    peers_.erase(guid);
+  }
+  void refuse(const rtps::GUID_t& guid) {
+    const std::scoped_lock lock(mutex_);
+    const auto found = peers_.find(guid);
+    const Peer peer = found == peers_.end() ? Peer{"somebody", {}, true} : found->second;
+    if (!peer.secured)
+      note(peer.name + ", which has no keys");
+    else if (peer.authority != "/" + *authority_)  // as the plugin writes it
+      note(peer.name + ", whose keys are of another authority");
+    else
+      note(peer.name + ", whose keys are revoked or not valid");
+  }
+  void note(const std::string& whom) {
+    if (refused_.size() < 32 || refused_.contains(whom)) ++refused_[whom];
+  }
+
+  fdds::DomainParticipantListener* next_;
+  std::optional<std::string> authority_;
+  mutable std::mutex mutex_;
+  std::map<rtps::GUID_t, Peer> peers_;
+  std::map<std::string, std::uint64_t> refused_;
+};
+
 struct Participant::State {
   ParticipantOptions options;
+  std::optional<Keys> keys;
+  std::optional<Guard> guard;  // outlives the participant
   fdds::DomainParticipant* participant = nullptr;
   fdds::Publisher* publisher = nullptr;
   fdds::Subscriber* subscriber = nullptr;
@@ -108,6 +192,16 @@ Expected<Participant> Participant::create(const ParticipantOptions& options) {
   auto qos = participant_qos(options.network, {options.listener != nullptr, options.serves});
   if (!qos) return tl::unexpected(qos.error());
   qos->name(options.name);
+  if (!options.network.keys.empty()) {
+    const auto now = std::chrono::time_point_cast<Duration>(std::chrono::system_clock::now());
+    auto keys =
+        load_keys(options.network.keys, options.role.empty() ? options.name : options.role, now);
+    if (!keys) return tl::unexpected(keys.error());
+    secure(*qos, *keys);
+    state->keys.emplace(std::move(*keys));
+  }
+  state->guard.emplace(options.listener,
+                       state->keys ? std::optional(state->keys->authority) : std::nullopt);
   // Who listens to the whole domain is a recorder: pictures that come while it has no processor
   // wait in the socket (as far as net.core.rmem_max allows), for on best effort topics nothing else
   // holds them.
@@ -121,9 +215,16 @@ Expected<Participant> Participant::create(const ParticipantOptions& options) {
       transport = guarded(transport);
   auto* factory = fdds::DomainParticipantFactory::get_instance();
   state->participant =
-      factory->create_participant(options.domain, *qos, options.listener, fdds::StatusMask::none());
+      factory->create_participant(options.domain, *qos, &*state->guard, fdds::StatusMask::none());
   if (!state->participant)
-    return fail("cannot join the domain", "dds", "is a network interface up, at least loopback?");
+    return state->keys
+               ? fail("cannot join the secured lab", state->keys->folder.string(),
+                      "what Fast DDS says of it stands above; are the keys meant for this lab?")
+               : fail("cannot join the domain", "dds",
+                      "is a network interface up, at least loopback?");
+  if (state->keys)
+    if (const auto effective = confirm(*state->participant, *state->keys); !effective)
+      return tl::unexpected(effective.error());
 
   fdds::PublisherQos publisher_qos = fdds::PUBLISHER_QOS_DEFAULT;
   fdds::SubscriberQos subscriber_qos = fdds::SUBSCRIBER_QOS_DEFAULT;
@@ -135,6 +236,14 @@ Expected<Participant> Participant::create(const ParticipantOptions& options) {
   state->subscriber = state->participant->create_subscriber(subscriber_qos);
   if (!state->publisher || !state->subscriber) return fail("cannot join the rig", options.rig);
   return Participant(std::move(state));
+}
+
+const Keys* Participant::keys() const {
+  return state_->keys ? &*state_->keys : nullptr;
+}
+
+std::map<std::string, std::uint64_t> Participant::refused() const {
+  return state_->guard->refused();
 }
 
 Expected<TopicQos> Participant::table_entry(std::string_view name) {
@@ -160,7 +269,9 @@ Expected<fdds::DataWriter*> Participant::make_writer(const TopicQos& topic, fdds
   qos.reliable_writer_qos().times.heartbeatPeriod = duration(std::chrono::milliseconds(100));
   qos.reliability().max_blocking_time = duration(std::chrono::milliseconds(100));
   fdds::DataWriter* writer = state_->publisher->create_datawriter(*handle, qos);
-  if (!writer) return fail("writer cannot be created", std::string(topic.name));
+  if (!writer)
+    return fail("writer cannot be created", std::string(topic.name),
+                state_->keys ? "do the keys of this process permit it? prehend keys show" : "");
   return writer;
 }
 
@@ -175,7 +286,9 @@ Expected<fdds::DataReader*> Participant::make_reader(const TopicQos& topic, fdds
   if (raw) mask << fdds::StatusMask::subscription_matched();
   if (ask_for_keys) qos.expects_inline_qos(true);
   fdds::DataReader* reader = state_->subscriber->create_datareader(*handle, qos, listener, mask);
-  if (!reader) return fail("reader cannot be created", std::string(topic.name));
+  if (!reader)
+    return fail("reader cannot be created", std::string(topic.name),
+                state_->keys ? "do the keys of this process permit it? prehend keys show" : "");
   return reader;
 }
 

@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "network.hpp"
+#include "security.hpp"
 #include "topics.hpp"
 
 namespace prehend::dds {
@@ -25,6 +26,7 @@ struct ParticipantOptions {
   int domain = 0;    // 0..232
   std::string rig;   // partition: samples stay within a rig
   Network network;   // how it reaches the others
+  std::string role;  // whose keys it takes from a folder with many; empty: that of its name
   /// All topics reliable and complete, without deadlines: for recordings in lockstep.
   bool lockstep = false;
   /// Told of discovery in the whole domain, in its thread; must outlive the participant.
@@ -129,6 +131,12 @@ class Participant {
   Participant& operator=(Participant&&) noexcept;
   ~Participant();
 
+  /// Those that it joined with; nothing when it is not secured. They live as long as it does.
+  const Keys* keys() const;
+  /// Peers that were refused, or that refuse us, with the reason, and how often: «mallory, whose
+  /// keys are of another authority». At most 32 different ones. Safe from every thread.
+  std::map<std::string, std::uint64_t> refused() const;
+
   template <class P>
   Expected<Writer<typename P::type>> writer(const Topic<P>& topic) {
     const auto qos = table_entry(topic.name);
@@ -151,6 +159,7 @@ class Participant {
  private:
   friend class RawReader;
   friend class RawWriter;
+  class Guard;
   struct State;
   explicit Participant(std::unique_ptr<State> state);
   static Expected<TopicQos> table_entry(std::string_view topic);

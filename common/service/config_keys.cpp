@@ -17,6 +17,8 @@ const std::vector<ConfigKey>& config_keys() {
       {"lab.server", Names{}, "ADDRESS:PORT of each discovery server, for the network server"},
       {"lab.services", Names{"glove", "recognition", "mapping", "simulation"},
        "what a complete lab has: `prehend status` says who of them is missing"},
+      {"lab.keys", Text(""),
+       "folder of this process's keys, or of all, from `prehend keys`; empty: not secured"},
       {"lab.lockstep", false, "follow lab/clock instead of the system clock"},
       {"lab.scene", Text(""),
        "scene file: what stands on the table; empty where only cameras know"},

@@ -2,12 +2,15 @@
 
 namespace prehend::service {
 
-dds::ParticipantOptions membership(const Config& config, const std::string& name) {
+dds::ParticipantOptions membership(const Config& config, const std::string& name,
+                                   const std::string& role) {
   return {.name = name,
           .domain = static_cast<int>(config.integer("lab.domain")),
           .rig = config.text("lab.rig"),
           .network = {.profile = config.text("lab.network"),
-                      .servers = config.names("lab.server")}};
+                      .servers = config.names("lab.server"),
+                      .keys = config.path("lab.keys")},
+          .role = role};
 }
 
 }  // namespace prehend::service

@@ -8,7 +8,9 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <atomic>
+#include <cerrno>
 #include <condition_variable>
+#include <cstring>
 #include <deque>
 #include <fstream>
 #include <iostream>
@@ -19,6 +21,7 @@
 #include <prehend/base/paths.hpp>
 #include <prehend/clock/peers.hpp>
 #include <prehend/dds/packet.hpp>
+#include <prehend/dds/security.hpp>
 #include <thread>
 
 #include "membership.hpp"
@@ -108,6 +111,9 @@ struct Shell::State {
   // Goes before all that its threads may still touch.
   std::optional<dds::Participant> participant;
   std::optional<dds::Writer<v1::ServiceStatus>> status_writer;
+  std::map<std::string, std::uint64_t> refused;  // peers, as far as the status tells
+  std::vector<std::string> command;              // that started this process
+  std::string revoked;  // the list of revoked keys that has been spoken of last
   std::optional<dds::Writer<v1::LabProgress>> progress_writer;
   std::optional<dds::Writer<v1::ClockBeacon>> beacon_writer;
   std::thread signals;
@@ -118,6 +124,34 @@ struct Shell::State {
       woken = true;
     }
     wake_condition.notify_one();
+  }
+
+  /// Fast DDS reads the list of revoked keys only when it joins. True: join anew.
+  bool list_has_changed() {
+    if (!participant->keys()) return false;
+    const auto list = dds::newer_list(*participant->keys());
+    if (!list || *list == revoked) return false;
+    revoked = *list;
+    if (options.restarts && !lockstep) {
+      log::info("the list of revoked keys has changed: joining anew");
+      return true;
+    }
+    log::warning("the list of revoked keys has changed; it counts here after a restart");
+    return false;
+  }
+
+  /// The same program with the same arguments in this process, which keeps its number.
+  [[noreturn]] void join_anew() {
+    participant.reset();
+    std::vector<char*> arguments;
+    for (std::string& text : command) arguments.push_back(text.data());
+    arguments.push_back(nullptr);
+    const sigset_t set = stop_signals();
+    pthread_sigmask(SIG_UNBLOCK, &set, nullptr);
+    ::close_range(3, ~0u, 0);
+    ::execv("/proc/self/exe", arguments.data());
+    log::error("cannot start anew: {}", std::strerror(errno));
+    std::_Exit(3);
   }
 };
 
@@ -170,7 +204,7 @@ std::unique_ptr<Shell> Shell::create(int argc, char** argv, const Options& optio
   state->options = options;
   state->config = std::move(*config);
   state->lockstep = lockstep || state->config.flag("lab.lockstep");
-  dds::ParticipantOptions joining = membership(state->config, options.name);
+  dds::ParticipantOptions joining = membership(state->config, options.name, options.role);
   joining.lockstep = state->lockstep;
   auto participant = dds::Participant::create(joining);
   if (!participant) {
@@ -180,6 +214,11 @@ std::unique_ptr<Shell> Shell::create(int argc, char** argv, const Options& optio
   }
   state->participant.emplace(std::move(*participant));
   state->started = process_now();
+  if (const dds::Keys* keys = state->participant->keys();
+      keys && keys->expires - state->started < dds::expiry_warning)
+    log::warning("{}: expires in {:.1f} days (renew it with `prehend keys add --renew`)",
+                 keys->folder.string(), to_seconds(keys->expires - state->started) / 86400);
+  state->command.assign(argv, argv + argc);
 
   auto status_writer = state->participant->writer(dds::service_status);
   if (!status_writer) refuse(status_writer.error());
@@ -368,6 +407,12 @@ int Shell::run() {
     const std::uint64_t unsound = dds::unsound_messages();
     if (unsound > state.unsound)
       state.status.drop("malformed packet", unsound - std::exchange(state.unsound, unsound));
+    for (const auto& [peer, count] : state.participant->refused()) {
+      std::uint64_t& told = state.refused[peer];
+      if (told == 0) log::warning("peer refused: {}", peer);
+      state.status.drop("peer refused: " + peer, count - told);
+      told = count;
+    }
     state.status.fill(state.status_message, now);
     state.status_message.uptime(to_seconds(now - state.started));
     state.status_message.resident(resident_memory());
@@ -439,6 +484,7 @@ int Shell::run() {
     return true;
   };
 
+  bool again = false;
   std::unique_lock lock(state.exclusive);
   publish_status(process_now());
   state.next_tick = process_now();
@@ -460,7 +506,10 @@ int Shell::run() {
       state.next_tick = std::max(state.next_tick + state.period, now);
     }
     const Time then = process_now();
-    if (then >= state.next_status) publish_status(then);
+    if (then >= state.next_status) {
+      publish_status(then);
+      if (state.list_has_changed()) again = state.stopping = true;
+    }
     if (!state.lockstep && then >= state.next_beacon) {
       send_beacon();
       state.next_beacon =
@@ -480,6 +529,10 @@ int Shell::run() {
     lock.lock();
   }
   state.running = false;
+  if (again) {
+    lock.unlock();
+    state.join_anew();
+  }
   log::info("stopped");
   return state.exit_code;
 }

@@ -29,6 +29,9 @@ class Shell {
   struct Options {
     std::string name;         // of the service: glove, mapping, ...
     std::string description;  // first line of --help
+    std::string role = {};    // whose keys it takes; empty: that of its name
+    /// It may be started anew in its place at any time, with the same arguments.
+    bool restarts = true;
   };
 
   /// Parses the arguments (--config, --set, --lockstep, --verbose, --help) and joins the lab. On

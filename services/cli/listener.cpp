@@ -16,7 +16,7 @@ struct Listener::State {
 };
 
 Expected<Listener> Listener::create(const service::Config& config, bool everything) {
-  auto participant = dds::Participant::create(service::membership(config, "prehend"));
+  auto participant = dds::Participant::create(service::membership(config, "prehend", "viewer"));
   if (!participant) return tl::unexpected(participant.error());
   auto state = std::make_unique<State>(State{std::move(*participant), {}, {}, {}, {}, {}});
   std::optional<Error> error;

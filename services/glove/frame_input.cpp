@@ -35,7 +35,7 @@ FrameInput& FrameInput::operator=(FrameInput&&) noexcept = default;
 FrameInput::~FrameInput() = default;
 
 Expected<FrameInput> FrameInput::live(const service::Config& config) {
-  auto participant = dds::Participant::create(service::membership(config, "glove-tool"));
+  auto participant = dds::Participant::create(service::membership(config, "glove-tool", "viewer"));
   if (!participant) return tl::unexpected(participant.error());
   auto state = std::make_unique<State>();
   state->participant.emplace(std::move(*participant));

@@ -35,7 +35,8 @@ Time now() {
 int watch(const Arguments& arguments) {
   const auto config = arguments.lab.load();
   if (!config) return service::complain(config.error(), service::exit_wrong_use);
-  auto participant = dds::Participant::create(service::membership(*config, "glove-watch"));
+  auto participant =
+      dds::Participant::create(service::membership(*config, "glove-watch", "viewer"));
   if (!participant) return service::complain(participant.error(), service::exit_broken);
   auto frames = participant->reader(dds::glove_frame);
   auto postures = participant->reader(dds::hand_posture);

@@ -178,7 +178,7 @@ class Run {
     for (const std::string& set : options_.lab.overrides()) sets.push_back(set);
     const std::string rig = fmt::format(
         "check-{}-{:x}", ::getpid(), std::chrono::system_clock::now().time_since_epoch().count());
-    dds::ParticipantOptions membership = service::membership(*config, "check");
+    dds::ParticipantOptions membership = service::membership(*config, "check", "replayer");
     membership.rig = rig;
     membership.lockstep = true;
     for (const std::string& set :

@@ -240,7 +240,7 @@ int record(const Arguments& arguments) {
   std::vector<char*> pointers;
   for (std::string& text : texts) pointers.push_back(text.data());
   const auto shell = service::Shell::create(static_cast<int>(pointers.size()), pointers.data(),
-                                            {"recorder", "Records topics."}, exit_code);
+                                            {"recorder", "Records topics.", {}, false}, exit_code);
   if (!shell) return exit_code;
 
   auto describe = describe_types(arguments.schema);

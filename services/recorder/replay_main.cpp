@@ -314,12 +314,14 @@ int replay(const Arguments& arguments) {
   if (!arguments.rig.empty()) texts.insert(texts.end(), {"--set", "lab.rig=" + arguments.rig});
   std::vector<char*> pointers;
   for (std::string& text : texts) pointers.push_back(text.data());
-  const auto shell = service::Shell::create(static_cast<int>(pointers.size()), pointers.data(),
-                                            {"replayer", "Plays recordings."}, exit_code);
+  const auto shell =
+      service::Shell::create(static_cast<int>(pointers.size()), pointers.data(),
+                             {"replayer", "Plays recordings.", {}, false}, exit_code);
   if (!shell) return exit_code;
   const auto types = types::load_contract();
   if (!types) return service::complain(types.error(), service::exit_broken);
-  auto participant = dds::Participant::create(service::membership(shell->config(), "player"));
+  auto participant =
+      dds::Participant::create(service::membership(shell->config(), "player", "replayer"));
   if (!participant) return service::complain(participant.error(), service::exit_broken);
   auto player = Player::create(std::move(*tape), *participant, *types, *options);
   if (!player) return service::complain(player.error(), service::exit_wrong_use);

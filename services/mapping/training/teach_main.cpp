@@ -152,8 +152,9 @@ int teach(const Arguments& arguments, Teacher& teacher) {
   texts.insert(texts.begin(), "prehend-teach");
   std::vector<char*> pointers;
   for (std::string& text : texts) pointers.push_back(text.data());
-  const auto shell = service::Shell::create(static_cast<int>(pointers.size()), pointers.data(),
-                                            {"teach", "Learns postures from a person."}, exit_code);
+  const auto shell = service::Shell::create(
+      static_cast<int>(pointers.size()), pointers.data(),
+      {"teach", "Learns postures from a person.", "operator", false}, exit_code);
   if (!shell) return exit_code;
   const Session session(*shell, teacher, arguments.limit);
   shell->status().running();

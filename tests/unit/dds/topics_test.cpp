@@ -57,6 +57,47 @@ TEST(Topics, TheDocumentedTableIsTheOneInCode) {
   }
 }
 
+/// Names of roles, as they stand in the table.
+Roles roles_in(const std::string& text) {
+  Roles roles;
+  std::istringstream stream(text);
+  for (std::string name; std::getline(stream, name, ',');) {
+    name.erase(0, name.find_first_not_of(' '));
+    name.erase(name.find_last_not_of(' ') + 1);
+    const Roles before = roles;
+    if (name == "services") roles = roles | services;
+    if (name == "anyone") roles = roles | anyone;
+    for (const auto& [role, word] : role_names)
+      if (word == name) roles = roles | role;
+    EXPECT_NE(roles, before) << "no role: " << name;
+  }
+  return roles;
+}
+
+TEST(Topics, TheDocumentedWritersAndReadersAreThoseInCode) {
+  const std::string arrow = "→";
+  const auto rows = documented();
+  for (const TopicQos& topic : topic_table) {
+    const std::string cell = rows.at(std::string(topic.name)).at(7);
+    const std::size_t at = cell.find(arrow);
+    ASSERT_NE(at, std::string::npos) << topic.name;
+    EXPECT_EQ(roles_in(cell.substr(0, at)), topic.from) << topic.name;
+    EXPECT_EQ(roles_in(cell.substr(at + arrow.size())), topic.to) << topic.name;
+  }
+}
+
+// What a stolen key must not be able to do.
+TEST(Topics, NobodyButMappingAndReplayersMovesTheRobot) {
+  for (const auto& [role, name] : role_names) {
+    EXPECT_EQ(may_write(role, *find_topic("robot/command")),
+              role == Role::mapping || role == Role::replayer)
+        << name;
+  }
+  for (const TopicQos& topic : topic_table)
+    EXPECT_FALSE(may_write(Role::viewer, topic)) << topic.name;
+  EXPECT_FALSE(may_write(Role::mapping, *find_topic("glove/frame")));
+}
+
 TEST(Topics, EveryStructIsFinalAndEveryStringKeyIsBounded) {
   for (const char* family : {"Geometry", "Glove", "Perception", "Robot", "World", "Operation"}) {
     std::ifstream file(std::string(PREHEND_SOURCE "/idl/") + family + ".idl");

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <prehend/base/error.hpp>
+#include <set>
+#include <string>
+#include <string_view>
+
+#include "topics.hpp"
+
+/// Who may write and read what, from topic_table, as the texts of DDS Security that say so.
+namespace prehend::dds {
+
+struct Permissions {
+  std::string subject;      // of the certificate they are for, in the order of RFC 2253
+  std::string from, until;  // UTC, 2026-11-21T17:00:00
+  std::set<std::string, std::less<>> writes, reads;  // topics
+
+  bool operator==(const Permissions&) const = default;
+};
+
+/// The least that a role needs.
+Permissions least_permissions(Role role);
+
+/// The rules of the lab: only who is authenticated joins, and only what is permitted is written and
+/// read; discovery, liveliness and all samples are encrypted.
+std::string governance_text();
+
+/// As DDS Security wants it: what is not allowed is denied.
+std::string text(const Permissions& permissions);
+
+/// What a text of this kind says. An error where it says more than text() can: such permissions
+/// are not ours.
+Expected<Permissions> read_permissions(std::string_view text);
+
+}  // namespace prehend::dds
