@@ -2,6 +2,8 @@
 
 #include <iostream>
 #include <prehend/base/log.hpp>
+#include <prehend/cli_doctor/doctor_command.hpp>
+#include <prehend/cli_keys/keys_command.hpp>
 #include <prehend/cli_status/status_command.hpp>
 
 #include "arguments.hpp"
@@ -24,6 +26,8 @@ constexpr Command commands[] = {
     {"status", cli::status_command, "who is there and how they fare"},
     {"discovery-server", cli::server_command,
      "by which services find each other without multicast"},
+    {"doctor", cli::doctor_command, "what is wrong with this machine's set-up, and the mend"},
+    {"keys", cli::keys_command, "keys with which processes know each other"},
     {"scene", cli::scene_command, "draw a scene from a seed"},
 };
 

@@ -91,7 +91,7 @@ TEST_F(Profiles, APartThatFastDdsWouldIgnoreStopsTheProcess) {
     const auto exit = process->wait(seconds(20));
     return Answer{exit ? exit->code : -1, "", text(options.log)};
   };
-  for (const std::string profile : {"laptop", "lan", "server"}) {
+  for (const std::string profile : {"laptop", "lan", "server", "wan"}) {
     const std::string xml = text(fmt::format(PREHEND_SOURCE "/deploy/dds/{}.xml", profile));
     ASSERT_EQ(run_with(profile, xml).exit_code, 1) << profile;  // fine: nobody is there
     auto broken = misspelt(xml);
@@ -140,6 +140,37 @@ kill $simulation; wait $simulation
                               60);
   EXPECT_EQ(answer.exit_code, 0) << answer.log;
   EXPECT_NE(answer.log.find("loopback interface is down"), std::string::npos) << answer.log;
+}
+
+// Two sites with a cable between them that carries TCP alone; with keys, TLS.
+TEST_F(Profiles, SitesReachEachOtherByTcpAndWithKeysByTlsAlone) {
+  if (!may_make_namespaces()) GTEST_SKIP() << "a network namespace needs root";
+  const Answer answer = alone(R"sh(
+unshare -n sleep 300 & far=$!
+until [ "$(readlink /proc/$far/ns/net)" != "$(readlink /proc/$$/ns/net)" ]; do sleep 0.05; done
+there="nsenter -t $far -n"
+ip link set lo up; ip link add here type veth peer name there; ip link set there netns $far
+ip addr add 10.9.0.1/24 dev here; ip link set here up
+$there ip link set lo up; $there ip addr add 10.9.0.2/24 dev there; $there ip link set there up
+iptables -A INPUT -i here -p udp -j DROP && $there iptables -A INPUT -i there -p udp -j DROP ||
+  exit 77
+keys=$(mktemp -d)/keys other=$(mktemp -d)/keys
+trap 'kill $(jobs -p); rm -r ${keys%/keys} ${other%/keys}' EXIT
+$bin/prehend keys init $keys; $bin/prehend keys init $other
+wan="$lab --set lab.network=wan"
+sees() { $there $bin/prehend status --wait simulation $wan --set 'lab.peers=["10.9.0.1"]' "$@"; }
+$bin/prehend-simulation $wan & simulation=$!
+sees --timeout 30 || exit 10
+kill $simulation; wait $simulation || exit 11
+$bin/prehend-simulation $wan --set lab.keys=$keys & simulation=$!
+sees --timeout 30 --set lab.keys=$keys || exit 12
+sees --timeout 4 && exit 13
+sees --timeout 4 --set lab.keys=$other && exit 14
+sees --timeout 30 --set lab.keys=$keys || exit 15
+)sh",
+                              150);
+  if (answer.exit_code == 77) GTEST_SKIP() << "iptables is needed to stop UDP";
+  EXPECT_EQ(answer.exit_code, 0) << answer.log;
 }
 
 // Over loopback addresses, so that it needs no network; multicast is not used by this profile.

@@ -1,0 +1,15 @@
+#pragma once
+
+#include <prehend/base/error.hpp>
+#include <prehend/base/time.hpp>
+#include <prehend/service/config.hpp>
+
+#include "finding.hpp"
+
+namespace prehend::cli {
+
+/// Joins the lab only to look, for as long as it takes to hear everyone's status twice, and checks
+/// the discovery server, domain, rig, types, shared memory, security, and clocks of other hosts.
+Expected<Findings> check_neighbours(const service::Config& config, Duration listen);
+
+}  // namespace prehend::cli

@@ -1,0 +1,243 @@
+// prehend doctor: each check is shown the real fault and must name it, with a mend; without a fault
+// it must be silent. Faults of the network and of shared memory are made in namespaces of their
+// own, which takes root; those are skipped without.
+#include <sys/stat.h>
+
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <prehend/cli_keys/keystore.hpp>
+#include <prehend/dds/raw.hpp>
+
+#include "rig.hpp"
+
+namespace prehend::integration {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::json;
+
+class Doctor : public Rig {
+ protected:
+  /// Names of the checks that found something, from the document.
+  static std::map<std::string, std::string> faults(const Answer& answer) {
+    std::map<std::string, std::string> found;
+    const Json document = Json::parse(answer.output, nullptr, false);
+    if (document.is_discarded()) {
+      ADD_FAILURE() << "no document: " << answer.output << answer.log;
+      return found;
+    }
+    for (const Json& check : document["checks"]) {
+      if (check["ok"].get<bool>()) continue;
+      found[check["name"]] = check["detail"];
+      EXPECT_NE(check["mend"], "") << check;
+    }
+    EXPECT_EQ(answer.exit_code, found.empty() ? 0 : 1) << answer.output;
+    return found;
+  }
+  std::map<std::string, std::string> ask(const Strings& sets = {}, Strings more = {}) {
+    Strings arguments = with_lab({"doctor", "--json", "--listen", "1.5"});
+    for (const std::string& set : sets) arguments.insert(arguments.end(), {"--set", set});
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return faults(run("prehend", arguments, 60));
+  }
+  /// The doctor in a script of a machine of its own: no interfaces but those it makes, no shared
+  /// memory but its own.
+  std::map<std::string, std::string> ask_in_script(const std::string& script) {
+    const std::string file = (folder_ / "script").string();
+    std::string lab;
+    for (const std::string& word : with_lab({})) (lab += word) += " ";
+    std::ofstream(file) << "bin=" << PREHEND_PROGRAMS << "\nmount -t tmpfs none /dev/shm\n"
+                        << "doctor=\"$bin/prehend doctor --json --listen 1 " << lab << "\"\n"
+                        << script;
+    service::Process::Options options;
+    options.command = {"unshare", "-n", "-m", "-i", "sh", file};
+    options.log = folder_ / "script.log";
+    options.output = folder_ / "script.out";
+    auto process = service::Process::start(options);
+    if (!process) throw std::runtime_error(process.error().message());
+    const auto exit = process->wait(seconds(60));
+    process->stop(seconds(5));
+    const auto text = [](const fs::path& path) {
+      std::ifstream stream(path);
+      return std::string(std::istreambuf_iterator<char>(stream), {});
+    };
+    return faults({exit ? exit->code : -1, text(options.output), text(options.log)});
+  }
+  static bool may_make_namespaces() {
+    return std::system("unshare -n -m -i mount -t tmpfs none /dev/shm >/dev/null 2>&1") == 0;
+  }
+};
+
+#define NEEDS_NAMESPACES() \
+  if (!may_make_namespaces()) GTEST_SKIP() << "namespaces need root"
+
+TEST_F(Doctor, FindsNothingWhereNothingIsWrong) {
+  NEEDS_NAMESPACES();
+  const auto found = ask_in_script("ip link set lo up; exec $doctor");
+  EXPECT_TRUE(found.empty()) << found.begin()->first << ": " << found.begin()->second;
+}
+
+TEST_F(Doctor, NamesAMissingInterfaceAndBlockedMulticast) {
+  NEEDS_NAMESPACES();
+  EXPECT_TRUE(ask_in_script("exec $doctor").contains("interface"));
+  // An interface, but nothing leads to the multicast group.
+  const auto found = ask_in_script(R"(
+ip link set lo up; ip link add outside type veth peer name cable
+ip link set outside up; ip link set cable up; ip addr add 10.9.0.1/24 dev outside
+ip link set outside multicast off
+exec $doctor --set lab.network=lan)");
+  EXPECT_TRUE(found.contains("multicast"));
+  EXPECT_FALSE(found.contains("interface"));
+}
+
+TEST_F(Doctor, NamesSharedMemoryThatIsLeftOverOrOutOfReach) {
+  NEEDS_NAMESPACES();
+  const std::string peer = R"(
+ip link set lo up
+$bin/shared_memory_peer 3 >/tmp/ready.$$ & peer=$!
+until grep -q ready /tmp/ready.$$; do sleep 0.05; done; rm /tmp/ready.$$
+)";
+  auto found = ask_in_script(peer + "unshare -i $doctor; code=$?; kill $peer; exit $code");
+  EXPECT_TRUE(found.contains("ipc namespaces"));
+  EXPECT_FALSE(found.contains("stale shared memory"));
+  found = ask_in_script(peer + "$doctor; code=$?; kill $peer; exit $code");
+  EXPECT_FALSE(found.contains("ipc namespaces"));
+  EXPECT_FALSE(found.contains("users"));
+  found = ask_in_script(peer + "kill -9 $peer; wait $peer; exec $doctor");
+  EXPECT_TRUE(found.contains("stale shared memory"));
+  found = ask_in_script(
+      std::string(peer).replace(peer.find("$bin"), 0, "setpriv --reuid=65534 --clear-groups ") +
+      "$doctor; code=$?; kill $peer; exit $code");
+  EXPECT_TRUE(found.contains("users"));
+}
+
+TEST_F(Doctor, NamesWhatInTheEnvironmentWouldChangeDds) {
+  NEEDS_NAMESPACES();
+  auto found = ask_in_script("ip link set lo up; ROS_DISCOVERY_SERVER=10.0.0.1:11811 exec $doctor");
+  EXPECT_TRUE(found.contains("environment"));
+  found = ask_in_script("ip link set lo up; cd " + folder_.string() +
+                        "; touch DEFAULT_FASTRTPS_PROFILES.xml; exec $doctor");
+  EXPECT_TRUE(found.contains("environment"));
+}
+
+TEST_F(Doctor, NamesABrokenProfileAndWhatFollows) {
+  fs::create_directories(folder_ / "share" / "dds");
+  std::ofstream(folder_ / "share" / "dds" / "laptop.xml") << "<dds/>";
+  service::Process::Options options;
+  options.command = {program("prehend")};
+  for (const std::string& word :
+       with_lab({"doctor", "--json", "--config", PREHEND_SOURCE "/deploy/lab.toml"}))
+    options.command.push_back(word);
+  options.output = folder_ / "doctor.out";
+  options.log = folder_ / "doctor.log";
+  options.environment = {{"PREHEND_SHARE", (folder_ / "share").string()}};
+  auto process = service::Process::start(options);
+  ASSERT_TRUE(process);
+  const auto exit = process->wait(seconds(30));
+  std::ifstream stream(options.output);
+  const auto found =
+      faults({exit ? exit->code : -1, {std::istreambuf_iterator<char>(stream), {}}, ""});
+  EXPECT_TRUE(found.contains("profile"));
+  EXPECT_TRUE(found.contains("joining the lab"));
+}
+
+TEST_F(Doctor, NamesAWrongRigAndAWrongDomain) {
+  auto simulation = start("simulation");
+  auto statuses = reader(dds::service_status);
+  ASSERT_TRUE(hear<v1::ServiceStatus>(statuses, 15, [](const auto&) { return true; }));
+  participant_.reset();
+  auto found = ask();
+  EXPECT_FALSE(found.contains("rig"));
+  EXPECT_FALSE(found.contains("domain"));
+  found = ask({"lab.rig=another"});
+  EXPECT_NE(found["rig"].find(name_), std::string::npos) << found["rig"];
+  found = ask({"lab.domain=" + std::to_string(domain_ == 200 ? 10 : 201)});
+  EXPECT_NE(found["domain"].find(std::to_string(domain_)), std::string::npos) << found["domain"];
+}
+
+TEST_F(Doctor, NamesAnotherVersionsTypes) {
+  auto writer = dds::RawWriter::create(
+      *participant_, {"object/detection", "prehend::v2::ObjectDetection", true, {}});
+  ASSERT_TRUE(writer);
+  EXPECT_NE(ask()["types"].find("v2"), std::string::npos);
+}
+
+TEST_F(Doctor, NamesADiscoveryServerThatDoesNotAnswer) {
+  const std::string address = "127.0.0.1:" + std::to_string(20000 + ::getpid() % 10000);
+  const Strings sets{"lab.network=server", "lab.server=[\"" + address + "\"]"};
+  EXPECT_TRUE(ask(sets).contains("discovery server"));
+  auto server = start_program("prehend", with_lab({"discovery-server", "--listen", address}));
+  EXPECT_TRUE(eventually(20, [&] { return !ask(sets).contains("discovery server"); }));
+}
+
+// A status with the stamp that another host's clock would give it.
+TEST_F(Doctor, NamesAHostWhoseClockIsWrong) {
+  auto statuses = writer(dds::service_status);
+  std::atomic<bool> over = false;
+  std::thread other([&] {
+    for (std::uint64_t n = 0; !over; ++n) {
+      v1::ServiceStatus status;
+      status.service("mapping@elsewhere/1");
+      status.host("elsewhere");
+      status.name("mapping");
+      eprosima::fastrtps::rtps::WriteParams parameters;
+      eprosima::fastrtps::rtps::Time_t stamp;
+      stamp.from_ns(now_ns() - 3'600'000'000'000);
+      parameters.source_timestamp(stamp);
+      statuses.raw().write(&status, parameters);
+      std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    }
+  });
+  const auto found = ask();
+  over = true;
+  other.join();
+  ASSERT_TRUE(found.contains("clocks"));
+  EXPECT_NE(found.at("clocks").find("elsewhere"), std::string::npos);
+}
+
+TEST_F(Doctor, NamesASecuredPeerBesideAnUnsecuredOneAndTheReverse) {
+  const Time now = from_ns(now_ns());
+  const auto store = cli::Keystore::init(folder_ / "keys", std::chrono::days(365), now);
+  ASSERT_TRUE(store);
+  const std::string secured = "lab.keys=" + store->folder().string();
+  EXPECT_TRUE(ask({secured}).contains("security")) << "this test is there without keys";
+  participant_.reset();
+  EXPECT_FALSE(ask({secured}).contains("security"));
+  auto simulation = start("simulation", {secured});
+  EXPECT_TRUE(eventually(15, [&] { return ask().contains("security"); }));
+}
+
+TEST_F(Doctor, NamesKeysThatAreOpenOrAboutToExpire) {
+  const Time now = from_ns(now_ns());
+  const auto store = cli::Keystore::init(folder_ / "keys", std::chrono::days(10), now);
+  ASSERT_TRUE(store);
+  const std::string keys = "lab.keys=" + (store->folder() / "viewer").string();
+  EXPECT_NE(ask({keys})["keys"].find("10 days"), std::string::npos);
+  ASSERT_TRUE(store->add("viewer", dds::Role::viewer, std::chrono::days(100), true, now));
+  EXPECT_FALSE(ask({keys}).contains("keys"));
+  fs::permissions(store->folder() / "viewer" / "key.pem", fs::perms::others_read,
+                  fs::perm_options::add);
+  EXPECT_NE(ask({keys})["keys"].find("read by others"), std::string::npos);
+}
+
+TEST_F(Doctor, NamesDevicesThatCannotBeOpenedAndProgramsThatAreMissing) {
+  EXPECT_TRUE(ask({"glove.port=/dev/prehend-no-such-port"}).contains("devices"));
+  fs::create_directories(folder_ / "bin");
+  fs::copy(program("prehend"), folder_ / "bin" / "prehend");
+  service::Process::Options options;
+  options.command = {(folder_ / "bin" / "prehend").string()};
+  for (const std::string& word : with_lab({"doctor", "--json", "--listen", "0.5"}))
+    options.command.push_back(word);
+  options.output = folder_ / "doctor.out";
+  options.environment = {{"PREHEND_SHARE", std::string(PREHEND_PROGRAMS) + "/../share/prehend"}};
+  auto process = service::Process::start(options);
+  ASSERT_TRUE(process);
+  const auto exit = process->wait(seconds(30));
+  std::ifstream stream(options.output);
+  const auto found =
+      faults({exit ? exit->code : -1, {std::istreambuf_iterator<char>(stream), {}}, ""});
+  EXPECT_TRUE(found.contains("programs"));
+}
+
+}  // namespace
+}  // namespace prehend::integration
