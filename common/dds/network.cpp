@@ -1,12 +1,14 @@
 #include "network.hpp"
 
 #include <arpa/inet.h>
+#include <fastdds/rtps/transport/TCPv4TransportDescriptor.h>
 #include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
 #include <fastrtps/utils/IPLocator.h>
 #include <fmt/format.h>
 #include <ifaddrs.h>
 #include <net/if.h>
 #include <netdb.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
@@ -23,6 +25,7 @@
 #include <utility>
 
 #include "dds_log.hpp"
+#include "security.hpp"
 
 namespace prehend::dds {
 
@@ -97,7 +100,9 @@ std::string violation(const std::string& profile, const fdds::DomainParticipantQ
   if (qos.transport().user_transports.empty()) return "it has no transport";
   for (const auto& given : qos.transport().user_transports) {
     const auto* udp = dynamic_cast<transport::UDPv4TransportDescriptor*>(given.get());
-    if (!udp) return "it is not UDPv4 only";
+    const auto* tcp = dynamic_cast<transport::TCPv4TransportDescriptor*>(given.get());
+    if (!udp && profile != "wan") return "it is not UDPv4 only";
+    if (!udp && !tcp) return "its transports are not UDPv4 and TCPv4";
     if (profile == "laptop" && udp->interfaceWhiteList != std::vector<std::string>{"127.0.0.1"})
       return "it is not confined to 127.0.0.1";
   }
@@ -162,6 +167,77 @@ Expected<void> use_servers(fdds::DomainParticipantQos& qos, const Network& netwo
   return {};
 }
 
+/// Where the processes of a listening site are found.
+constexpr std::uint16_t first_wan_port = 7420;
+constexpr std::uint16_t wan_ports = 16;
+
+/// A port that nobody listens at; 0: all are taken.
+std::uint16_t free_port() {
+  for (std::uint16_t port = first_wan_port; port < first_wan_port + wan_ports; ++port) {
+    const int socket = ::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
+    sockaddr_in address{};
+    address.sin_family = AF_INET;
+    address.sin_port = htons(port);
+    const int on = 1;
+    ::setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &on, sizeof on);
+    const bool free =
+        ::bind(socket, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0;
+    ::close(socket);
+    if (free) return port;
+  }
+  return 0;
+}
+
+/// Only one side dials: when two connect to each other at once, Fast DDS 2.9 takes the two
+/// connections for one and both fail.
+Expected<void> use_peers(fdds::DomainParticipantQos& qos, const Network& network) {
+  const auto& all = qos.transport().user_transports;
+  const auto found = std::find_if(all.begin(), all.end(), [](const auto& one) {
+    return dynamic_cast<transport::TCPv4TransportDescriptor*>(one.get()) != nullptr;
+  });
+  if (found == all.end()) return fail("has no TCPv4 transport", "profile wan");
+  auto& tcp = dynamic_cast<transport::TCPv4TransportDescriptor&>(**found);
+  if (!network.keys.empty()) {
+    using Tls = transport::TCPTransportDescriptor::TLSConfig;
+    tcp.apply_security = true;
+    tcp.tls_config.verify_file = network.keys / key_files::authority;
+    tcp.tls_config.cert_chain_file = network.keys / key_files::certificate;
+    tcp.tls_config.private_key_file = network.keys / key_files::key;
+    tcp.tls_config.add_verify_mode(Tls::VERIFY_PEER);
+    tcp.tls_config.add_verify_mode(Tls::VERIFY_FAIL_IF_NO_PEER_CERT);
+    for (const auto old : {Tls::NO_SSLV2, Tls::NO_SSLV3, Tls::NO_TLSV1, Tls::NO_TLSV1_1})
+      tcp.tls_config.add_option(old);
+  }
+  if (network.peers.empty()) {
+    const std::uint16_t port = free_port();
+    if (port == 0)
+      return fail("all ports from 7420 to 7435 are taken", "lab.network = wan",
+                  "end other processes of the lab on this machine");
+    tcp.add_listener_port(port);
+    return {};
+  }
+  auto& initial = qos.wire_protocol().builtin.initialPeersList;
+  // Who names peers is no longer given the group of its own site.
+  rtps::Locator_t site;
+  site.kind = LOCATOR_KIND_UDPv4;
+  rtps::IPLocator::setIPv4(site, "239.255.0.1");
+  initial.push_back(site);
+  for (const std::string& text : network.peers) {
+    const auto address = resolve(text, std::uint16_t{0});
+    if (!address) return tl::unexpected(address.error());
+    const std::uint16_t first = address->port ? address->port : first_wan_port;
+    for (int n = 0; n < (address->port ? 1 : wan_ports); ++n) {
+      rtps::Locator_t peer;
+      peer.kind = LOCATOR_KIND_TCPv4;
+      rtps::IPLocator::setIPv4(peer, address->ip[0], address->ip[1], address->ip[2],
+                               address->ip[3]);
+      rtps::IPLocator::setPhysicalPort(peer, static_cast<std::uint16_t>(first + n));
+      initial.push_back(peer);
+    }
+  }
+  return {};
+}
+
 }  // namespace
 
 Expected<Address> resolve(const std::string& text, std::optional<std::uint16_t> port) {
@@ -195,21 +271,26 @@ Expected<Address> resolve(const std::string& text, std::optional<std::uint16_t> 
 Expected<fdds::DomainParticipantQos> participant_qos(const Network& network,
                                                      const Discovering& discovering) {
   take_charge();
-  constexpr std::string_view profiles[] = {"laptop", "lan", "server"};
+  constexpr std::string_view profiles[] = {"laptop", "lan", "server", "wan"};
   if (std::find(std::begin(profiles), std::end(profiles), network.profile) == std::end(profiles))
-    return fail("must be laptop, lan or server, not " + network.profile, "lab.network");
+    return fail("must be laptop, lan, server or wan, not " + network.profile, "lab.network");
   auto qos = load(network.profile);
   if (!qos) return qos;
   if (const std::string wrong = violation(network.profile, *qos); !wrong.empty())
     return fail(wrong, fmt::format("profile {}", network.profile), "see deploy/dds/README.md");
   if (const auto up = need_interface(network.profile); !up) return tl::unexpected(up.error());
+  // Each participant changes its own: the descriptors are shared otherwise.
+  for (auto& given : qos->transport().user_transports) {
+    if (const auto* udp = dynamic_cast<transport::UDPv4TransportDescriptor*>(given.get()))
+      given = std::make_shared<transport::UDPv4TransportDescriptor>(*udp);
+    else if (const auto* tcp = dynamic_cast<transport::TCPv4TransportDescriptor*>(given.get()))
+      given = std::make_shared<transport::TCPv4TransportDescriptor>(*tcp);
+  }
+  if (network.profile == "wan")
+    if (const auto used = use_peers(*qos, network); !used) return tl::unexpected(used.error());
   if (network.profile == "server")
     if (const auto used = use_servers(*qos, network, discovering); !used)
       return tl::unexpected(used.error());
-  // Each participant may enlarge its buffers: the descriptors are its own.
-  for (auto& given : qos->transport().user_transports)
-    if (const auto* udp = dynamic_cast<transport::UDPv4TransportDescriptor*>(given.get()))
-      given = std::make_shared<transport::UDPv4TransportDescriptor>(*udp);
   return qos;
 }
 

@@ -14,8 +14,9 @@ namespace prehend::dds {
 /// How a process reaches the others. The profiles themselves are XML files of Fast DDS in
 /// deploy/dds.
 struct Network {
-  std::string profile = "laptop";    // laptop, lan or server
+  std::string profile = "laptop";    // laptop, lan, server or wan
   std::vector<std::string> servers;  // server: ADDRESS:PORT of each discovery server
+  std::vector<std::string> peers;    // wan: HOST or HOST:PORT to dial; empty: this site listens
   std::filesystem::path keys;        // of this process, see security.hpp; empty: not secured
 };
 

@@ -189,17 +189,18 @@ Expected<Participant> Participant::create(const ParticipantOptions& options) {
     return fail("domain must lie in 0 to 232", "lab.domain");
   auto state = std::make_unique<State>();
   state->options = options;
-  auto qos = participant_qos(options.network, {options.listener != nullptr, options.serves});
-  if (!qos) return tl::unexpected(qos.error());
-  qos->name(options.name);
-  if (!options.network.keys.empty()) {
+  Network network = options.network;
+  if (!network.keys.empty()) {
     const auto now = std::chrono::time_point_cast<Duration>(std::chrono::system_clock::now());
-    auto keys =
-        load_keys(options.network.keys, options.role.empty() ? options.name : options.role, now);
+    auto keys = load_keys(network.keys, options.role.empty() ? options.name : options.role, now);
     if (!keys) return tl::unexpected(keys.error());
-    secure(*qos, *keys);
+    network.keys = keys->folder;
     state->keys.emplace(std::move(*keys));
   }
+  auto qos = participant_qos(network, {options.listener != nullptr, options.serves});
+  if (!qos) return tl::unexpected(qos.error());
+  qos->name(options.name);
+  if (state->keys) secure(*qos, *state->keys);
   state->guard.emplace(options.listener,
                        state->keys ? std::optional(state->keys->authority) : std::nullopt);
   // Who listens to the whole domain is a recorder: pictures that come while it has no processor

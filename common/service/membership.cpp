@@ -9,6 +9,7 @@ dds::ParticipantOptions membership(const Config& config, const std::string& name
           .rig = config.text("lab.rig"),
           .network = {.profile = config.text("lab.network"),
                       .servers = config.names("lab.server"),
+                      .peers = config.names("lab.peers"),
                       .keys = config.path("lab.keys")},
           .role = role};
 }
