@@ -45,6 +45,7 @@ class Ear : public fdds::DomainParticipantListener {
  public:
   struct Endpoint {
     std::string topic, type;
+    bool writes = false;
     std::vector<std::string> rigs;
   };
   std::mutex mutex;
@@ -59,18 +60,18 @@ class Ear : public fdds::DomainParticipantListener {
   }
   void on_publisher_discovery(fdds::DomainParticipant*,
                               rtps::WriterDiscoveryInfo&& found) override {
-    if (found.status == rtps::WriterDiscoveryInfo::DISCOVERED_WRITER) keep(found.info);
+    if (found.status == rtps::WriterDiscoveryInfo::DISCOVERED_WRITER) keep(found.info, true);
   }
   void on_subscriber_discovery(fdds::DomainParticipant*,
                                rtps::ReaderDiscoveryInfo&& found) override {
-    if (found.status == rtps::ReaderDiscoveryInfo::DISCOVERED_READER) keep(found.info);
+    if (found.status == rtps::ReaderDiscoveryInfo::DISCOVERED_READER) keep(found.info, false);
   }
 
  private:
   template <class Proxy>
-  void keep(const Proxy& info) {
+  void keep(const Proxy& info, bool writes) {
     const std::scoped_lock lock(mutex);
-    endpoints.push_back({info.topicName().to_string(), info.typeName().to_string(),
+    endpoints.push_back({info.topicName().to_string(), info.typeName().to_string(), writes,
                          info.m_qos.m_partition.getNames()});
   }
 };
@@ -91,7 +92,7 @@ Finding judge_rig(const std::string& own, const std::vector<Ear::Endpoint>& endp
   std::set<std::string> others;
   bool here = false;
   for (const Ear::Endpoint& endpoint : endpoints)
-    if (endpoint.topic == dds::service_status.name)
+    if (endpoint.writes && endpoint.topic == dds::service_status.name)
       for (const std::string& rig : endpoint.rigs) {
         here = here || rig == own;
         if (rig != own) others.insert(rig);
