@@ -43,7 +43,7 @@ struct AddArguments {
 using Next = std::function<Expected<std::optional<Picture>>()>;
 
 Expected<Next> from_topic(const service::Config& config) {
-  auto participant = dds::Participant::create(service::membership(config, "objects-add"));
+  auto participant = dds::Participant::create(service::membership(config, "objects-add", "viewer"));
   if (!participant) return tl::unexpected(participant.error());
   const auto shared = std::make_shared<dds::Participant>(std::move(*participant));
   auto reader = shared->reader(dds::camera_image);

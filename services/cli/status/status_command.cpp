@@ -75,7 +75,7 @@ int status_command(const std::vector<std::string>& arguments) {
 
   const auto config = lab.load();
   if (!config) return service::complain(config.error(), service::exit_wrong_use);
-  auto participant = dds::Participant::create(service::membership(*config, "prehend"));
+  auto participant = dds::Participant::create(service::membership(*config, "prehend", "viewer"));
   if (!participant) return service::complain(participant.error(), service::exit_broken);
   auto statuses = participant->reader(dds::service_status);
   if (!statuses) return service::complain(statuses.error(), service::exit_broken);
