@@ -112,7 +112,8 @@ until grep -q ready /tmp/ready.$$; do sleep 0.05; done; rm /tmp/ready.$$
 
 TEST_F(Doctor, NamesWhatInTheEnvironmentWouldChangeDds) {
   if (!may_make_namespaces()) GTEST_SKIP() << "namespaces need root and ip";
-  auto found = ask_in_script("ip link set lo up; ROS_DISCOVERY_SERVER=10.0.0.1:11811 exec $doctor");
+  auto found =
+      ask_in_script("ip link set lo up; export ROS_DISCOVERY_SERVER=10.0.0.1:11811; exec $doctor");
   EXPECT_TRUE(found.contains("environment"));
   found = ask_in_script("ip link set lo up; cd " + folder_.string() +
                         "; touch DEFAULT_FASTRTPS_PROFILES.xml; exec $doctor");
