@@ -51,8 +51,9 @@ class Doctor : public Rig {
                         << script;
     service::Process::Options options;
     options.command = {"unshare", "-n", "-m", "-i", "sh", file};
-    options.log = folder_ / "script.log";
-    options.output = folder_ / "script.out";
+    const std::string name = "script-" + std::to_string(++scripts_);
+    options.log = folder_ / (name + ".log");
+    options.output = folder_ / (name + ".out");
     auto process = service::Process::start(options);
     if (!process) throw std::runtime_error(process.error().message());
     const auto exit = process->wait(seconds(60));
@@ -63,6 +64,8 @@ class Doctor : public Rig {
     };
     return faults({exit ? exit->code : -1, text(options.output), text(options.log)});
   }
+  int scripts_ = 0;
+
   static bool may_make_namespaces() {
     return std::system(
                "unshare -n -m -i sh -c 'mount -t tmpfs none /dev/shm && ip link set lo up' "
