@@ -155,7 +155,8 @@ $there ip link set lo up; $there ip addr add 10.9.0.2/24 dev there; $there ip li
 iptables -A INPUT -i here -p udp -j DROP && $there iptables -A INPUT -i there -p udp -j DROP ||
   exit 77
 keys=$(mktemp -d)/keys other=$(mktemp -d)/keys
-trap 'kill $(jobs -p); rm -r ${keys%/keys} ${other%/keys}' EXIT
+simulation=
+trap 'kill $far $simulation || true; rm -r ${keys%/keys} ${other%/keys}' EXIT
 $bin/prehend keys init $keys; $bin/prehend keys init $other
 wan="$lab --set lab.network=wan"
 sees() { $there $bin/prehend status --wait simulation $wan --set 'lab.peers=["10.9.0.1"]' "$@"; }
