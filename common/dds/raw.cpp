@@ -136,6 +136,11 @@ class RawReader::Listener : public fdds::DataReaderListener {
     for (RawSample& sample : samples) take_(std::move(sample));
   }
 
+  std::size_t writers() {
+    const std::scoped_lock lock(mutex_);
+    return writers_.size();
+  }
+
   std::atomic<std::uint64_t> lost = 0, received = 0;
 
  private:
@@ -226,6 +231,9 @@ std::uint64_t RawReader::lost() const {
 }
 std::uint64_t RawReader::received() const {
   return listener_->received;
+}
+std::size_t RawReader::writers() const {
+  return listener_->writers();
 }
 
 Expected<RawWriter> RawWriter::create(Participant& participant, const RawTopic& topic) {

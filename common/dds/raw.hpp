@@ -99,6 +99,8 @@ class RawReader {
   /// numbers. Safe from every thread.
   std::uint64_t lost() const;
   std::uint64_t received() const;
+  /// Matched now.
+  std::size_t writers() const;
 
  private:
   class Listener;

@@ -294,8 +294,11 @@ int replay(const Arguments& arguments) {
     if (!time) return service::complain(time.error(), service::exit_wrong_use);
     start_at = *time;
   }
-  auto tape = Tape::open({arguments.files.begin(), arguments.files.end()},
-                         [&](const std::string& topic) { return arguments.topics.wants(topic); });
+  // Beacons of then would tell the services wrong clocks now.
+  const auto wanted = [&](const std::string& topic) {
+    return topic != dds::lab_beacon.name && arguments.topics.wants(topic);
+  };
+  auto tape = Tape::open({arguments.files.begin(), arguments.files.end()}, wanted);
   if (!tape) return service::complain(tape.error(), service::exit_broken);
   for (const Error& damage : tape->damage()) log::warning("{}", damage.message());
   const auto options = player_options(arguments, *tape);

@@ -57,7 +57,8 @@ v1::OperatorReply RecorderRig::order(const std::string& target, const std::strin
 
 std::vector<Played> RecorderRig::content(const std::string& path, const std::string& topic) {
   auto tape = recorder::Tape::open({path}, [&](const std::string& name) {
-    return topic.empty() ? !name.starts_with("service/") && !name.starts_with("operator/")
+    return topic.empty() ? !name.starts_with("service/") && !name.starts_with("operator/") &&
+                               name != "lab/beacon"
                          : name == topic;
   });
   EXPECT_TRUE(tape) << tape.error().message();

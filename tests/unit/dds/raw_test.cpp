@@ -10,6 +10,7 @@
 #include <map>
 #include <prehend/dds/raw.hpp>
 #include <random>
+#include <thread>
 
 namespace prehend::dds {
 namespace {
@@ -58,6 +59,14 @@ struct Raw : testing::Test {
     while (status.current_count == 0 && std::chrono::steady_clock::now() < give_up)
       writer.get_publication_matched_status(status);
     ASSERT_GT(status.current_count, 0);
+  }
+  /// The reader may know the writer later than the other way round. What is written meanwhile it
+  /// gets only as far as the writer keeps it: of this topic one sample an instance.
+  static bool met(const RawReader& reader) {
+    const auto give_up = std::chrono::steady_clock::now() + std::chrono::seconds(5);
+    while (reader.writers() == 0 && std::chrono::steady_clock::now() < give_up)
+      std::this_thread::yield();
+    return reader.writers() > 0;
   }
   static bool match(Discovered& out, Collector<Discovered>& found, const std::string& topic) {
     const auto there = [&](const Discovered& one) { return one.topic.name == topic && !one.gone; };
@@ -117,6 +126,7 @@ TEST_F(Raw, BytesKeysEndsAndStampsPassThrough) {
                                   [&](RawSample&& sample) { taken.add(std::move(sample)); });
   ASSERT_TRUE(reader) << reader.error().message();
   meet(writer->raw());
+  ASSERT_TRUE(met(**reader));
 
   ASSERT_TRUE(writer->write(detection(4, "Talc")));
   ASSERT_TRUE(writer->write(detection(7, "Cup")));
@@ -145,6 +155,7 @@ TEST_F(Raw, BytesKeysEndsAndStampsPassThrough) {
   eprosima::fastdds::dds::PublicationMatchedStatus status;
   while (status.current_count < 2 && std::chrono::steady_clock::now() < give_up)
     raw->raw().get_publication_matched_status(status);
+  ASSERT_TRUE(met(**second_reader));
   for (const RawSample& sample : first) EXPECT_TRUE(raw->write(sample, sample.sent));
   const auto second = again.wait(5);
   ASSERT_EQ(second.size(), 5u);
