@@ -27,6 +27,8 @@ void DescriptorChoice::add_to(CLI::App& command) {
       ->check(CLI::IsMember({"idf-hellinger", "hellinger", "intersection"}));
   command.add_option("--varied", varied_, "copies of each view under another light, size, place")
       ->check(CLI::Range(0, 20));
+  command.add_option("--parts", parts_, "copies of each view of which a part is hidden")
+      ->check(CLI::Range(0, 20));
 }
 
 Expected<DescriptorOptions> DescriptorChoice::options(const Dataset& dataset) const {
@@ -43,6 +45,7 @@ Expected<DescriptorOptions> DescriptorChoice::options(const Dataset& dataset) co
   made.space.brightness_weight = brightness_.value_or(made.space.brightness_weight);
   made.colours = colours_.value_or(made.colours);
   made.varied = varied_.value_or(made.varied);
+  made.parts = parts_.value_or(made.parts);
   made.same_pairs = same_pairs_.value_or(made.same_pairs);
   if (!distances_.empty()) made.distances = distances_;
   if (made.distances.size() > 16) return fail("more than 16 distances", "--distances");

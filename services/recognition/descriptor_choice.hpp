@@ -16,7 +16,7 @@ class DescriptorChoice {
 
  private:
   std::string purpose_, colour_space_, constancy_, weighting_;
-  std::optional<int> colours_, varied_;
+  std::optional<int> colours_, varied_, parts_;
   std::optional<double> brightness_, same_pairs_;
   std::vector<int> distances_;
 };

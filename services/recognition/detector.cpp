@@ -6,16 +6,10 @@
 #include <cmath>
 #include <limits>
 
+#include "verdict.hpp"
+
 namespace prehend::recognition {
 namespace {
-
-/// The part of a plane in a box, so that work on a small region does not visit the whole picture.
-Plane crop(const Plane& plane, int left, int top, int width, int height) {
-  Plane made(width, height);
-  for (int y = 0; y < height; ++y)
-    std::copy_n(&plane.values[plane.index(left, top + y)], width, &made.values[made.index(0, y)]);
-  return made;
-}
 
 struct Bounds {
   int left = 0, top = 0, right = 0, bottom = 0;
@@ -35,29 +29,18 @@ Box to_box(const Bounds& b) {
   return {double(b.left), double(b.top), double(b.right - b.left), double(b.bottom - b.top)};
 }
 
-/// What the outline adds to what the colours say, in odds. An object's shape and size are evidence
-/// of their own, measured on rendered scenes:
-/// - agreement: full multiplies the odds by seven, 0.7 leaves them, 0.4 divides them by seven;
-/// below
-///   0.35 there is no such object, nor where agreement and contrast together stay below 1.2;
-/// - contrast: objects have 0.85 to 1 along their outline, what is mistaken for one 0.5 to 0.85;
-/// - size: objects measure as the catalogue says, within 5 %; what is mistaken for one does not.
-double with_outline(double probability, const Fit& fit) {
-  if (fit.agreement < 0.35 || fit.agreement + fit.contrast < 1.2) return 0;
-  const double p = std::clamp(probability, 1e-9, 1 - 1e-9);
-  const double size = 0.7 - 0.5 * (fit.measured.array().log() / 0.08).matrix().squaredNorm();
-  const double evidence =
-      2 * (fit.agreement - 0.7) / 0.3 + 8 * (fit.contrast - 0.88) + std::max(size, -6.0);
-  const double odds = p / (1 - p) * std::exp(evidence);
-  return odds / (1 + odds);
-}
-
 }  // namespace
+
+/// Where a class was looked for, or found.
+struct Detector::Tried {
+  std::size_t class_index = 0;
+  Eigen::Vector2d at;  // x, y in W, m
+};
 
 struct Detector::Hypothesis {
   int class_index = -1;
   Fit fit;
-  double probability = 0;
+  double probability = 0, by_colours = 0;
   double rank = 0;
 };
 
@@ -67,6 +50,17 @@ Detector::Detector(ObjectModels models, const model::Catalogue& catalogue, Detec
     const model::CatalogueObject* known = catalogue.find(c.name);
     shapes_.push_back(known ? known->shape : model::Shape{});
   }
+}
+
+std::optional<Detector::Hypothesis> Detector::measure(const Frame& frame, const CameraModel& camera,
+                                                      std::size_t c, double x, double y,
+                                                      double reach) const {
+  const Eigen::VectorXf& colours = models_.classes[c].colours;
+  auto fit = localise(frame, camera, shapes_[c], colours, x, y, reach);
+  // The edge of what was searched is no maximum: look further from there.
+  if (fit && std::hypot(fit->at.x - x, fit->at.y - y) > 0.75 * reach)
+    fit = localise(frame, camera, shapes_[c], colours, fit->at.x, fit->at.y, reach);
+  return fit ? weigh(frame, c, std::move(*fit)) : std::nullopt;
 }
 
 std::optional<Detector::Hypothesis> Detector::weigh(const Frame& frame, std::size_t c,
@@ -81,7 +75,10 @@ std::optional<Detector::Hypothesis> Detector::weigh(const Frame& frame, std::siz
   Hypothesis made;
   made.class_index = static_cast<int>(c);
   made.rank = seen.similarity[static_cast<Eigen::Index>(c)] * static_cast<float>(fit.agreement);
-  made.probability = seen.best == made.class_index ? with_outline(seen.probability, fit) : 0;
+  made.by_colours = seen.best == made.class_index ? seen.probability : 0;
+  if (made.by_colours > 0)
+    made.probability =
+        verdict({made.by_colours, fit.agreement, fit.contrast, fit.measured, fit.hidden});
   made.fit = std::move(fit);
   return made;
 }
@@ -91,6 +88,7 @@ Sighting Detector::sighting_of(const Hypothesis& hypothesis) const {
   return {.class_index = hypothesis.class_index,
           .name = models_.classes[c].name,
           .probability = hypothesis.probability,
+          .by_colours = hypothesis.by_colours,
           .box = to_box(bounds(hypothesis.fit.region)),
           .shape = shapes_[c],
           .at = hypothesis.fit.at,
@@ -98,12 +96,13 @@ Sighting Detector::sighting_of(const Hypothesis& hypothesis) const {
           .agreement = hypothesis.fit.agreement,
           .measured = hypothesis.fit.measured,
           .contrast = hypothesis.fit.contrast,
+          .hidden = hypothesis.fit.hidden,
           .region = hypothesis.fit.region};
 }
 
 std::optional<Detector::Hypothesis> Detector::examine(const Frame& frame, const CameraModel& camera,
-                                                      const Votes& votes,
-                                                      const Region& region) const {
+                                                      const Votes& votes, const Region& region,
+                                                      std::vector<Tried>& tried) const {
   // The classes with most votes in the region.
   std::vector<std::pair<float, std::size_t>> classes;
   for (std::size_t c = 0; c < votes.classes.size(); ++c) {
@@ -116,6 +115,11 @@ std::optional<Detector::Hypothesis> Detector::examine(const Frame& frame, const 
     classes.resize(static_cast<std::size_t>(options_.hypotheses));
   std::erase_if(classes, [&](const auto& c) { return c.first < 0.2f * classes.front().first; });
 
+  // What is accepted comes before what is only more alike.
+  const auto better = [&](const Hypothesis& a, const Hypothesis& b) {
+    const bool a_true = a.probability >= options_.accept, b_true = b.probability >= options_.accept;
+    return a_true != b_true ? a_true : a.rank > b.rank;
+  };
   std::optional<Hypothesis> best;
   for (const auto& [votes_of_class, c] : classes) {
     const model::Shape& shape = shapes_[c];
@@ -125,14 +129,15 @@ std::optional<Detector::Hypothesis> Detector::examine(const Frame& frame, const 
     const auto& t = options_.table;
     if (place->x() < t[0] || place->x() > t[1] || place->y() < t[2] || place->y() > t[3]) continue;
     const double reach = std::clamp(model::half_extents(shape).maxCoeff(), 0.04, 0.08);
-    const Eigen::VectorXf& colours = models_.classes[c].colours;
-    auto fit = localise(frame, camera, shape, colours, place->x(), place->y(), reach);
-    // The edge of what was searched is no maximum: look further from there.
-    if (fit && std::hypot(fit->at.x - place->x(), fit->at.y - place->y()) > 0.75 * reach)
-      fit = localise(frame, camera, shape, colours, fit->at.x, fit->at.y, reach);
-    if (!fit) continue;
-    auto hypothesis = weigh(frame, c, std::move(*fit));
-    if (hypothesis && (!best || hypothesis->rank > best->rank)) best = std::move(hypothesis);
+    // A start near another, or near what was found from there, finds the same outline again.
+    const bool again = std::any_of(tried.begin(), tried.end(), [&, c = c](const Tried& before) {
+      return before.class_index == c && (before.at - place->head<2>()).norm() < 0.75 * reach;
+    });
+    if (again) continue;
+    tried.push_back({c, place->head<2>()});
+    auto hypothesis = measure(frame, camera, c, place->x(), place->y(), reach);
+    if (hypothesis) tried.push_back({c, {hypothesis->fit.at.x, hypothesis->fit.at.y}});
+    if (hypothesis && (!best || better(*hypothesis, *best))) best = std::move(hypothesis);
   }
   return best;
 }
@@ -149,13 +154,16 @@ int Detector::search(Frame& frame, const CameraModel& camera, Plane& open, int m
     before = found.size();
     Votes votes = scan(models_, frame.colours, options_.scan, frame.taken);
     for (const Bounds& b : nothing) erase(votes, b.left, b.top, b.right, b.bottom);
+    std::vector<Tried> tried;
     for (int tries = 0; tries < options_.most_tries;) {
       if (static_cast<int>(found.size()) >= options_.most_objects) break;
       const Region region = grow_strongest(votes, open);
       if (region.class_index < 0) break;
       if (examined == most) return examined;
-      ++examined;
-      const auto hypothesis = examine(frame, camera, votes, region);
+      const std::size_t measured = tried.size();
+      const auto hypothesis = examine(frame, camera, votes, region, tried);
+      const bool looked = tried.size() > measured;
+      examined += looked;
       if (!hypothesis || hypothesis->probability < options_.accept) {
         if (doubtful && hypothesis && hypothesis->probability >= options_.doubtful)
           doubtful->push_back(sighting_of(*hypothesis));
@@ -163,7 +171,7 @@ int Detector::search(Frame& frame, const CameraModel& camera, Plane& open, int m
         erase(votes, region.left, region.top, region.right, region.bottom);
         for (const Eigen::Vector2i& cell : region.cells)
           if (cell.x() < open.width && cell.y() < open.height) open.at(cell.x(), cell.y()) = 0;
-        ++tries;
+        tries += looked;
         continue;
       }
       Sighting sighting = sighting_of(*hypothesis);
@@ -190,19 +198,18 @@ int Detector::search(Frame& frame, const CameraModel& camera, Plane& open, int m
   return examined;
 }
 
+std::optional<Sighting> Detector::judge(const Frame& frame, const CameraModel& camera,
+                                        std::size_t c, double x, double y) const {
+  const auto hypothesis = measure(frame, camera, c, x, y, 0.04);
+  return hypothesis ? std::optional(sighting_of(*hypothesis)) : std::nullopt;
+}
+
 std::optional<Sighting> Detector::follow(const Frame& frame, const CameraModel& camera,
                                          const Sighting& before) const {
-  const auto c = static_cast<std::size_t>(before.class_index);
-  constexpr double reach = 0.04;  // m, how far it may have gone since
-  auto fit = localise(frame, camera, shapes_[c], models_.classes[c].colours, before.at->x,
-                      before.at->y, reach);
-  if (fit && std::hypot(fit->at.x - before.at->x, fit->at.y - before.at->y) > 0.75 * reach)
-    fit = localise(frame, camera, shapes_[c], models_.classes[c].colours, fit->at.x, fit->at.y,
-                   reach);
-  if (!fit) return std::nullopt;
-  const auto hypothesis = weigh(frame, c, std::move(*fit));
-  if (!hypothesis || hypothesis->probability < options_.accept) return std::nullopt;
-  return sighting_of(*hypothesis);
+  auto seen = judge(frame, camera, static_cast<std::size_t>(before.class_index), before.at->x,
+                    before.at->y);
+  if (!seen || seen->probability < options_.accept) return std::nullopt;
+  return seen;
 }
 
 Expected<std::vector<Sighting>> Detector::on_table(const Picture& picture,

@@ -21,6 +21,7 @@ struct Sighting {
   int class_index = -1;  // in the models
   std::string name;
   double probability = 0;  // that the name is right
+  double by_colours = 0;   // the same before the outline was looked at; 0: they name another class
   Box box;
   model::Shape shape;  // kind unknown for objects that are in no catalogue
   /// With a calibrated camera and a known shape: where it stands.
@@ -30,6 +31,7 @@ struct Sighting {
   /// Width and height measured in the picture, as shares of the catalogue's.
   Eigen::Vector2d measured = {1, 1};
   double contrast = 0;  // share of the outline along which the picture's colours change
+  double hidden = 0;    // share of it that something unknown stands before
   Silhouette region;    // pixels it covers there
   bool fresh = true;    // measured in this picture; false: nothing moved since it was
 };
@@ -40,7 +42,7 @@ struct DetectorOptions {
   double doubtful = 1;    // least probability of what is reported although it is not accepted
   int most_objects = 12;  // in a picture
   int hypotheses = 4;     // classes tried at each place
-  int most_tries = 5;     // places in a pass that turn out to be nothing before it ends
+  int most_tries = 16;    // places in a pass that turn out to be nothing before it ends
   /// The table top where objects are looked for: low x, high x, low y, high y in W, m.
   std::array<double, 4> table = {-0.65, 0.65, -0.5, 0.65};
 };
@@ -65,6 +67,10 @@ class Detector {
   /// when there is one. Returns how many places were examined.
   int search(Frame& frame, const CameraModel& camera, Plane& open, int most,
              std::vector<Sighting>& found, std::vector<Sighting>* doubtful = nullptr) const;
+  /// What is to be said of an object of the class near (x, y), however doubtful; none when no
+  /// outline fits.
+  std::optional<Sighting> judge(const Frame& frame, const CameraModel& camera,
+                                std::size_t class_index, double x, double y) const;
   /// The same object near where it was; none when it is not surely there.
   std::optional<Sighting> follow(const Frame& frame, const CameraModel& camera,
                                  const Sighting& before) const;
@@ -78,10 +84,15 @@ class Detector {
 
  private:
   struct Hypothesis;
+  struct Tried;
   Sighting sighting_of(const Hypothesis& hypothesis) const;
+  std::optional<Hypothesis> measure(const Frame& frame, const CameraModel& camera,
+                                    std::size_t class_index, double x, double y,
+                                    double reach) const;
   std::optional<Hypothesis> weigh(const Frame& frame, std::size_t class_index, Fit fit) const;
   std::optional<Hypothesis> examine(const Frame& frame, const CameraModel& camera,
-                                    const Votes& votes, const Region& region) const;
+                                    const Votes& votes, const Region& region,
+                                    std::vector<Tried>& tried) const;
 
   ObjectModels models_;
   std::vector<model::Shape> shapes_;  // of each class; kind unknown where the catalogue has none

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <prehend/recognition_picture/difference.hpp>
 
 namespace prehend::recognition {
 namespace {
@@ -32,25 +33,6 @@ void Movement::start(const Picture& picture) {
       std::copy_n(picture.at(x, y), 3, &background_[place(x, y, width_)]);
   const int side = options_.cell_size;
   differs_ = Plane((width_ + side - 1) / side, (height_ + side - 1) / side, 1);
-}
-
-bool Movement::differs(const std::uint8_t* seen, const float* before) const {
-  float most = 0, along = 0, squares = 0;
-  for (int c = 0; c < 3; ++c) {
-    const auto value = static_cast<float>(seen[c]);
-    most = std::max(most, std::abs(value - before[c]));
-    along += value * before[c];
-    squares += before[c] * before[c];
-  }
-  const auto threshold = static_cast<float>(options_.threshold);
-  if (most <= threshold) return false;
-  // The same colour, darker: what remains when the background is scaled to it is noise.
-  const float share = squares > 0 ? along / squares : 0;
-  if (share >= 1 || share < static_cast<float>(options_.darkest_shadow)) return true;
-  float rest = 0;
-  for (int c = 0; c < 3; ++c)
-    rest = std::max(rest, std::abs(static_cast<float>(seen[c]) - share * before[c]));
-  return rest > 0.5f * threshold;
 }
 
 const Plane& Movement::look(const Picture& picture) {
@@ -88,7 +70,8 @@ const Plane& Movement::look(const Picture& picture) {
       for (int y = row * side; y < std::min((row + 1) * side, height_); y += 2)
         for (int x = column * side; x < std::min((column + 1) * side, width_); x += 2) {
           ++all;
-          count += differs(picture.at(x / 2 * 2, y / 2 * 2), &background_[place(x, y, width_)]);
+          count += differs(picture.at(x / 2 * 2, y / 2 * 2), &background_[place(x, y, width_)],
+                           static_cast<float>(options_.threshold));
         }
       const bool yes = count > options_.least_share * all;
       differs_.at(column, row) = yes;

@@ -9,9 +9,6 @@ struct MovementOptions {
   int cell_size = 10;        // px
   double threshold = 20;     // grey levels of 255 by which a pixel must differ from the background
   double least_share = 0.1;  // of a cell's pixels, for the cell to differ
-  /// A pixel of the background's colour that has this share of its brightness or more, but less
-  /// than all of it, lies in a shadow.
-  double darkest_shadow = 0.45;
   double relearn_share = 0.5;  // of the cells: more that differ are no movement but another light
   double follow = 0.06;  // share of the new picture in the background where it does not differ
 };
@@ -36,7 +33,6 @@ class Movement {
 
  private:
   void start(const Picture& picture);
-  bool differs(const std::uint8_t* seen, const float* before) const;
 
   MovementOptions options_;
   int width_ = 0, height_ = 0;     // px

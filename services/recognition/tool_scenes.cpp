@@ -5,13 +5,13 @@
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
-#include <prehend/base/gnuplot.hpp>
 #include <prehend/base/log.hpp>
 #include <prehend/base/progress.hpp>
+#include <prehend/recognition/verdict.hpp>
+#include <prehend/recognition_learning/logistic.hpp>
 #include <prehend/recognition_learning/model_file.hpp>
-#include <prehend/recognition_trials/trials.hpp>
+#include <prehend/recognition_trials/roc.hpp>
 #include <prehend/service/arguments.hpp>
-#include <set>
 
 #include "service.hpp"
 #include "tool.hpp"
@@ -27,7 +27,8 @@ struct Arguments {
   std::string roc, list;
   int count = 40;
   std::uint64_t seed = 1;
-  bool distances = false, json = false;
+  std::vector<std::uint64_t> strangers;
+  bool distances = false, fit = false, json = false;
 };
 
 constexpr std::array all_kinds{Trial::open,     Trial::clutter, Trial::light,
@@ -50,6 +51,8 @@ Json to_json(const TrialSummary& s) {
   made["normalised_squared_error"] = s.normalised;
   made["normalised_squared_turn"] = s.normalised_turn;
   made["within_95"] = s.within_95;
+  made["misses"] = Json::object();
+  for (const auto& [cause, count] : s.misses) made["misses"][to_string(cause)] = count;
   return made;
 }
 
@@ -73,34 +76,59 @@ void print(const std::vector<TrialSummary>& rows) {
   }
 }
 
-/// Share of targets detected against frames with a false alarm, over all thresholds.
-Expected<void> draw_roc(const std::vector<TrialResult>& results, const std::string& file) {
-  std::set<double> thresholds;
-  int with_target = 0;
-  for (const TrialResult& r : results) {
-    with_target += !r.target.empty();
-    if (r.probability > 0) thresholds.insert(r.probability);
-    for (const Sighting& alarm : r.false_alarms) thresholds.insert(alarm.probability);
-  }
-  std::string points;
-  for (const double t : thresholds) {
-    int detected = 0, alarms = 0;
-    for (const TrialResult& r : results) {
-      detected += r.probability >= t;
-      alarms += std::any_of(r.false_alarms.begin(), r.false_alarms.end(),
-                            [&](const auto& alarm) { return alarm.probability >= t; });
+/// Why targets were missed.
+void print_misses(const std::vector<TrialSummary>& rows) {
+  constexpr std::array causes{Miss::search, Miss::no_outline, Miss::named, Miss::colours,
+                              Miss::outline};
+  if (std::all_of(rows.begin(), rows.end(), [](const auto& s) { return s.misses.empty(); })) return;
+  fmt::print("\n| missed |");
+  for (const Miss cause : causes) fmt::print(" {} |", to_string(cause));
+  fmt::print("\n|---|---|---|---|---|---|\n");
+  for (const TrialSummary& s : rows) {
+    if (s.misses.empty()) continue;
+    fmt::print("| {} |", to_string(s.trial));
+    for (const Miss cause : causes) {
+      const auto count = s.misses.find(cause);
+      fmt::print(" {} |", count == s.misses.end() ? 0 : count->second);
     }
-    points += fmt::format("{} {} {}\n", 100.0 * alarms / static_cast<double>(results.size()),
-                          100.0 * detected / std::max(1, with_target), t);
+    fmt::print("\n");
   }
-  return draw_by_gnuplot(
-      fmt::format("$roc << EOD\n{}EOD\n"
-                  "set xlabel 'frames with a false alarm, %'\nset ylabel 'targets detected, %'\n"
-                  "set grid\nset key off\nset yrange [*:100]\n"
-                  "plot $roc using 1:2 with linespoints pt 7 ps 0.4, "
-                  "$roc using 1:2:(sprintf('%.2f', $3)) every {} with labels offset 2,-0.7\n",
-                  points, std::max<std::size_t>(1, thresholds.size() / 8)),
-      file, 800, 480);
+}
+
+void print_roc(const std::vector<TrialResult>& results) {
+  fmt::print(
+      "\n| least probability | targets detected | frames of {} with a false alarm |\n"
+      "|---|---|---|\n",
+      results.size());
+  for (const double threshold : roc_thresholds) {
+    const RocPoint at = roc_at(threshold, results);
+    fmt::print("| {:.2f} | {:.1f} % | {:.2f} % |\n", threshold, 100 * at.detected, 100 * at.alarms);
+  }
+}
+
+/// The verdict's weights that suit these scenes best: fitted to all that was measured as an object.
+SignRow fit_verdict(const std::vector<TrialResult>& results, Json& report) {
+  std::vector<std::pair<SignRow, bool>> seen;
+  const auto add = [&](const std::vector<Sighting>& sightings, bool right) {
+    for (const Sighting& s : sightings)
+      seen.push_back({row({s.by_colours, s.agreement, s.contrast, s.measured, s.hidden}), right});
+  };
+  for (const TrialResult& r : results) {
+    add(r.true_ones, true);
+    add(r.false_alarms, false);
+  }
+  const auto n = static_cast<Eigen::Index>(seen.size());
+  Eigen::MatrixXd rows(n, SignRow::RowsAtCompileTime);
+  Eigen::VectorXd right(n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    rows.row(i) = seen[static_cast<std::size_t>(i)].first.transpose();
+    right[i] = seen[static_cast<std::size_t>(i)].second ? 1 : 0;
+  }
+  const SignRow made = logistic_fit(rows, right, Eigen::VectorXd::Ones(n));
+  report["fit"] = {{"objects", right.sum()},
+                   {"others", static_cast<double>(n) - right.sum()},
+                   {"weights", std::vector<double>(made.begin(), made.end())}};
+  return made;
 }
 
 int broken(const Error& error) {
@@ -118,41 +146,44 @@ int run(const Arguments& arguments) {
   if (!models) return broken(models.error());
   DetectorOptions options;
   options.accept = config->number("recognition.accept");
-  options.doubtful = arguments.roc.empty() ? 1 : 0.02;
+  options.doubtful = arguments.fit ? 1e-9 : arguments.roc.empty() ? 1 : 0.02;
   const Detector detector(std::move(*models), *catalogue, options);
 
   std::ofstream list;
   if (!arguments.list.empty()) {
     list.open(arguments.list);
     list << "kind,seed,target,probability,error_mm,turn_deg,distance_m,normalised,normalised_turn,"
-            "agreement,contrast,width,height,hidden,false_alarms\n";
+            "agreement,contrast,width,height,hidden,by_colours,miss,false_alarms\n";
   }
   const auto look = [&](Trial kind, const CameraModel& camera, Progress& progress) {
-    const TrialScenes scenes(*catalogue, camera);
     std::vector<TrialResult> results;
     const auto count = static_cast<std::size_t>(arguments.count);
-    for (std::size_t i = 0; i < count; ++i) {
-      const std::uint64_t seed = arguments.seed + i;
-      if (const auto scene = scenes.make(kind, seed)) {
-        results.push_back(try_scene(detector, camera, scenes, *scene));
+    const std::vector<std::uint64_t> sets =
+        arguments.strangers.empty() ? std::vector<std::uint64_t>{7001} : arguments.strangers;
+    std::optional<TrialScenes> scenes;
+    for (std::size_t k = 0; k < count * sets.size(); ++k) {
+      if (k % count == 0) scenes.emplace(*catalogue, camera, sets[k / count]);
+      const std::uint64_t seed = arguments.seed + k;
+      if (const auto scene = scenes->make(kind, seed)) {
+        results.push_back(try_scene(detector, camera, *scenes, *scene));
         TrialResult& r = results.back();
         r.trial = kind;
         r.seed = seed;
         if (list.is_open()) {
           list << fmt::format(
-              "{},{},{},{:.3f},{:.1f},{:.1f},{:.2f},{:.2f},{:.2f},{:.2f},{:.2f},{:.2f},{:.2f},{:."
-              "2f}",
+              "{},{},{},{:.3f},{:.1f},{:.1f},{:.2f},{:.2f},{:.2f},{:.2f},{:.2f},{:.2f},{:.2f},"
+              "{:.2f},{:.3f},{}",
               to_string(kind), seed, r.target, r.probability, 1000 * r.error, degrees(r.turn_error),
               r.distance, r.normalised, r.normalised_turn, r.agreement, r.contrast, r.measured.x(),
-              r.measured.y(), r.hidden);
+              r.measured.y(), r.hidden, r.by_colours, to_string(r.miss));
           for (const Sighting& alarm : r.false_alarms)
-            list << fmt::format(",{} {:.3f} {:.2f} {:.2f} {:.2f} {:.2f}", alarm.name,
+            list << fmt::format(",{} {:.3f} {:.2f} {:.2f} {:.2f} {:.2f} {:.3f}", alarm.name,
                                 alarm.probability, alarm.agreement, alarm.contrast,
-                                alarm.measured.x(), alarm.measured.y());
+                                alarm.measured.x(), alarm.measured.y(), alarm.by_colours);
           list << std::endl;
         }
       }
-      progress.show(i + 1, count);
+      progress.show(k + 1, count * sets.size());
     }
     return results;
   };
@@ -169,8 +200,21 @@ int run(const Arguments& arguments) {
     rows.push_back(summarise(kind, results, options.accept));
   }
   Json report{{"accept", options.accept}, {"kinds", Json::array()}};
+  if (arguments.fit) {
+    const SignRow weights = fit_verdict(results, report);
+    if (!arguments.json)
+      fmt::print(
+          "verdict fitted to {} objects and {} things measured as one:\n"
+          "  const SignRow weights{{{:.1f}}};\n\n",
+          report["fit"]["objects"].get<double>(), report["fit"]["others"].get<double>(),
+          fmt::join(weights, ", "));
+  }
   for (const TrialSummary& row : rows) report["kinds"].push_back(to_json(row));
-  if (!arguments.json) print(rows);
+  if (!arguments.json) {
+    print(rows);
+    print_misses(rows);
+    if (!arguments.roc.empty()) print_roc(results);
+  }
 
   if (arguments.distances) {
     report["distances"] = Json::array();
@@ -214,6 +258,11 @@ void add_scenes(CLI::App& app, int& exit_code) {
       ->capture_default_str();
   command->add_option("--seed", a->seed, "of the first scene")->capture_default_str();
   command
+      ->add_option("--strangers", a->strangers,
+                   "seed of what the strangers are, 7001; repeatable: so many scenes with each")
+      ->type_size(1)
+      ->allow_extra_args(false);
+  command
       ->add_option("--kind", a->kinds,
                    "open, clutter, light, occluded, empty or strangers; repeatable; default: all")
       ->check(CLI::IsMember({"open", "clutter", "light", "occluded", "empty", "strangers"}))
@@ -221,7 +270,9 @@ void add_scenes(CLI::App& app, int& exit_code) {
       ->allow_extra_args(false);
   command->add_flag("--distances", a->distances, "also the error at distances from 0.6 to 2 m");
   command->add_option("--roc", a->roc,
-                      "png of the targets detected against false alarms (by gnuplot)");
+                      "png of the targets detected against false alarms (by gnuplot), and a table");
+  command->add_flag("--fit", a->fit,
+                    "fits the verdict on what was measured as an object, and prints its weights");
   command->add_option("--list", a->list, "csv with a line a scene");
   command->add_flag("--json", a->json, "one JSON document");
   command->callback([a, &exit_code] { exit_code = run(*a); });

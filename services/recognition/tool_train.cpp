@@ -11,6 +11,7 @@
 #include <prehend/recognition_learning/dataset.hpp>
 #include <prehend/recognition_learning/model_file.hpp>
 #include <prehend/recognition_picture/picture_file.hpp>
+#include <prehend/recognition_rendering/strangers.hpp>
 #include <prehend/recognition_rendering/training_views.hpp>
 
 #include "descriptor_choice.hpp"
@@ -22,12 +23,12 @@ namespace {
 struct RenderArguments {
   std::string folder, catalogue;
   std::uint64_t seed = 1;
-  int views = 36;
+  int views = 36, others = 0;
   bool json = false;
 };
 
 struct TrainArguments {
-  std::string folder, model;
+  std::string folder, others, model;
   DescriptorChoice choice;
   bool json = false;
 };
@@ -43,10 +44,13 @@ int render(const RenderArguments& arguments) {
                         : std::filesystem::path(arguments.catalogue);
   const auto catalogue = model::Catalogue::load(file);
   if (!catalogue) return broken(catalogue.error());
-  const Renderer renderer(*catalogue);
+  // Other things than the trials' strangers (trial_scenes.hpp), or they would be known.
+  const auto objects = arguments.others > 0 ? strangers(arguments.others, 9000 + arguments.seed)
+                                            : catalogue->objects();
+  const Renderer renderer(objects);
   std::size_t written = 0, done = 0;
   Progress progress("rendering");
-  for (const model::CatalogueObject& object : catalogue->objects()) {
+  for (const model::CatalogueObject& object : objects) {
     const auto folder = std::filesystem::path(arguments.folder) / object.name;
     std::error_code error;
     std::filesystem::create_directories(folder, error);
@@ -61,15 +65,12 @@ int render(const RenderArguments& arguments) {
         if (!saved) return broken(saved.error());
       ++written;
     }
-    progress.show(++done, catalogue->objects().size());
+    progress.show(++done, objects.size());
   }
   if (arguments.json)
-    std::cout << nlohmann::ordered_json{{"classes", catalogue->objects().size()},
-                                        {"views", written}}
-              << "\n";
+    std::cout << nlohmann::ordered_json{{"classes", objects.size()}, {"views", written}} << "\n";
   else
-    fmt::print("{} views of {} objects in {}\n", written, catalogue->objects().size(),
-               arguments.folder);
+    fmt::print("{} views of {} objects in {}\n", written, objects.size(), arguments.folder);
   return 0;
 }
 
@@ -89,7 +90,14 @@ int train_models(const TrainArguments& arguments) {
     log::error("{}", options.error().message());
     return 2;
   }
-  const auto models = train(dataset->classes, *options);
+  Dataset others;
+  if (!arguments.others.empty()) {
+    auto read = load_dataset(arguments.others);
+    if (!read) return broken(read.error());
+    others = std::move(*read);
+    for (const Error& error : others.left_out) log::warning("left out: {}", error.message());
+  }
+  const auto models = train(dataset->classes, *options, 60, others.classes);
   if (!models) return broken(models.error());
   if (const auto saved = save_models(arguments.model, *models); !saved)
     return broken(saved.error());
@@ -118,6 +126,10 @@ void add_render(CLI::App& app, int& exit_code) {
   command->add_option("--seed", arguments->seed, "draws light, place and background");
   command->add_option("--views", arguments->views, "views an object")->check(CLI::Range(1, 10000));
   command->add_option("--catalogue", arguments->catalogue, "objects to draw");
+  command
+      ->add_option("--others", arguments->others,
+                   "draws so many things that are none of them instead")
+      ->check(CLI::Range(0, 10000));
   command->add_flag("--json", arguments->json, "one JSON document");
   command->callback([arguments, &exit_code] { exit_code = render(*arguments); });
 }
@@ -128,6 +140,8 @@ void add_train(CLI::App& app, int& exit_code) {
       app.add_subcommand("train", "Learns object models from a folder of pictures a class.");
   command->add_option("folder", arguments->folder, "holds a folder a class")->required();
   command->add_option("--model", arguments->model, "file to write")->required();
+  command->add_option("--others", arguments->others,
+                      "a folder of the same kind: things that are none of them");
   arguments->choice.add_to(*command);
   command->add_flag("--json", arguments->json, "one JSON document");
   command->callback([arguments, &exit_code] { exit_code = train_models(*arguments); });

@@ -12,8 +12,8 @@ namespace prehend::recognition {
 using Told = std::function<void(std::size_t done, std::size_t all)>;
 
 /// Names every picture by a recogniser that learned only the other folds (`fold`: one a view, class
-/// by class), and every stranger by each of these recognisers, in turn. `other_light`: what is named
-/// is not the picture but a varied copy (see training.hpp), as another day might show it.
+/// by class), and every stranger by each of these recognisers, in turn. `other_light`: what is
+/// named is not the picture but a varied copy (see training.hpp), as another day might show it.
 Expected<std::vector<Judged>> cross_validate(Method method, const DescriptorOptions& options,
                                              const Dataset& dataset, const std::vector<int>& fold,
                                              const Dataset& strangers, bool other_light,

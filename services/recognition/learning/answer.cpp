@@ -5,13 +5,6 @@
 namespace prehend::recognition {
 namespace {
 
-Plane part(const Plane& plane, int left, int top, int width, int height) {
-  Plane made(width, height);
-  for (int y = 0; y < height; ++y)
-    std::copy_n(&plane.values[plane.index(left, top + y)], width, &made.values[made.index(0, y)]);
-  return made;
-}
-
 /// Of pairs of colours in the mask and outside of it.
 float likeness(const ObjectModels& models, const Plane& colours, const Plane& mask) {
   Plane outside = mask;
@@ -45,7 +38,7 @@ Answer answer(const ObjectModels& models, const Picture& picture, double accept)
   const Plane colours = models.palette.quantise(picture);
   const Plane middle = centred_mask(picture.width, picture.height);
   const auto seen_in = [&](int left, int top, int width, int height) {
-    return classify(models, describe(models, part(colours, left, top, width, height),
+    return classify(models, describe(models, crop(colours, left, top, width, height),
                                      centred_mask(width, height)));
   };
   const int w = picture.width, h = picture.height;

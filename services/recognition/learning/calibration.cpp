@@ -1,8 +1,9 @@
 #include "calibration.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+
+#include "logistic.hpp"
 
 namespace prehend::recognition {
 namespace {
@@ -33,21 +34,16 @@ double Calibration::probability(const Grounds& grounds) const {
 }
 
 Calibration fit(const std::vector<Outcome>& outcomes) {
-  Calibration made;
-  for (int iteration = 0; iteration < 30; ++iteration) {
-    Eigen::Vector4d gradient = -0.05 * made.w;
-    Eigen::Matrix4d hessian = 0.05 * Eigen::Matrix4d::Identity();
-    for (const Outcome& outcome : outcomes) {
-      const Eigen::Vector4d x = row(outcome.grounds);
-      const double p = made.probability(outcome.grounds);
-      gradient += outcome.weight * ((outcome.right ? 1 : 0) - p) * x;
-      hessian += outcome.weight * std::max(1e-6, p * (1 - p)) * x * x.transpose();
-    }
-    const Eigen::Vector4d step = hessian.ldlt().solve(gradient);
-    made.w += step.norm() > 5 ? Eigen::Vector4d(5 * step.normalized()) : step;
-    if (step.norm() < 1e-6) break;
+  const auto n = static_cast<Eigen::Index>(outcomes.size());
+  Eigen::MatrixXd rows(n, 4);
+  Eigen::VectorXd right(n), weight(n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const Outcome& outcome = outcomes[static_cast<std::size_t>(i)];
+    rows.row(i) = row(outcome.grounds);
+    right[i] = outcome.right ? 1 : 0;
+    weight[i] = outcome.weight;
   }
-  return made;
+  return {logistic_fit(rows, right, weight)};
 }
 
 }  // namespace prehend::recognition

@@ -27,7 +27,7 @@ struct Outcome {
   double weight = 1;
 };
 
-/// Logistic regression by Newton's method with a small ridge.
+/// By logistic regression.
 Calibration fit(const std::vector<Outcome>& outcomes);
 
 }  // namespace prehend::recognition

@@ -53,7 +53,7 @@ std::string to_bytes(const ObjectModels& models) {
     put(c.prototypes, *entry.mutable_prototypes());
   }
   put(models.views, *set.mutable_views());
-  for (const int c : models.view_class) set.add_view_class(static_cast<std::uint32_t>(c));
+  for (const int c : models.view_class) set.add_view_class(c);
   for (const int f : models.view_fold) set.add_view_fold(static_cast<std::uint32_t>(f));
   put(models.dual, *set.mutable_dual());
   set.set_kernel_sharpness(models.kernel_sharpness);
@@ -86,7 +86,7 @@ Expected<ObjectModels> from_bytes(const std::string& bytes) {
   for (const messages::ObjectClassModel& c : set.classes())
     models.classes.push_back({c.name(), take_vector(c.colours()), take(c.prototypes())});
   models.views = take(set.views());
-  for (const std::uint32_t c : set.view_class()) models.view_class.push_back(static_cast<int>(c));
+  models.view_class.assign(set.view_class().begin(), set.view_class().end());
   for (const std::uint32_t f : set.view_fold()) models.view_fold.push_back(static_cast<int>(f));
   models.dual = take(set.dual());
   if (set.calibration_size() != 4)

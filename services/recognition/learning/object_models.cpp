@@ -12,6 +12,7 @@ DescriptorOptions photos_of_objects() {
   made.space.brightness_weight = 0.05;
   made.space.constancy = Constancy::grey_world;
   made.varied = 2;
+  made.parts = 0;
   return made;
 }
 
@@ -61,8 +62,8 @@ Classification classify(const ObjectModels& models, const Eigen::VectorXf& d, bo
   if (classes == 0 || d.size() != models.views.rows() || !(d.norm() > 0)) return made;
   const Eigen::VectorXf near = similarities(models.views, d, models.weighting);
   for (Eigen::Index i = 0; i < near.size(); ++i) {
-    float& best = made.similarity[models.view_class[static_cast<std::size_t>(i)]];
-    best = std::max(best, near[i]);
+    const int c = models.view_class[static_cast<std::size_t>(i)];
+    if (c >= 0) made.similarity[c] = std::max(made.similarity[c], near[i]);
   }
   made.scores = models.dual.transpose() * kernel_of(near, models.kernel_sharpness);
   // A damaged model may hold numbers so large that nothing is left of an answer.
@@ -115,7 +116,7 @@ Expected<void> ObjectModels::check() const {
   if (static_cast<Eigen::Index>(view_class.size()) != views.cols())
     return wrong("labels of views are wrong");
   for (const int c : view_class)
-    if (c < 0 || c >= static_cast<int>(classes.size())) return wrong("a label is out of range");
+    if (c < -1 || c >= static_cast<int>(classes.size())) return wrong("a label is out of range");
   if (view_fold.size() != view_class.size()) return wrong("folds of views are wrong");
   for (const int f : view_fold)
     if (f < 0 || f >= calibration_folds) return wrong("a fold is out of range");

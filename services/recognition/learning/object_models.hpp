@@ -30,6 +30,7 @@ struct DescriptorOptions {
   double same_pairs = 1;                       // weight of pairs of one colour, 0..1
   Weighting weighting = Weighting::idf_hellinger;
   int varied = 0;         // copies of each view under another light, size and place
+  int parts = 1;          // copies of each view of which a part is hidden
   int views_a_class = 6;  // prototypes that the scan compares with
   std::uint64_t seed = 1;
 };
@@ -55,7 +56,7 @@ struct ObjectModels {
   Eigen::VectorXf idf;  // weight of each pair of colours
   std::vector<ObjectClass> classes;
   Eigen::MatrixXf views;        // descriptors of all training views, one a column
-  std::vector<int> view_class;  // of each column
+  std::vector<int> view_class;  // of each column; -1: of something that is none of the classes
   std::vector<int> view_fold;   // by background, 0 to calibration_folds - 1
   Eigen::MatrixXf dual;         // views by classes: the kernel ridge classifier
   double kernel_sharpness = 0;  // k(a, b) = exp(sharpness (similarity(a, b) - 1))

@@ -18,8 +18,10 @@ Eigen::MatrixXf solve_ridge(const Eigen::MatrixXf& kernel, const std::vector<int
   Eigen::MatrixXd K = kernel(kept, kept).cast<double>();
   K.diagonal().array() += ridge;
   Eigen::MatrixXd targets = Eigen::MatrixXd::Zero(n, classes);
-  for (Eigen::Index i = 0; i < n; ++i)
-    targets(i, view_class[static_cast<std::size_t>(kept[static_cast<std::size_t>(i)])]) = 1;
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const int c = view_class[static_cast<std::size_t>(kept[static_cast<std::size_t>(i)])];
+    if (c >= 0) targets(i, c) = 1;
+  }
   const Eigen::MatrixXd solved = K.llt().solve(targets);
   Eigen::MatrixXf dual = Eigen::MatrixXf::Zero(kernel.rows(), classes);
   for (Eigen::Index i = 0; i < n; ++i)

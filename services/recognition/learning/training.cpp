@@ -12,8 +12,8 @@ namespace {
 constexpr double sharpness = 6.0;  // of the kernel
 
 /// Measures what the classifier says of views it has not seen: in folds by background and, as
-/// strangers, of every class when it was left out. Varied views are judged, too, because another
-/// day is what the answer is for.
+/// strangers, of other things in their folds and of every class when it was left out. Varied views
+/// are judged, too, because another day is what the answer is for.
 Calibration calibrate(const ObjectModels& models, const Eigen::MatrixXf& near,
                       const Eigen::MatrixXf& kernel) {
   const std::vector<int>& view_class = models.view_class;
@@ -31,7 +31,7 @@ Calibration calibrate(const ObjectModels& models, const Eigen::MatrixXf& near,
       const Eigen::VectorXf scores = (kernel.row(row) * dual).transpose();
       Eigen::VectorXf similarity = Eigen::VectorXf::Zero(classes);
       for (std::size_t j = 0; j < n; ++j)
-        if (use[j])
+        if (use[j] && view_class[j] >= 0)
           similarity[view_class[j]] =
               std::max(similarity[view_class[j]], near(row, static_cast<Eigen::Index>(j)));
       const Grounds seen = grounds(scores, similarity);
@@ -66,6 +66,31 @@ std::vector<int> merge_colours(const Palette& palette, const Eigen::VectorXf& us
   std::vector<int> map;
   for (const Eigen::Vector3f& centre : palette.centres()) map.push_back(coarse.nearest(centre));
   return map;
+}
+
+/// The views of things that are none of the classes, behind those that are there. All views of one
+/// thing are of one fold, so that things are judged that the classifier does not know.
+void add_others(const std::vector<TrainingClass>& others, const DescriptorOptions& options,
+                ObjectModels& models) {
+  const int parts = std::min(1, options.parts);
+  Eigen::Index column = models.views.cols(), all = column;
+  for (const TrainingClass& thing : others)
+    all += static_cast<Eigen::Index>(thing.views.size()) * (1 + parts);
+  models.views.conservativeResize(Eigen::NoChange, all);
+  Random random(options.seed);
+  int fold = 0;
+  for (const TrainingClass& thing : others) {
+    for (const TrainingView& view : thing.views) {
+      const Plane quantised = models.palette.quantise(view.picture);
+      for (int part = 0; part <= parts; ++part) {
+        models.views.col(column++) =
+            describe(models, quantised, part == 0 ? view.mask : part_of(view.mask, random));
+        models.view_class.push_back(-1);
+        models.view_fold.push_back(fold);
+      }
+    }
+    fold = (fold + 1) % calibration_folds;
+  }
 }
 
 Eigen::VectorXf fold_counts(const Eigen::VectorXf& fine, const std::vector<int>& coarse,
@@ -123,24 +148,34 @@ std::vector<TrainingClass> usable(const std::vector<TrainingClass>& classes, int
   return made;
 }
 
-/// Of as many pixels of every view.
-Palette learn_palette(const std::vector<TrainingClass>& classes, const DescriptorOptions& options) {
+/// Colours of as many pixels of every view, about `count` in all.
+void sample_colours(const std::vector<TrainingClass>& classes, const ColourSpace& space,
+                    std::size_t count, Random& random, std::vector<Eigen::Vector3f>& samples) {
   std::size_t views = 0;
   for (const TrainingClass& c : classes) views += c.views.size();
-  const std::size_t a_view = std::clamp<std::size_t>(24000 / views, 8, 400);
-  Random random(options.seed);
-  std::vector<Eigen::Vector3f> samples;
+  const std::size_t a_view =
+      std::clamp<std::size_t>(count / std::max<std::size_t>(1, views), 8, 400);
   for (const TrainingClass& c : classes)
     for (const TrainingView& view : c.views) {
-      const Picture picture = balanced(view.picture, options.space.constancy);
+      const Picture picture = balanced(view.picture, space.constancy);
       for (std::size_t i = 0, tries = 0; i < a_view && tries < 40 * a_view; ++tries) {
         const std::size_t p = random.index(picture.pixels());
         if (!view.mask.values[p]) continue;
-        samples.push_back(colour_feature(options.space, picture.rgb[3 * p], picture.rgb[3 * p + 1],
+        samples.push_back(colour_feature(space, picture.rgb[3 * p], picture.rgb[3 * p + 1],
                                          picture.rgb[3 * p + 2]));
         ++i;
       }
     }
+}
+
+/// Of the classes' views and, in a smaller part, of other things: a palette of nothing but the
+/// objects' colours would take any other for one of them.
+Palette learn_palette(const std::vector<TrainingClass>& classes,
+                      const std::vector<TrainingClass>& others, const DescriptorOptions& options) {
+  Random random(options.seed);
+  std::vector<Eigen::Vector3f> samples;
+  sample_colours(classes, options.space, 24000, random, samples);
+  sample_colours(others, options.space, 8000, random, samples);
   return Palette::learn(options.space, samples, options.colours, options.seed);
 }
 
@@ -165,15 +200,20 @@ Eigen::VectorXf rarity(const Eigen::MatrixXf& counts) {
   return made;
 }
 
-/// Counts of the pairs of every view and of its varied copies, as columns. Adds class, fold and
-/// colours of each to the models; the classes are new ones behind those that are there.
+/// Columns that a view becomes: itself, its varied copies, and parts of each.
+Eigen::Index columns_a_view(const DescriptorOptions& options) {
+  return (1 + Eigen::Index{options.varied}) * (1 + Eigen::Index{options.parts});
+}
+
+/// Counts of the pairs of every view and of its copies, as columns. Adds class, fold and colours of
+/// each to the models; the classes are new ones behind those that are there.
 Eigen::MatrixXf count_pairs(const std::vector<TrainingClass>& classes,
                             const DescriptorOptions& options, ObjectModels& models) {
   const std::vector<int> background = folds_by_background(classes, calibration_folds);
   const int colours = models.palette.size();
   const std::vector<Offset> offsets = offsets_at(models.distances);
-  Eigen::MatrixXf counts(pair_count(colours), static_cast<Eigen::Index>(background.size()) *
-                                                  (1 + static_cast<Eigen::Index>(options.varied)));
+  Eigen::MatrixXf counts(pair_count(colours),
+                         static_cast<Eigen::Index>(background.size()) * columns_a_view(options));
   Random random(options.seed);
   auto fold = background.begin();
   Eigen::Index column = 0;
@@ -183,10 +223,13 @@ Eigen::MatrixXf count_pairs(const std::vector<TrainingClass>& classes,
       for (int copy = 0; copy <= options.varied; ++copy) {
         const Plane quantised =
             models.palette.quantise(copy == 0 ? view.picture : varied(view.picture, random));
-        counts.col(column++) = cooccurrence(quantised, colours, offsets, view.mask);
         learned.colours += shares(quantised, view.mask, colours);
-        models.view_class.push_back(static_cast<int>(models.classes.size()));
-        models.view_fold.push_back(*fold);
+        for (int part = 0; part <= options.parts; ++part) {
+          counts.col(column++) = cooccurrence(quantised, colours, offsets,
+                                              part == 0 ? view.mask : part_of(view.mask, random));
+          models.view_class.push_back(static_cast<int>(models.classes.size()));
+          models.view_fold.push_back(*fold);
+        }
       }
       ++fold;
     }
@@ -223,11 +266,12 @@ void weigh_same_pairs(const ObjectModels& models, Eigen::MatrixXf& counts) {
 }  // namespace
 
 Expected<ObjectModels> train(const std::vector<TrainingClass>& classes,
-                             const DescriptorOptions& options, int max_views) {
+                             const DescriptorOptions& options, int max_views,
+                             const std::vector<TrainingClass>& others) {
   const std::vector<TrainingClass> used = usable(classes, max_views);
   if (used.empty())
     return fail("no usable view", "training", "give a folder with a folder of pictures a class");
-  ObjectModels made{.palette = learn_palette(used, options)};
+  ObjectModels made{.palette = learn_palette(used, usable(others, max_views), options)};
   made.distances = options.distances;
   made.same_pairs = options.same_pairs;
   made.weighting = options.weighting;
@@ -241,7 +285,7 @@ Expected<ObjectModels> train(const std::vector<TrainingClass>& classes,
       merge_colours(made.palette, use, options.coarse_colours, options.seed, made.coarse_colours);
   Eigen::Index begin = 0;
   for (std::size_t c = 0; c < used.size(); ++c) {
-    const auto views = static_cast<Eigen::Index>(used[c].views.size()) * (1 + options.varied);
+    const auto views = static_cast<Eigen::Index>(used[c].views.size()) * columns_a_view(options);
     made.classes[c].prototypes =
         prototypes_of(counts.middleCols(begin, views), made, options.views_a_class);
     begin += views;
@@ -250,6 +294,7 @@ Expected<ObjectModels> train(const std::vector<TrainingClass>& classes,
   made.idf = rarity(counts);
   describe_counts(made, counts);
   made.views = std::move(counts);
+  add_others(usable(others, max_views), options, made);
   learn_classifier(made);
   return made;
 }

@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
+#include <vector>
 
 #include "training.hpp"
 
@@ -35,6 +37,24 @@ Picture varied(const Picture& picture, Random& random) {
             std::clamp(channel[c] * ((1 - b) * upper + b * lower), 0.0, 255.0));
       }
     }
+  return made;
+}
+
+Plane part_of(const Plane& mask, Random& random) {
+  const double angle = random.uniform(0, 2 * std::numbers::pi), share = random.uniform(0.2, 0.45);
+  const auto along = [&](int x, int y) { return x * std::cos(angle) + y * std::sin(angle); };
+  std::vector<double> places;
+  for (int y = 0; y < mask.height; ++y)
+    for (int x = 0; x < mask.width; ++x)
+      if (mask.at(x, y)) places.push_back(along(x, y));
+  Plane made = mask;
+  if (places.empty()) return made;
+  const auto edge =
+      places.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(places.size()));
+  std::nth_element(places.begin(), edge, places.end());
+  for (int y = 0; y < mask.height; ++y)
+    for (int x = 0; x < mask.width; ++x)
+      if (along(x, y) < *edge) made.at(x, y) = 0;
   return made;
 }
 

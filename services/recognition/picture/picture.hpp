@@ -44,4 +44,8 @@ struct Plane {
   }
 };
 
+/// The part of a plane in a box inside of it, so that work on a small region does not visit the
+/// whole picture.
+Plane crop(const Plane& plane, int left, int top, int width, int height);
+
 }  // namespace prehend::recognition

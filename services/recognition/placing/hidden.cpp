@@ -1,5 +1,6 @@
 #include "hidden.hpp"
 
+#include <algorithm>
 #include <utility>
 
 #include "colour_bins.hpp"
@@ -47,22 +48,40 @@ class Finder {
   int row(int y) const { return (y - area_.top) / block; }
   int column(int x) const { return (x - area_.left) / block; }
 
-  /// Connected blocks whose colours are a fifth as frequent on the object as its own are.
+  /// Colours that are more common around the object than in the picture: of what stands beside it.
+  /// Shares; all zero when there is nothing.
+  Eigen::VectorXf neighbours() const {
+    std::vector<std::uint8_t> within(hidden_.size(), 0);
+    area_.visit(inside_, [&](int x, int y) { within[area_.index(x, y)] = 1; });
+    Eigen::VectorXf ring = Eigen::VectorXf::Zero(known_.size());
+    area_.visit(around_, [&](int x, int y) {
+      if (!within[area_.index(x, y)] && !taken(x, y)) ring[frame_.colours.at(x, y)] += 1;
+    });
+    ring = (ring / std::max(1.f, ring.sum()) - frame_.colour_share).cwiseMax(0);
+    return ring.sum() > 0.05f ? Eigen::VectorXf(ring / ring.sum()) : Eigen::VectorXf(0 * ring);
+  }
+
+  /// Connected blocks whose colours are a fifth as frequent on the object as its own are, or far
+  /// more frequent on what stands beside it.
   Patches strange_patches() const {
     const int across = (area_.width() + block - 1) / block;
     const int down = (area_.height() + block - 1) / block;
     const float not_its = 0.2f * known_.squaredNorm();
     Patches made{Eigen::ArrayXXi::Zero(down, across), Eigen::ArrayXXi::Zero(down, across), 0};
+    const Eigen::VectorXf others = neighbours();
     Eigen::ArrayXXf frequency = Eigen::ArrayXXf::Zero(down, across);  // of its colours, summed
+    Eigen::ArrayXXf foreign = frequency;                              // the same beside it
     area_.visit(inside_, [&](int x, int y) {
       if (taken(x, y)) return;
       ++made.pixels(row(y), column(x));
       frequency(row(y), column(x)) += known_[frame_.colours.at(x, y)];
+      foreign(row(y), column(x)) += others[frame_.colours.at(x, y)];
     });
     const auto strange = [&](int r, int c) {
       return r >= 0 && c >= 0 && r < down && c < across && made.label(r, c) == 0 &&
              made.pixels(r, c) > 0 &&
-             frequency(r, c) < not_its * static_cast<float>(made.pixels(r, c));
+             (frequency(r, c) < not_its * static_cast<float>(made.pixels(r, c)) ||
+              foreign(r, c) > 2 * frequency(r, c));
     };
     for (int r = 0; r < down; ++r)
       for (int c = 0; c < across; ++c) {

@@ -23,9 +23,12 @@ std::vector<TrainingView> training_views(const Renderer& renderer,
     const double azimuth = random.uniform(0, 2 * pi), height = random.uniform(0.5, 1.4);
     scene.light.to_light_W = {std::cos(azimuth) * std::cos(height),
                               std::sin(azimuth) * std::cos(height), std::sin(height)};
-    scene.light.ambient = random.uniform(0.3, 0.7);
-    scene.light.gain = random.uniform(0.55, 1.4);
-    for (double& channel : scene.light.colour) channel = random.uniform(0.85, 1.15);
+    // Half to nearly twice as bright as the lab, and as warm or cold as lamps are.
+    scene.light.ambient = random.uniform(0.2, 0.8);
+    scene.light.gain = std::exp(random.uniform(-0.9, 0.6));
+    const double warm = random.uniform(-0.2, 0.2);
+    scene.light.colour = {1 + warm, 1, 1 - warm};
+    for (double& channel : scene.light.colour) channel *= random.uniform(0.95, 1.05);
     for (double& channel : scene.table_colour) channel = random.uniform(0.05, 0.95);
     scene.texture_seed = random.bits();
 

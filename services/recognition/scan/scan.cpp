@@ -160,9 +160,11 @@ class Sweep {
     for (std::size_t c = 0; c < scores_.size(); ++c)
       if (c != likely) look(c);
     if (winner < options_.least_score) return;
+    // Each size of window has the same say in a cell, or large windows would outvote what is small.
+    const auto area = static_cast<float>(size * size);
     for (std::size_t c = 0; c < scores_.size(); ++c) {
       if (scores_[c] <= 0.9f * winner) continue;
-      votes_.classes[c].block(row, column, size, size).array() += scores_[c] * scores_[c];
+      votes_.classes[c].block(row, column, size, size).array() += scores_[c] * scores_[c] / area;
       if (scores_[c] > votes_.best[c].score)
         votes_.best[c] = {column * votes_.cell_size, row * votes_.cell_size,
                           size * votes_.cell_size, scores_[c]};

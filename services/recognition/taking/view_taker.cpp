@@ -3,13 +3,14 @@
 #include <algorithm>
 #include <cmath>
 #include <opencv2/imgproc.hpp>
+#include <prehend/recognition_picture/difference.hpp>
 
 namespace prehend::recognition {
 namespace {
 
 constexpr int table_pictures = 5;  // summed for the empty table
 constexpr int rest_pictures = 3;   // alike in a row: it rests
-constexpr int differs = 28;        // grey levels, above noise and jpeg
+constexpr int above_noise = 28;    // grey levels: above noise and jpeg
 constexpr double moved_share = 0.003;
 constexpr int margin = 12;  // px around the object
 
@@ -21,25 +22,12 @@ double changed(const Picture& a, const Picture& b) {
       const std::uint8_t *p = a.at(x, y), *q = b.at(x, y);
       ++all;
       for (int c = 0; c < 3; ++c)
-        if (std::abs(p[c] - q[c]) > differs) {
+        if (std::abs(p[c] - q[c]) > above_noise) {
           ++count;
           break;
         }
     }
   return static_cast<double>(count) / static_cast<double>(all);
-}
-
-/// A pixel that is neither the table nor the table in a shadow, which is darker but of its colour.
-bool is_new(const std::uint8_t* p, const float* table) {
-  float most = 0, darkest = 1e9f, brightest = 0;
-  for (int c = 0; c < 3; ++c) {
-    most = std::max(most, std::abs(static_cast<float>(p[c]) - table[c]));
-    const float ratio = (static_cast<float>(p[c]) + 8) / (table[c] + 8);
-    darkest = std::min(darkest, ratio);
-    brightest = std::max(brightest, ratio);
-  }
-  if (most <= differs) return false;
-  return darkest < 0.4f || brightest > 1.05f || brightest - darkest > 0.12f;
 }
 
 }  // namespace
@@ -81,7 +69,7 @@ bool ViewTaker::see(const Picture& picture) {
   cv::Mat fresh(picture.height, picture.width, CV_8UC1, cv::Scalar(0));
   for (int y = 0; y < picture.height; ++y)
     for (int x = 0; x < picture.width; ++x)
-      if (is_new(picture.at(x, y), &table_[3 * picture.index(x, y)]))
+      if (differs(picture.at(x, y), &table_[3 * picture.index(x, y)], above_noise))
         fresh.at<std::uint8_t>(y, x) = 255;
   const auto square = [](int side) {
     return cv::getStructuringElement(cv::MORPH_RECT, cv::Size(side, side));

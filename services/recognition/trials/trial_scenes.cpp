@@ -5,12 +5,12 @@
 #include <numbers>
 #include <prehend/base/random.hpp>
 #include <prehend/recognition_geometry/silhouette.hpp>
+#include <prehend/recognition_rendering/strangers.hpp>
 
 namespace prehend::recognition {
 namespace {
 
 constexpr double pi = std::numbers::pi;
-constexpr int stranger_count = 16;
 
 std::vector<model::CatalogueObject> all(const model::Catalogue& catalogue,
                                         const std::vector<model::CatalogueObject>& strangers) {
@@ -69,34 +69,11 @@ std::string to_string(Trial trial) {
   return "";
 }
 
-std::vector<model::CatalogueObject> strangers() {
-  Random random(7001);
-  const std::array<const char*, 5> patterns{"plain", "bands", "checks", "blobs", "label"};
-  std::vector<model::CatalogueObject> made;
-  for (int i = 0; i < stranger_count; ++i) {
-    model::CatalogueObject object;
-    object.name = "stranger " + std::to_string(i);
-    const bool box = random.uniform() < 0.5;
-    object.shape.kind = box ? model::ShapeKind::box : model::ShapeKind::cylinder;
-    const double a = random.uniform(0.02, 0.045), b = random.uniform(0.02, 0.09);
-    const double height = random.uniform(0.05, 0.2);
-    object.shape.size = box ? Eigen::Vector3d(2 * a, 2 * b, height) : Eigen::Vector3d(a, a, height);
-    object.mass = 0.2;
-    object.material = "plastic";
-    object.appearance.pattern = patterns[random.index(patterns.size())];
-    object.appearance.seed = static_cast<unsigned>(500 + i);
-    for (int k = 0; k < 4; ++k)
-      object.appearance.colours.push_back(
-          {random.uniform(0.05, 0.95), random.uniform(0.05, 0.95), random.uniform(0.05, 0.95)});
-    made.push_back(object);
-  }
-  return made;
-}
-
-TrialScenes::TrialScenes(const model::Catalogue& catalogue, const CameraModel& camera)
+TrialScenes::TrialScenes(const model::Catalogue& catalogue, const CameraModel& camera,
+                         std::uint64_t strangers_seed)
     : catalogue_(catalogue),
       camera_(camera),
-      strangers_(strangers()),
+      strangers_(strangers(16, strangers_seed)),
       renderer_(all(catalogue, strangers_)) {}
 
 std::optional<TrialScene> TrialScenes::make(Trial trial, std::uint64_t seed) const {

@@ -19,9 +19,6 @@ enum class Trial {
 };
 std::string to_string(Trial trial);
 
-/// Things that no model knows, of sizes and patterns like the objects'.
-std::vector<model::CatalogueObject> strangers();
-
 struct TrialScene {
   model::Scene scene;
   std::string target;  // empty: there is none; else the first of the scene's objects
@@ -31,7 +28,9 @@ struct TrialScene {
 /// Draws scenes of a kind from seeds: the same seed gives the same scene.
 class TrialScenes {
  public:
-  TrialScenes(const model::Catalogue& catalogue, const CameraModel& camera);
+  /// `strangers_seed`: which things are the strangers.
+  TrialScenes(const model::Catalogue& catalogue, const CameraModel& camera,
+              std::uint64_t strangers_seed = 7001);
 
   /// None when no such scene was found in some tries.
   std::optional<TrialScene> make(Trial trial, std::uint64_t seed) const;

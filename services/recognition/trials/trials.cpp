@@ -18,16 +18,63 @@ double quantile(std::vector<double> values, double share) {
   return values[static_cast<std::size_t>(place)];
 }
 
+/// Fills in what is made of the target where it stands, and why it is not accepted.
+void explain(const Detector& detector, const CameraModel& camera, const Picture& picture,
+             const Eigen::Vector3d& place, TrialResult& made) {
+  const auto& classes = detector.models().classes;
+  const auto c = std::find_if(classes.begin(), classes.end(),
+                              [&](const ObjectClass& known) { return known.name == made.target; });
+  made.miss = Miss::no_outline;
+  if (c == classes.end()) return;
+  const auto judged =
+      detector.judge(detector.prepare(picture), camera,
+                     static_cast<std::size_t>(c - classes.begin()), place.x(), place.y());
+  if (!judged) return;
+  made.by_colours = judged->by_colours;
+  made.agreement = judged->agreement;
+  made.contrast = judged->contrast;
+  made.measured = judged->measured;
+  made.error = std::hypot(judged->at->x - place.x(), judged->at->y - place.y());
+  const double accept = detector.options().accept;
+  if (judged->probability >= accept && made.error <= same_place)
+    made.miss = Miss::search;
+  else if (made.error > same_place)
+    made.miss = Miss::no_outline;
+  else if (!(judged->by_colours > 0))
+    made.miss = Miss::named;
+  else
+    made.miss = judged->by_colours < accept ? Miss::colours : Miss::outline;
+}
+
 }  // namespace
+
+std::string to_string(Miss miss) {
+  switch (miss) {
+    case Miss::none:
+      return "none";
+    case Miss::search:
+      return "search";
+    case Miss::no_outline:
+      return "no outline";
+    case Miss::named:
+      return "named otherwise";
+    case Miss::colours:
+      return "colours not sure";
+    case Miss::outline:
+      return "outline not sure";
+  }
+  return "";
+}
 
 TrialResult try_scene(const Detector& detector, const CameraModel& camera,
                       const TrialScenes& scenes, const TrialScene& given) {
   TrialResult made;
   made.target = given.target;
+  made.hidden = given.hidden;
   RenderOptions options;
   options.noise_seed = given.scene.texture_seed;
-  const auto found =
-      detector.on_table(scenes.renderer().render(given.scene, camera, options), camera);
+  const Picture picture = scenes.renderer().render(given.scene, camera, options);
+  const auto found = detector.on_table(picture, camera);
   if (!found) return made;
   for (const Sighting& sighting : *found) {
     double nearest = 1e9;
@@ -45,6 +92,7 @@ TrialResult try_scene(const Detector& detector, const CameraModel& camera,
       made.false_alarms.push_back(sighting);
       continue;
     }
+    made.true_ones.push_back(sighting);
     if (object != &given.scene.objects.front() || given.target.empty()) continue;
     if (sighting.probability <= made.probability) continue;
     const Eigen::Vector3d p = object->X_WO.translation();
@@ -53,8 +101,8 @@ TrialResult try_scene(const Detector& detector, const CameraModel& camera,
     made.error = off.norm();
     made.agreement = sighting.agreement;
     made.contrast = sighting.contrast;
+    made.by_colours = sighting.by_colours;
     made.measured = sighting.measured;
-    made.hidden = given.hidden;
     made.normalised = off.dot(sighting.covariance.topLeftCorner<2, 2>().inverse() * off);
     made.distance = (camera.X_WC.translation() - p).norm();
     made.box = sighting.shape.kind == model::ShapeKind::box;
@@ -65,6 +113,8 @@ TrialResult try_scene(const Detector& detector, const CameraModel& camera,
         std::remainder(std::atan2(R(1, 0), R(0, 0)) - sighting.at->yaw, square ? pi / 2 : pi));
     made.normalised_turn = made.turn_error * made.turn_error / sighting.covariance(2, 2);
   }
+  if (!given.target.empty() && made.probability < detector.options().accept)
+    explain(detector, camera, picture, given.scene.objects.front().X_WO.translation(), made);
   return made;
 }
 
@@ -79,6 +129,7 @@ TrialSummary summarise(Trial trial, const std::vector<TrialResult>& results, dou
     made.frames_with_false_alarm +=
         std::any_of(result.false_alarms.begin(), result.false_alarms.end(),
                     [&](const auto& alarm) { return alarm.probability >= accept; });
+    if (result.miss != Miss::none) ++made.misses[result.miss];
     if (result.target.empty() || result.probability < accept) continue;
     ++made.detected;
     errors.push_back(result.error);

@@ -1,11 +1,23 @@
 #pragma once
 
-#include <functional>
+#include <map>
 #include <prehend/recognition/detector.hpp>
 
 #include "trial_scenes.hpp"
 
 namespace prehend::recognition {
+
+/// Why a target was missed: what is made of it when it is measured where it stands.
+enum class Miss {
+  none,        // it was not missed
+  search,      // measured there it would be accepted: it was not looked for there, or hidden by
+               // something that was found before it
+  no_outline,  // its outline is nowhere near
+  named,       // its colours name another class
+  colours,     // its colours are not sure enough
+  outline,     // the outline lowers what the colours say below what is accepted
+};
+std::string to_string(Miss miss);
 
 /// What became of one scene.
 struct TrialResult {
@@ -21,14 +33,19 @@ struct TrialResult {
   bool box = false;
   double agreement = 0, contrast = 0, hidden = 0;
   Eigen::Vector2d measured = {1, 1};
+  double by_colours = 0;
+  Miss miss = Miss::none;
   /// What is said to stand where nothing of that name stands.
   std::vector<Sighting> false_alarms;
+  /// What is said to stand where such a thing stands, targets or not.
+  std::vector<Sighting> true_ones;
 };
 
 /// A sighting belongs to an object when it is at most this far from it, m.
 inline constexpr double same_place = 0.05;
 
-/// Looks at a rendered scene.
+/// Looks at a rendered scene. A target that the detector does not accept is measured where it
+/// stands, and the result tells of that measurement why.
 TrialResult try_scene(const Detector& detector, const CameraModel& camera,
                       const TrialScenes& scenes, const TrialScene& scene);
 
@@ -42,6 +59,7 @@ struct TrialSummary {
   /// Mean normalised squared errors, 2 and 1 when the covariances are true, and the share of
   /// detections whose place lies within the ellipse of 95 %.
   double normalised = 0, normalised_turn = 0, within_95 = 0;
+  std::map<Miss, int> misses;
 };
 TrialSummary summarise(Trial trial, const std::vector<TrialResult>& results, double accept);
 

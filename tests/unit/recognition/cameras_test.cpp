@@ -6,6 +6,7 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <array>
 #include <atomic>
 #include <filesystem>
 #include <fstream>
@@ -105,6 +106,29 @@ TEST(Cameras, StreamThatHangsUpIsOpenedAnew) {
   EXPECT_GT(after, 0);
 }
 
+// OpenCV's capture went on handing over the last picture that had the first size.
+TEST(Cameras, StreamMayChangeItsSize) {
+  std::vector<Picture> pictures;
+  const std::vector<std::array<int, 3>> sizes{
+      {64, 48, 50}, {128, 96, 100}, {48, 36, 150}, {64, 48, 200}};
+  for (const auto& [width, height, level] : sizes)
+    pictures.insert(pictures.end(), 4, plain(width, height, static_cast<std::uint8_t>(level)));
+  const NetworkCamera server({pictures});
+  CameraOptions options;
+  options.source = "video";
+  options.path = server.address();
+  auto camera = open_camera(options, catalogue(), nullptr);
+  ASSERT_TRUE(camera) << camera.error().message();
+  for (const auto& [width, height, level] : sizes)
+    for (int i = 0; i < 4; ++i) {
+      const auto picture = (*camera)->next();
+      ASSERT_TRUE(picture) << picture.error().message();
+      EXPECT_EQ(picture->width, width);
+      EXPECT_EQ(picture->height, height);
+      for (const auto value : picture->rgb) ASSERT_NEAR(value, level, 3);  // jpeg
+    }
+}
+
 TEST(Cameras, FramesOfEveryDepthBecomePictures) {
   cv::Mat grey(20, 30, CV_8UC1, cv::Scalar(77));
   EXPECT_EQ(to_picture(grey, "test")->at(3, 3)[2], 77);
@@ -149,6 +173,48 @@ TEST(Cameras, FileIsPlayedAtTheRateThatIsAsked) {
     }
     EXPECT_NEAR(pictures, expected, 1) << rate;
   }
+  std::filesystem::remove(file);
+}
+
+// A telephone that was held upright films lying down, and says so in the file.
+TEST(Cameras, FilmThatLiesOnItsSideIsTurnedUpright) {
+  const auto file =
+      std::filesystem::temp_directory_path() / ("lying" + std::to_string(getpid()) + ".mp4");
+  {
+    cv::VideoWriter film(file.string(), cv::VideoWriter::fourcc('m', 'p', '4', 'v'), 30, {96, 64});
+    if (!film.isOpened()) GTEST_SKIP() << "OpenCV writes no mp4 here";
+    cv::Mat image(64, 96, CV_8UC3, cv::Scalar::all(40));
+    image.colRange(0, 32) = cv::Scalar::all(220);  // what lies left shall be above
+    for (int i = 0; i < 5; ++i) film.write(image);
+  }
+  std::string bytes;
+  {
+    std::ifstream stream(file, std::ios::binary);
+    bytes.assign(std::istreambuf_iterator<char>(stream), {});
+  }
+  // ISO 14496-12: the matrix stands 40 bytes after the name of the track header.
+  const auto header = bytes.find("tkhd");
+  ASSERT_NE(header, std::string::npos);
+  const auto write = [&](std::size_t element, std::array<unsigned char, 4> value) {
+    std::copy(value.begin(), value.end(),
+              bytes.begin() + static_cast<std::ptrdiff_t>(header + 44 + 4 * element));
+  };
+  write(0, {0, 0, 0, 0});
+  write(1, {0, 1, 0, 0});  // 1 in 16.16
+  write(3, {0xff, 0xff, 0, 0});
+  write(4, {0, 0, 0, 0});
+  std::ofstream(file, std::ios::binary) << bytes;
+  CameraOptions options;
+  options.source = "video";
+  options.path = file.string();
+  auto camera = open_camera(options, catalogue(), nullptr);
+  ASSERT_TRUE(camera) << camera.error().message();
+  const auto picture = (*camera)->next();
+  ASSERT_TRUE(picture) << picture.error().message();
+  EXPECT_EQ(picture->width, 64);
+  EXPECT_EQ(picture->height, 96);
+  EXPECT_NEAR(picture->at(32, 10)[0], 220, 12);
+  EXPECT_NEAR(picture->at(32, 80)[0], 40, 12);
   std::filesystem::remove(file);
 }
 

@@ -2,7 +2,9 @@
 
 #include <prehend/model/scene.hpp>
 #include <prehend/recognition/detector.hpp>
+#include <prehend/recognition_picture/picture_file.hpp>
 #include <prehend/recognition_rendering/renderer.hpp>
+#include <prehend/recognition_rendering/strangers.hpp>
 #include <prehend/recognition_rendering/training_views.hpp>
 
 namespace prehend::recognition {
@@ -26,13 +28,27 @@ inline const Renderer& renderer() {
   return made;
 }
 
+/// As they come back from the jpegs that the build learns from.
+inline std::vector<TrainingView> through_jpeg(std::vector<TrainingView> views) {
+  for (TrainingView& view : views)
+    view.picture = decode_picture(encode_jpeg(view.picture), "view").value();
+  return views;
+}
+
 /// Models as the build makes them, from another seed; trained once a run.
 inline const ObjectModels& trained() {
   static const ObjectModels made = [] {
-    std::vector<TrainingClass> classes;
+    std::vector<TrainingClass> classes, others;
+    const auto views = [](const Renderer& draws, const model::CatalogueObject& object, int count) {
+      return through_jpeg(training_views(draws, object, CameraModel{}, count, 5));
+    };
     for (const auto& object : catalogue().objects())
-      classes.push_back({object.name, training_views(renderer(), object, CameraModel{}, 24, 5)});
-    return *train(classes);
+      classes.push_back({object.name, views(renderer(), object, 36)});
+    const auto unknown = strangers(100, 9005);
+    const Renderer unknown_renderer(unknown);
+    for (const auto& thing : unknown)
+      others.push_back({thing.name, views(unknown_renderer, thing, 4)});
+    return *train(classes, {}, 60, others);
   }();
   return made;
 }

@@ -7,7 +7,7 @@
 
 #include <algorithm>
 #include <cstdlib>
-#include <prehend/recognition_trials/trials.hpp>
+#include <prehend/recognition_trials/roc.hpp>
 
 #include "fixture.hpp"
 
@@ -63,8 +63,95 @@ TEST(Scenes, EmptyTablesShowNothing) {
 }
 
 TEST(Scenes, StrangersAreHardlyEverTakenForOurs) {
-  const TrialSummary s = over(Trial::strangers, is_long() ? 200 : 8);
+  const TrialSummary s = over(Trial::strangers, is_long() ? 200 : 50);
   EXPECT_LE(s.frames_with_false_alarm, s.scenes / 50);
+}
+
+// In each of these the search gave up before it came to the target: it measured the same parts of
+// strangers again and again, from other windows.
+TEST(Scenes, SearchGoesOnAmongStrangers) {
+  const Detector detector(trained(), catalogue());
+  const TrialScenes others(catalogue(), lab_camera(), 42);
+  for (const std::uint64_t seed : {5016, 5040, 5087}) {
+    const auto scene = others.make(Trial::clutter, seed);
+    ASSERT_TRUE(scene);
+    const TrialResult result = try_scene(detector, lab_camera(), others, *scene);
+    EXPECT_GE(result.probability, accept) << seed << ' ' << to_string(result.miss);
+  }
+}
+
+// Before each of these stands something that has colours of the target, too. It was taken for a
+// part of it, until what stands beside the target told it apart.
+TEST(Scenes, WhatStandsBeforeAnObjectIsToldByWhatStandsBesideIt) {
+  const Detector detector(trained(), catalogue());
+  const TrialScenes scenes(catalogue(), lab_camera());
+  for (const std::uint64_t seed : {15, 25}) {
+    const auto scene = scenes.make(Trial::occluded, seed);
+    ASSERT_TRUE(scene);
+    const TrialResult result = try_scene(detector, lab_camera(), scenes, *scene);
+    EXPECT_GE(result.probability, accept) << seed << ' ' << to_string(result.miss);
+  }
+}
+
+// The stranger before each of these is larger than the target, so that more windows see it: its
+// votes hid the target's, which was never measured.
+TEST(Scenes, WhatIsLargerBesideATargetDoesNotOutvoteIt) {
+  const Detector detector(trained(), catalogue());
+  const TrialScenes others(catalogue(), lab_camera(), 51);
+  for (const std::uint64_t seed : {5111, 5116, 5151, 5191}) {
+    const auto scene = others.make(Trial::occluded, seed);
+    ASSERT_TRUE(scene);
+    const TrialResult result = try_scene(detector, lab_camera(), others, *scene);
+    EXPECT_GE(result.probability, accept) << seed << ' ' << to_string(result.miss);
+  }
+}
+
+TEST(Scenes, RocCountsTargetsAndFramesAtAThreshold) {
+  const auto result = [](const char* target, double probability, std::vector<double> alarms) {
+    TrialResult made;
+    made.target = target;
+    made.probability = probability;
+    for (const double p : alarms) made.false_alarms.push_back({.probability = p});
+    return made;
+  };
+  const std::vector<TrialResult> results{result("a", 0.9, {}), result("b", 0.4, {0.6, 0.3}),
+                                         result("c", 0, {}), result("", 0, {0.8})};
+  const auto expect = [&](double threshold, double detected, double alarms) {
+    const RocPoint at = roc_at(threshold, results);
+    EXPECT_DOUBLE_EQ(at.detected, detected) << threshold;
+    EXPECT_DOUBLE_EQ(at.alarms, alarms) << threshold;
+  };
+  expect(0.1, 2.0 / 3, 0.5);  // two of three targets; two of four frames, one of them twice
+  expect(0.7, 1.0 / 3, 0.25);
+  expect(0.95, 0, 0);
+}
+
+// Whoever reads the table of causes acts on it: a target of colours that no model has cannot be
+// missed by the search.
+TEST(Scenes, MissedTargetsAreExplained) {
+  const TrialScenes scenes(catalogue(), lab_camera());
+  const auto scene = scenes.make(Trial::open, 1);
+  ASSERT_TRUE(scene);
+  const auto with_accept = [&](ObjectModels models, double enough) {
+    DetectorOptions options;
+    options.accept = enough;
+    return try_scene(Detector(std::move(models), catalogue(), options), lab_camera(), scenes,
+                     *scene);
+  };
+  EXPECT_EQ(with_accept(trained(), accept).miss, Miss::none);
+  const TrialResult doubted = with_accept(trained(), 1.1);  // more than can be
+  EXPECT_TRUE(doubted.miss == Miss::colours || doubted.miss == Miss::outline)
+      << to_string(doubted.miss);
+  EXPECT_GT(doubted.by_colours, 0.5);
+  // The target's model under another's name, and the other's under the target's.
+  ObjectModels swapped = trained();
+  auto target = std::find_if(swapped.classes.begin(), swapped.classes.end(),
+                             [&](const auto& c) { return c.name == scene->target; });
+  const auto other = target == swapped.classes.begin() ? target + 1 : target - 1;
+  std::swap(target->name, other->name);
+  const TrialResult mistaken = with_accept(swapped, accept);
+  EXPECT_NE(mistaken.miss, Miss::none);
+  EXPECT_NE(mistaken.miss, Miss::search);
 }
 
 TEST(Scenes, OccludedOnesAreHiddenByAsMuchAsIsSaid) {

@@ -74,8 +74,7 @@ TEST_F(TrainingFolder, TwoClassesAlike) {
   const auto dataset = load_dataset(root_);
   const auto models = train(dataset->classes);
   const auto unseen = painted_classes(5, 3);
-  for (const TrainingView& view : unseen[0].views)
-    EXPECT_LT(named(*models, view).probability, 0.8);
+  for (const TrainingView& view : unseen[0].views) EXPECT_LT(named(*models, view).probability, 0.8);
 }
 
 TEST_F(TrainingFolder, GreySixteenBitAnimatedTinyHugeAndTruncated) {

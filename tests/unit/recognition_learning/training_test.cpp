@@ -99,6 +99,83 @@ TEST(Training, StrangersAreDoubted) {
   EXPECT_GT(sum / 45, 0.8);
 }
 
+// A thing of the first class' colours, in large fields instead of small ones, is told from it once
+// such things were shown, also by whoever learns a class later or reads the model from a file; the
+// classes are named as before.
+TEST(Training, OthersThatWereShownAreDoubted) {
+  Random random(7);
+  std::vector<TrainingClass> others;
+  const auto alike = [&](int k) {
+    return painted({210, 40, 40}, {240, 240, 240}, {90, 160, 90}, 12 + 2 * k, random);
+  };
+  for (int k = 0; k < 5; ++k) {
+    others.push_back({"other " + std::to_string(k), {}});
+    for (int i = 0; i < 3; ++i) others.back().views.push_back(alike(k));
+  }
+  std::vector<TrainingClass> classes = painted_classes(5, 1);
+  const auto unaware = train(classes, small());
+  const auto aware = train(classes, small(), 60, others);
+  const TrainingClass last = classes.back();
+  classes.pop_back();
+  const auto fewer = train(classes, small(), 60, others);
+  ASSERT_TRUE(unaware && aware && fewer);
+  const auto added = with_class(*fewer, last, small());
+  ASSERT_TRUE(added);
+  const auto read = from_bytes(to_bytes(*aware));
+  ASSERT_TRUE(read) << read.error().message();
+  EXPECT_EQ(read->view_class, aware->view_class);
+  // Each of their views and a part of it.
+  EXPECT_EQ(std::count(added->view_class.begin(), added->view_class.end(), -1), 30);
+  const auto accepted = [&](const ObjectModels& models) {
+    int made = 0;
+    for (int i = 0; i < 20; ++i) made += named(models, alike(i % 5)).probability >= 0.5;
+    return made;
+  };
+  EXPECT_GE(accepted(*unaware), 10);
+  EXPECT_LE(accepted(*aware), 2);
+  EXPECT_LE(accepted(*added), 2);
+  EXPECT_LE(accepted(*read), 2);
+  EXPECT_EQ(share_named(*aware, painted_classes(5, 2)), 1);
+}
+
+// Between turquoise and green: a palette of nothing but the classes' colours has one colour for
+// both, and a turquoise thing before a green one was taken for a part of it.
+TEST(Training, ColoursOfOtherThingsAreToldFromTheClasses) {
+  const Eigen::Vector3i turquoise(40, 190, 170);
+  Random random(3);
+  std::vector<TrainingClass> others{{"other", {}}};
+  for (int i = 0; i < 6; ++i)
+    others[0].views.push_back(painted(turquoise, turquoise, {90, 160, 90}, 3, random));
+  const auto unaware = train(painted_classes(5, 1), small());
+  const auto aware = train(painted_classes(5, 1), small(), 60, others);
+  ASSERT_TRUE(unaware && aware);
+  const auto share = [&](const ObjectModels& models) {  // of turquoise on the green thing
+    const int colour = models.palette.nearest(colour_feature(models.palette.space(), 40, 190, 170));
+    return models.classes[1].colours[colour];
+  };
+  EXPECT_GT(share(*unaware), 0.1);
+  EXPECT_LT(share(*aware), 0.02);
+}
+
+// What is learned as a part shows 55 to 80 % of the whole, and nothing beside it.
+TEST(Training, PartsOfAMaskAreAsLargeAsSaid) {
+  const Plane mask = centred_mask(48, 64);
+  const auto count = [](const Plane& plane) {
+    return static_cast<double>(std::count(plane.values.begin(), plane.values.end(), 1));
+  };
+  Random random(4);
+  double least = 1, most = 0;
+  for (int i = 0; i < 100; ++i) {
+    const Plane part = part_of(mask, random);
+    for (std::size_t p = 0; p < mask.values.size(); ++p) ASSERT_LE(part.values[p], mask.values[p]);
+    least = std::min(least, count(part) / count(mask));
+    most = std::max(most, count(part) / count(mask));
+  }
+  EXPECT_NEAR(least, 0.55, 0.04);
+  EXPECT_NEAR(most, 0.8, 0.04);
+  EXPECT_EQ(count(part_of(Plane(8, 8), random)), 0);
+}
+
 TEST(Answer, ObjectTwoObjectsUnknownAndNothing) {
   const auto models = train(painted_classes(5, 1), small());
   ASSERT_TRUE(models);

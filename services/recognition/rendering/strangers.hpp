@@ -1,0 +1,12 @@
+#pragma once
+
+#include <cstdint>
+#include <prehend/model/catalogue.hpp>
+#include <vector>
+
+namespace prehend::recognition {
+
+/// Things that no model knows, of sizes and patterns like the objects'. Another seed, other things.
+std::vector<model::CatalogueObject> strangers(int count, std::uint64_t seed);
+
+}  // namespace prehend::recognition
