@@ -101,6 +101,9 @@ int main(int argc, char** argv) {
   app.add_option("--modes", modes, "that the grasp benchmark judges, with and without placement")
       ->delimiter(',')
       ->check(CLI::IsMember({"direct", "cartesian", "combined", "retargeting", "intelligent"}));
+  app.add_option("--hands", options.hands, "that the grasp benchmark is made with; default: all")
+      ->delimiter(',')
+      ->check(CLI::IsMember(std::set<std::string>(benchmark_hands.begin(), benchmark_hands.end())));
   app.add_option("--size-error", options.take.size_error,
                  "grasp benchmark: objects are seen larger or smaller by this share")
       ->check(CLI::Range(0.0, 0.5));
@@ -110,6 +113,9 @@ int main(int argc, char** argv) {
   app.add_option("--claimed-error", options.take.claimed_error,
                  "grasp benchmark: the same as the camera tells it, if that is more, m")
       ->check(CLI::Range(0.0, 1.0));
+  app.add_flag(
+      "--late", options.take.late,
+      "grasp benchmark: hands at rest get ready only when they close, not while they reach");
   app.add_option("--threads", threads, "0: one a core; the answer is the same")
       ->capture_default_str()
       ->check(CLI::Range(0, 1024));
@@ -140,7 +146,7 @@ int main(int argc, char** argv) {
   const bool trained =
       std::any_of(chosen.begin(), chosen.end(), [](const auto& one) { return one.trained; });
   auto hands = hands_of(chosen);
-  if (grasping) hands.assign(benchmark_hands.begin(), benchmark_hands.end());
+  if (grasping) hands.insert(hands.end(), options.hands.begin(), options.hands.end());
   auto parts = load_parts(hands, grasping || trained);
   if (!parts) return refuse(parts.error());
   if (takes) parts->real_takes = std::move(*takes);

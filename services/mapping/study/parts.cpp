@@ -13,6 +13,7 @@ Expected<Parts> load_parts(const std::vector<std::string>& hands, bool with_mode
   if (!catalogue) return tl::unexpected(catalogue.error());
   Parts parts{std::move(*catalogue), {}, {}};
   for (const std::string& name : hands) {
+    if (parts.hands.contains(name)) continue;  // figures and benchmark name the same ones
     auto hand = model::HandModel::load(model::hand_directory(name));
     if (!hand) return tl::unexpected(hand.error());
     auto scheme = Scheme::load(share / "schemes" / (name + ".toml"), *hand);

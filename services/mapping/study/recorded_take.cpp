@@ -54,7 +54,8 @@ std::optional<RecordedTake> record_take(const RobotGrasp& grasp, std::uint64_t s
     // The glove takes its sensor's place for the hand's, and the scale that was calibrated.
     posture.X_WH = X_WG * person.hand().X_HG().inverse() * person.X_HR();
     posture.hand_scale = person.calibrated_scale();
-    posture.fingertips = person.sense(closure, 0, 1 - closed);
+    const double ready = options.late ? closed : smooth(t / reaching);
+    posture.fingertips = person.sense(closure, 0, 1 - ready);
     take.postures.push_back(posture);
   }
 

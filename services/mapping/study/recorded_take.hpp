@@ -13,6 +13,8 @@ namespace prehend::mapping {
 /// How a person reaches for an object, and how the camera errs about it.
 struct TakeOptions {
   DemonstratorOptions demonstrator;
+  /// A hand at rest gets ready while it reaches, as people's do; late: not before it closes.
+  bool late = false;
   double size_error = 0;       // the object is seen larger or smaller by this share of its size
   double position_error = 0;   // m, sigma of each horizontal coordinate at which it is seen
   double angle_error = 0;      // rad, sigma of its turn

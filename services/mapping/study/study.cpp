@@ -48,8 +48,8 @@ Expected<std::vector<TrialResult>> benchmark(const Parts& parts, const StudyOpti
 
   std::vector<TrialResult> all;
   double done = 0;
-  const double pieces = static_cast<double>(benchmark_hands.size() * modes.size());
-  for (const char* name : benchmark_hands) {
+  const double pieces = static_cast<double>(options.hands.size() * modes.size());
+  for (const std::string& name : options.hands) {
     const StudiedHand& studied = parts.hand(name);
     const BenchmarkedHand hand{studied.hand, *studied.model, studied.grasps, parts.catalogue};
     for (const BenchmarkedMode& mode : modes) {

@@ -12,12 +12,16 @@
 
 namespace prehend::mapping {
 
+/// The hands that the grasp benchmark is made with.
+inline constexpr std::array benchmark_hands{"barrett", "dlr", "robonaut"};
+
 struct StudyOptions {
   bool quick = false;
   std::uint64_t seed = 1;
   TakeOptions take;  // how people reach in the grasp benchmark, and how the camera errs
   int trials = 0;    // of the grasp benchmark for each hand and mode; 0: 24 or 270
   std::vector<BenchmarkMode> modes;  // that it judges, with and without placement; none: see there
+  std::vector<std::string> hands{benchmark_hands.begin(), benchmark_hands.end()};  // that it uses
 };
 
 /// An experiment with what it came to.
@@ -32,10 +36,7 @@ struct Studied {
 std::vector<Studied> study(const Parts& parts, const std::vector<Experiment>& experiments,
                            const StudyOptions& options, const grasping::ForEach& for_each);
 
-/// The hands that the grasp benchmark is made with.
-inline constexpr std::array benchmark_hands{"barrett", "dlr", "robonaut"};
-
-/// The grasp benchmark of these hands: quick, direct mapping without and intelligent mapping with
+/// The grasp benchmark: quick, direct mapping without and intelligent mapping with
 /// and without placement in 24 takes each; full, every mode that the hand allows, with and without,
 /// in 270 takes.
 Expected<std::vector<TrialResult>> benchmark(const Parts& parts, const StudyOptions& options,

@@ -13,6 +13,7 @@
 #include <prehend/base/progress.hpp>
 #include <prehend/base/workers.hpp>
 
+#include "closures.hpp"
 #include "teach.hpp"
 #include "trainer.hpp"
 
@@ -37,26 +38,6 @@ class Steps {
 int refuse(const Error& error) {
   log::error("{}", error.message());
   return 3;
-}
-
-/// From the file if it is there; otherwise the hand is closed and the file written.
-Expected<std::vector<RobotGrasp>> grasps_of(const model::HandModel& hand, const Scheme& scheme,
-                                            const std::filesystem::path& catalogue_file,
-                                            const std::filesystem::path& file, bool again) {
-  if (!again && std::filesystem::exists(file)) return load_robot_grasps(file, hand);
-  const auto catalogue = model::Catalogue::load(catalogue_file);
-  if (!catalogue) return tl::unexpected(catalogue.error());
-  prehend::Progress progress("closing the hand");
-  auto grasps = close_on_catalogue(
-      hand, scheme, *catalogue,
-      [&](std::size_t count, const auto& work) {
-        share_work(count, 0, work, [&](std::size_t done) { progress.show(done, count); });
-      },
-      [](const Error& error) { log::warning("{}", error.message()); });
-  if (grasps.empty()) return fail("the hand can grasp nothing of it", catalogue_file.string());
-  if (auto saved = save_robot_grasps(file, hand, grasps); !saved)
-    return tl::unexpected(saved.error());
-  return grasps;
 }
 
 /// Adds the pairs of a file to a set for the same hand.
@@ -107,7 +88,7 @@ int main(int argc, char** argv) {
   std::vector<std::string> taught;
   SetOptions people;
   TrainerOptions trainer;
-  bool json = false, close_again = false, close_only = false;
+  bool json = false, close_again = false;
   CLI::App app{"Trains the mapping from human hands to a robot hand"};
   app.add_option("--hand", hand_name, "kind of robot hand")->capture_default_str();
   app.add_option("--scheme", scheme_name,
@@ -116,7 +97,6 @@ int main(int argc, char** argv) {
   app.add_option("--grasps", grasps_file,
                  "the robot's grasps: read, or made if missing; default: trained/HAND.grasps");
   app.add_flag("--close", close_again, "close the hand again, though the file is there");
-  app.add_flag("--close-only", close_only, "train nothing");
   app.add_option("--out", out, "model to write; default: trained/HAND.mapping");
   app.add_option("--training-set", set_file, "also write the training set there");
   app.add_option("--set", taught, "also learn from these sets, of prehend teach; repeatable");
@@ -170,48 +150,46 @@ int main(int argc, char** argv) {
   if (!hand) return refuse(hand.error());
   const auto scheme = Scheme::load(scheme_path(scheme_name), *hand);
   if (!scheme) return refuse(scheme.error());
-  const auto grasps =
-      grasps_of(*hand, *scheme, catalogue_file, grasps_file, close_again || close_only);
+  const auto grasps = !close_again && std::filesystem::exists(grasps_file)
+                          ? load_robot_grasps(grasps_file, *hand)
+                          : close_and_save(*hand, *scheme, catalogue_file, grasps_file);
   if (!grasps) return refuse(grasps.error());
 
   nlohmann::json document{{"hand", hand_name}, {"scheme", scheme->name}};
   for (const RobotGrasp& grasp : *grasps) document["grasps"].push_back(describe(grasp));
-  if (!close_only) {
-    Sets sets;
-    trainer.network.seed = static_cast<std::uint32_t>(people.seed);
-    SetOptions others = people;
-    others.users = 3;
-    others.grasps = static_cast<int>(grasps->size());
-    sets.training = demonstrate(*hand, *scheme, *grasps, people);
-    others.seed = people.seed + 1;
-    sets.validation = demonstrate(*hand, *scheme, *grasps, others);
-    others.seed = people.seed + 2;
-    others.users = 30;
-    sets.test = demonstrate(*hand, *scheme, *grasps, others);
-    for (const std::string& file : taught)
-      if (auto added = add_taught(sets.training, file); !added) return refuse(added.error());
-    if (!set_file.empty())
-      if (auto saved = learning::save(set_file, sets.training); !saved)
-        return refuse(saved.error());
-    const auto catalogue = model::Catalogue::load(catalogue_file);
-    if (!catalogue) return refuse(catalogue.error());
-    trainer.precision = precision_discriminant(*catalogue, hand->reach(), people);
-    trainer.places = learnt_places(*grasps);
-    Steps steps;
-    const double before = since_begin();
-    const auto model = train_mapping(
-        *hand, *scheme, sets, trainer,
-        [](std::size_t count, const auto& work) { share_work(count, 0, work, [](std::size_t) {}); },
-        std::ref(steps));
-    if (!model) return refuse(model.error());
-    document["training_seconds"] = since_begin() - before;
-    if (auto saved = model->save(out, *hand); !saved) return refuse(saved.error());
-    document["model"] = out;
-    document["pairs"] = sets.training.pairs.size();
-    document["training_set"] = model->traits().training_set_digest;
-    for (const MappingNetwork& network : model->networks())
-      document["networks"].push_back(describe(*model, network, sets.test));
-  }
+  Sets sets;
+  trainer.network.seed = static_cast<std::uint32_t>(people.seed);
+  SetOptions others = people;
+  others.users = 3;
+  others.grasps = static_cast<int>(grasps->size());
+  sets.training = demonstrate(*hand, *scheme, *grasps, people);
+  others.seed = people.seed + 1;
+  sets.validation = demonstrate(*hand, *scheme, *grasps, others);
+  others.seed = people.seed + 2;
+  others.users = 30;
+  sets.test = demonstrate(*hand, *scheme, *grasps, others);
+  for (const std::string& file : taught)
+    if (auto added = add_taught(sets.training, file); !added) return refuse(added.error());
+  if (!set_file.empty())
+    if (auto saved = learning::save(set_file, sets.training); !saved) return refuse(saved.error());
+  const auto catalogue = model::Catalogue::load(catalogue_file);
+  if (!catalogue) return refuse(catalogue.error());
+  trainer.precision = precision_discriminant(*catalogue, hand->reach(), people);
+  trainer.places = learnt_places(*grasps);
+  Steps steps;
+  const double before = since_begin();
+  const auto model = train_mapping(
+      *hand, *scheme, sets, trainer,
+      [](std::size_t count, const auto& work) { share_work(count, 0, work, [](std::size_t) {}); },
+      std::ref(steps));
+  if (!model) return refuse(model.error());
+  document["training_seconds"] = since_begin() - before;
+  if (auto saved = model->save(out, *hand); !saved) return refuse(saved.error());
+  document["model"] = out;
+  document["pairs"] = sets.training.pairs.size();
+  document["training_set"] = model->traits().training_set_digest;
+  for (const MappingNetwork& network : model->networks())
+    document["networks"].push_back(describe(*model, network, sets.test));
   document["seconds"] = since_begin();
   if (json) {
     std::cout << document.dump(2) << '\n';
@@ -221,13 +199,11 @@ int main(int argc, char** argv) {
     log::info("{} {}: epsilon {:.3f}, {}", grasp["object"].get<std::string>(),
               grasp["type"].get<std::string>(), grasp["epsilon"].get<double>(),
               grasp["held"].get<bool>() ? "held" : "not held");
-  if (!close_only) {
-    for (const auto& network : document["networks"])
-      log::info("{}: error {:.4f} rad² trained, {:.4f} on other people",
-                network["network"].get<std::string>(), network["training_error"].get<double>(),
-                network["test_error"].get<double>());
-    log::info("{} pairs, {}", document["pairs"].get<std::size_t>(), out);
-  }
+  for (const auto& network : document["networks"])
+    log::info("{}: error {:.4f} rad² trained, {:.4f} on other people",
+              network["network"].get<std::string>(), network["training_error"].get<double>(),
+              network["test_error"].get<double>());
+  log::info("{} pairs, {}", document["pairs"].get<std::size_t>(), out);
   log::info("{:.1f} s", document["seconds"].get<double>());
   return 0;
 }

@@ -171,12 +171,17 @@ std::vector<GraspType> types_from(const Pose& X_OG) {
   return {GraspType::circular_sphere, GraspType::precision};
 }
 
-Eigen::VectorXd past_contact(const model::HandModel& hand, const RobotGrasp& grasp, double angle) {
-  Eigen::VectorXd dof = grasp.dof;
-  for (Eigen::Index i = 0; i < dof.size(); ++i)
-    dof[i] +=
-        angle * grasp.closing[i] * grasping::radian_of(hand.dofs()[static_cast<std::size_t>(i)]);
-  return hand.clamp(dof);
+Eigen::VectorXd past_contact(const model::HandModel& hand, const RobotGrasp& grasp,
+                             const Eigen::VectorXd& open, double angle) {
+  constexpr double least = 0.1;  // rad, so that every finger presses
+  Eigen::VectorXd unit(grasp.dof.size());
+  for (Eigen::Index i = 0; i < unit.size(); ++i)
+    unit[i] = grasping::radian_of(hand.dofs()[static_cast<std::size_t>(i)]);
+  const Eigen::ArrayXd way =
+      ((grasp.dof - open).array() * grasp.closing.array() / unit.array()).max(0.0);
+  const double longest = std::max(way.maxCoeff(), 1e-9);
+  const Eigen::ArrayXd further = (angle * way / longest).max(std::min(least, angle));
+  return hand.clamp(grasp.dof + (further * grasp.closing.array() * unit.array()).matrix());
 }
 
 std::vector<Vector3d> places_to_try() {

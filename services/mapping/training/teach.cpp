@@ -39,7 +39,7 @@ std::vector<learning::TrainingPair> curriculum(const model::HandModel& hand, con
       pair.shape = model::to_string(grasp.shape.kind);
       pair.size = grasp.shape.size;
       pair.X_OG = grasp.X_OG;
-      pair.dof = past_contact(hand, grasp, past);
+      pair.dof = past_contact(hand, grasp, scheme.open.robot, past);
       asked.push_back(pair);
     }
   }

@@ -137,22 +137,28 @@ learning::TrainingSet demonstrate(const model::HandModel& hand, const Scheme& sc
       pair.user = demonstrator.user();
       pair.take = static_cast<unsigned>(take);
       pair.source = "synthetic";
-      // resting: of the hand, in this posture; the open one rests fully.
+      // resting: of the hand, in this posture; the open one rests fully. A hand that reaches gets
+      // ready on the way, half of the people's before the fingers close, others' while they do.
+      constexpr double on_the_reach = 0.5;  // of the time in which the fingers close
       const auto show = [&](std::string_view name, const Closure& human, double splay,
-                            double resting, const Eigen::VectorXd& robot, double complete) {
-        demonstrator.rest(!spread_says);
+                            double resting, const Eigen::VectorXd& robot, double complete,
+                            bool reaching) {
         pair.posture = name;
         pair.features = demonstrator.read(human, splay, resting);
         pair.dof = robot;
         set.pairs.push_back(pair);
         for (int i = 0; i < options.on_the_way; ++i) {
-          const double share = random.uniform();
+          const double phase = random.uniform(reaching ? -on_the_reach : 0.0, 1.0);
+          const double share = std::max(0.0, phase);
+          const double ready = reaching ? std::max(0.0, random.uniform(-1, 1)) : 0;
+          const double rest = reaching
+                                  ? std::clamp((ready - phase) / (ready + on_the_reach), 0.0, 1.0)
+                                  : 1 + share * (resting - 1);
           Closure part{};
           for (std::size_t f = 0; f < part.size(); ++f)
             part[f] = open.human[f] + complete * share * (human[f] - open.human[f]);
           pair.posture = on_the_way_to + std::string(name);
-          pair.features = demonstrator.read(part, open.splay + share * (splay - open.splay),
-                                            1 + share * (resting - 1));
+          pair.features = demonstrator.read(part, open.splay + share * (splay - open.splay), rest);
           pair.dof = open.robot + share * (robot - open.robot);
           set.pairs.push_back(pair);
         }
@@ -165,13 +171,15 @@ learning::TrainingSet demonstrate(const model::HandModel& hand, const Scheme& sc
         pair.X_OG = grasp.X_OG;
         for (int i = 0; i < options.beside; ++i) {
           const SchemePosture& posture = postures[random.index(postures.size())];
+          demonstrator.rest(!spread_says);
           show(posture.name, demonstrator.repeat(posture.human), posture.splay,
-               1 - posture.human.front(), posture.robot, 1.0);
+               1 - posture.human.front(), posture.robot, 1.0, false);
         }
+        demonstrator.rest(!spread_says);
         // None: this person's hand does not fit around it.
         if (const auto human = demonstrator.reach(grasp.shape, grasp.X_OG, grasp.type))
           show(to_string(grasp.type), human->closure, open.splay, 0.0,
-               past_contact(hand, grasp, options.past_contact), options.complete);
+               past_contact(hand, grasp, open.robot, options.past_contact), options.complete, true);
       }
     }
   }

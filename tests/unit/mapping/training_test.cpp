@@ -91,6 +91,49 @@ TEST(RobotGrasps, AreClosedOnTheObjects) {
   EXPECT_GE(held.size(), 7u);
 }
 
+// Guards against thumbs that pushed the object over before the fingers came: with as much added to
+// every joint, those that had a short way were in contact after half of it. The contact of a joint
+// lies at way / (way + overshoot) of its straight way past contact; the overshoot is 0.25 of the
+// longest way here, so that is 0.8 for every joint but those whose least overshoot (0.1 rad) or
+// limit counts. Rounding only.
+TEST(PastContact, IsReachedByAllFingersTogether) {
+  for (const std::string name : {"barrett", "dlr", "robonaut", "rutgers", "parallel_jaw"}) {
+    const model::HandModel& hand = test::hand(name);
+    const Scheme made =
+        Scheme::load(PREHEND_SOURCE "/services/mapping/schemes/" + name + ".toml", hand).value();
+    const auto closed = load_robot_grasps(PREHEND_TRAINED "/" + name + ".grasps", hand);
+    ASSERT_TRUE(closed) << closed.error().message();
+    int proportional = 0;
+    for (const RobotGrasp& grasp : *closed) {
+      const auto unit = [&](Eigen::Index i) {
+        return grasping::radian_of(hand.dofs()[static_cast<std::size_t>(i)]);
+      };
+      const auto way = [&](const Eigen::VectorXd& dof, Eigen::Index i) {
+        return grasp.closing[i] * (dof[i] - made.open.robot[i]) / unit(i);
+      };
+      double longest = 0;
+      for (Eigen::Index i = 0; i < grasp.dof.size(); ++i)
+        longest = std::max(longest, way(grasp.dof, i));
+      const Eigen::VectorXd past = past_contact(hand, grasp, made.open.robot, 0.25 * longest);
+      for (Eigen::Index i = 0; i < past.size(); ++i) {
+        const model::HandDof& dof = hand.dofs()[static_cast<std::size_t>(i)];
+        EXPECT_GE(past[i], dof.lower);
+        EXPECT_LE(past[i], dof.upper);
+        if (grasp.closing[i] == 0) {
+          EXPECT_EQ(past[i], grasp.dof[i]) << name << ": what rests stays";
+          continue;
+        }
+        EXPECT_GE(grasp.closing[i] * (past[i] - grasp.dof[i]), 0) << name << ", " << dof.name;
+        const bool at_limit = past[i] == dof.lower || past[i] == dof.upper;
+        if (at_limit || 0.25 * way(grasp.dof, i) < 0.1) continue;
+        EXPECT_NEAR(way(grasp.dof, i) / way(past, i), 0.8, 1e-9) << name << ", " << dof.name;
+        ++proportional;
+      }
+    }
+    EXPECT_GT(proportional, 0) << name;
+  }
+}
+
 TEST(TrainingSet, HoldsPosturesAndGraspsOfEveryTake) {
   const learning::TrainingSet set = people(5, 2, 2);
   ASSERT_TRUE(learning::check(set));
