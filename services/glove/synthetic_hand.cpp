@@ -30,7 +30,7 @@ enum Phase {
   go_back,
   phase_count
 };
-constexpr std::array<double, phase_count> durations{2.0, 1.0, 0.7, 1.0, 1.5, 0.8,
+constexpr std::array<double, phase_count> durations{2.0, 1.0, 0.7, 1.0, 2.5, 0.8,
                                                     0.6, 0.8, 0.5, 0.5, 0.6};
 constexpr double lift_height = 0.12;                   // m
 constexpr double approach_path = 0.12;                 // m, straight in

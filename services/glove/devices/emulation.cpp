@@ -50,6 +50,9 @@ Expected<void> emulate(const EmulationOptions& options, const FrameSource& sourc
   std::unique_ptr<Emulator> device;
   Wire wire(options.baud);
   std::uint64_t tick = 0, n = 0;
+  // Nobody reaches before somebody looks. On a line the host speaks first, datagrams just come.
+  std::optional<Duration> begun;
+  if (options.baud == 0) begun = Duration::zero();
   std::optional<Frame> current = source.frame(0), next = source.frame(1);
   if (!current) return fail("the source has no frame", "emulator", "choose another");
 
@@ -71,12 +74,13 @@ Expected<void> emulate(const EmulationOptions& options, const FrameSource& sourc
     const std::string heard =
         plug->read(std::clamp(wire.next(due) - elapsed(), Duration::zero(), glance));
     const Duration now = elapsed();
+    if (!begun && !heard.empty()) begun = now;
     const bool silent = faults.silent(now);
     if (!heard.empty() && !silent) wire.send(faults.spoil(device->receive(heard, now)), now);
     wire.deliver(now, *plug);
     if (now < due) continue;
     // What lies between the device's measurements is never seen; after the end the hand stays.
-    while (next && next->stamp.time_since_epoch() <= due) {
+    while (next && begun && next->stamp.time_since_epoch() <= due - *begun) {
       current = std::move(next);
       next = source.frame(++n + 1);
     }

@@ -19,6 +19,7 @@ struct EmulationOptions {
 };
 
 /// Runs an emulated device that feels what the source says, in real time, until `stopped` says so.
+/// On a line the source begins when the host first speaks, and rests at its beginning until then.
 /// After its end the source stays as it was last. A device that is still sending its last records
 /// when the next measurement is due leaves that out, as real ones do.
 Expected<void> emulate(const EmulationOptions& options, const FrameSource& source,
