@@ -47,6 +47,11 @@ bool is_of_services(const std::string& topic) {
   });
 }
 
+bool is_answer(const std::string& topic) {
+  return std::any_of(services().begin(), services().end(),
+                     [&](const Service& service) { return service.writes.contains(topic); });
+}
+
 /// A topic of the table above that was not recorded.
 dds::RawTopic answer_topic(const std::string& name) {
   static const std::map<std::string, std::string> types{
@@ -218,7 +223,11 @@ class Run {
     // All together, services read what others have said just before; alone, a service reads that
     // from the recording, in cycles of the same times.
     std::set<std::int64_t> times;
-    const std::int64_t first = ns_of(played_.front()), last = ns_of(played_.back());
+    // Counted from what stays as it is when the answers are renewed.
+    const auto begin = std::ranges::find_if_not(
+        played_, [](const Played& one) { return is_answer(one.stream->topic.name); });
+    const std::int64_t first = ns_of(begin != played_.end() ? *begin : played_.front()),
+                       last = ns_of(played_.back());
     for (std::int64_t time = first; time <= last; time += tick.count()) times.insert(time);
     const bool alone = !options_.services.empty();
     for (const Played& one : played_)

@@ -3,15 +3,15 @@
 namespace prehend::recorder {
 
 OperatorLink::OperatorLink(service::Shell& shell, std::string name, Obey obey,
-                           std::function<bool(std::uint64_t)> is_ours)
+                           std::optional<dds::GuidPrefix> player)
     : shell_(shell),
       name_(std::move(name)),
       obey_(std::move(obey)),
-      is_ours_(std::move(is_ours)),
+      player_(player),
       replies_(shell.publish(dds::operator_reply)) {
   shell.subscribe(dds::operator_command,
                   [this](const v1::OperatorCommand& command, const dds::SampleInfo& info) {
-                    if (!info.gone && !(is_ours_ && is_ours_(info.instance))) on_command(command);
+                    if (!info.gone && info.participant != player_) on_command(command);
                   });
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <prehend/base/error.hpp>
 #include <prehend/service/shell.hpp>
 #include <string>
@@ -14,9 +15,9 @@ class OperatorLink {
  public:
   /// Returns what to answer; called in the shell.
   using Obey = std::function<Expected<std::string>(const std::string& order)>;
-  /// `is_ours`: instances of commands that we have published ourselves and do not obey.
+  /// `player`: who plays old orders here, which are not obeyed.
   OperatorLink(service::Shell& shell, std::string name, Obey obey,
-               std::function<bool(std::uint64_t)> is_ours = nullptr);
+               std::optional<dds::GuidPrefix> player = {});
 
  private:
   void on_command(const v1::OperatorCommand& command);
@@ -24,7 +25,7 @@ class OperatorLink {
   service::Shell& shell_;
   std::string name_;
   Obey obey_;
-  std::function<bool(std::uint64_t)> is_ours_;
+  std::optional<dds::GuidPrefix> player_;
   service::Shell::Output<v1::OperatorReply> replies_;
 };
 

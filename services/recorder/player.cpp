@@ -9,6 +9,7 @@
 #include <prehend/base/log.hpp>
 #include <prehend/types/stamps.hpp>
 #include <sstream>
+#include <utility>
 
 namespace prehend::recorder {
 namespace {
@@ -36,6 +37,9 @@ Expected<std::unique_ptr<Player>> Player::create(Tape tape, dds::Participant& pa
     const auto key = std::pair(stream->topic.name, stream->writer);
     if (made->writers_.contains(key)) continue;
     dds::RawTopic topic = stream->topic;
+    // Readers of today match it; a recording may be older than a key.
+    if (const types::Structure* type = types.find(topic.type))
+      topic.keyed = std::ranges::any_of(type->fields, &types::Field::key);
     if (const auto other = made->options_.remap.find(topic.name);
         other != made->options_.remap.end())
       topic.name = other->second;
@@ -78,34 +82,43 @@ void Player::go_to(Time position) {
   transport_.seek(clock(), position);
   to_system_ = system_now().time_since_epoch() - clock().time_since_epoch();
   if (position > tape_.start())
-    for (const Played& played : tape_.standing(position)) publish(played);
+    for (Played& played : tape_.standing(position)) {
+      played = by_now(std::move(played));
+      count(write(*played.stream, played.sample));
+    }
   tape_.seek(position);
   fetch();
 }
 
-bool Player::write(const recording::Stream& stream, dds::RawSample sample) {
+bool Player::write(const recording::Stream& stream, const dds::RawSample& sample) {
   const auto writer = writers_.find({stream.topic.name, stream.writer});
   return writer != writers_.end() && writer->second.write(sample, sample.sent);
 }
 
-void Player::publish(const Played& played) {
-  const recording::Stream& stream = *played.stream;
-  if (stream.topic.name == dds::operator_command.name)
-    commands_.insert(dds::instance_hash(played.sample.instance));
-  bool written = false;
-  if (options_.stamps_now) {
-    dds::RawSample sample = played.sample;
-    sample.sent = moved(sample.sent, played.log_time);
-    if (const types::Structure* type = types_.find(stream.topic.type))
-      types::move_stamps(
-          *type, [&](std::int64_t stamp) { return to_ns(moved(from_ns(stamp), played.log_time)); },
-          sample.payload);
-    written = write(stream, std::move(sample));
-  } else {
-    written = writers_.find({stream.topic.name, stream.writer})
-                  ->second.write(played.sample, played.sample.sent);
-  }
+Played Player::by_now(Played played) const {
+  if (!options_.stamps_now) return played;
+  const auto now = [&](Time recorded) { return moved(recorded, played.log_time); };
+  played.sample.sent = now(played.sample.sent);
+  if (const types::Structure* type = types_.find(played.stream->topic.type))
+    types::move_stamps(
+        *type, [&](std::int64_t stamp) { return to_ns(now(from_ns(stamp))); },
+        played.sample.payload);
+  return played;
+}
+
+void Player::count(bool written) {
   ++(written ? figures_.published : figures_.refused);
+}
+
+void Player::publish_next(std::unique_lock<std::mutex>& lock) {
+  const Played played = by_now(*std::exchange(next_, std::nullopt));
+  fetch();
+  // What is written comes to readers in this process before write() returns, and they may wait for
+  // somebody who waits for the lock.
+  lock.unlock();
+  const bool written = write(*played.stream, played.sample);
+  lock.lock();
+  count(written);
 }
 
 Time Player::moved(Time recorded, Time log_time) const {
@@ -136,8 +149,7 @@ void Player::play(const std::stop_token& stop, Time start) {
     if (burst_ > 0 && next_) {
       --burst_;
       transport_.seek(clock(), next_->log_time);
-      publish(*next_);
-      fetch();
+      publish_next(lock);
       continue;
     }
     burst_ = 0;
@@ -154,8 +166,7 @@ void Player::play(const std::stop_token& stop, Time start) {
     }
     if (lateness_us_.size() < most_lateness)
       lateness_us_.push_back(static_cast<float>(1e6 * to_seconds(clock() - due)));
-    publish(*next_);
-    fetch();
+    publish_next(lock);
   }
   figures_.ended = true;
   lock.unlock();
@@ -238,11 +249,6 @@ Player::Figures Player::figures() {
     figures.late_max_us = quantile(1);
   }
   return figures;
-}
-
-bool Player::has_played_command(std::uint64_t instance) {
-  const std::scoped_lock lock(mutex_);
-  return commands_.contains(instance);
 }
 
 }  // namespace prehend::recorder

@@ -55,12 +55,10 @@ class Player {
     double late_p50_us = 0, late_p99_us = 0, late_max_us = 0;
   };
   Figures figures();
-  /// An instance of operator/command that was played and must not be obeyed.
-  bool has_played_command(std::uint64_t instance);
 
   Tape& tape() { return tape_; }  // before play()
   /// Writes a sample of the tape with another payload; before play().
-  bool write(const recording::Stream& stream, dds::RawSample sample);
+  bool write(const recording::Stream& stream, const dds::RawSample& sample);
 
  private:
   using Clock = std::chrono::steady_clock;
@@ -68,7 +66,10 @@ class Player {
   static Time clock();
   void go_to(Time position);
   void fetch();
-  void publish(const Played& played);
+  /// With the stamps that it is played with.
+  Played by_now(Played played) const;
+  void publish_next(std::unique_lock<std::mutex>& lock);
+  void count(bool written);
   Time moved(Time recorded, Time log_time) const;
   std::string state() const;
 
@@ -87,7 +88,6 @@ class Player {
   std::uint64_t burst_ = 0, orders_ = 0;
   Figures figures_;
   std::vector<float> lateness_us_;
-  std::set<std::uint64_t> commands_;
 };
 
 }  // namespace prehend::recorder

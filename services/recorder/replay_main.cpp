@@ -139,7 +139,7 @@ class Easing {
     dds::RawSample sample = first_.sample;
     sample.payload = dds::encode(dds::robot_command, command_);
     sample.sent = now;
-    player.write(*first_.stream, std::move(sample));
+    player.write(*first_.stream, sample);
     return t >= way_->duration();
   }
 
@@ -158,15 +158,14 @@ class Easing {
 class Replay {
  public:
   Replay(service::Shell& shell, Player& player, std::optional<Easing> easing, Time start,
-         const Arguments& arguments)
+         const dds::GuidPrefix& identity, const Arguments& arguments)
       : shell_(shell),
         player_(player),
         easing_(std::move(easing)),
         start_(start),
         progress_(arguments.quiet || arguments.json),
         operator_(
-            shell, "replayer", [this](const std::string& order) { return obey(order); },
-            [this](std::uint64_t instance) { return player_.has_played_command(instance); }) {
+            shell, "replayer", [this](const std::string& order) { return obey(order); }, identity) {
     if (easing_)
       shell.subscribe(dds::robot_state,
                       [this](const v1::HandState& state, const dds::SampleInfo& info) {
@@ -294,9 +293,11 @@ int replay(const Arguments& arguments) {
     if (!time) return service::complain(time.error(), service::exit_wrong_use);
     start_at = *time;
   }
-  // Beacons of then would tell the services wrong clocks now.
+  // What processes said of themselves then is not so now: beacons would tell the services wrong
+  // clocks, and a status services that are not there.
   const auto wanted = [&](const std::string& topic) {
-    return topic != dds::lab_beacon.name && arguments.topics.wants(topic);
+    return topic != dds::lab_beacon.name && topic != dds::service_status.name &&
+           arguments.topics.wants(topic);
   };
   auto tape = Tape::open({arguments.files.begin(), arguments.files.end()}, wanted);
   if (!tape) return service::complain(tape.error(), service::exit_broken);
@@ -330,7 +331,7 @@ int replay(const Arguments& arguments) {
   if (!player) return service::complain(player.error(), service::exit_wrong_use);
 
   const Time start = start_at.value_or(system_now() + seconds(arguments.delay));
-  Replay work(*shell, **player, std::move(easing), start, arguments);
+  Replay work(*shell, **player, std::move(easing), start, participant->identity(), arguments);
   const int ended = shell->run();
   work.finish();
   const Player::Figures figures = (*player)->figures();

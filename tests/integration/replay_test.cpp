@@ -163,6 +163,53 @@ TEST_F(Replay, PlaysToAnotherRigAndDomainAndTellsInJson) {
   EXPECT_TRUE(heard(*there, came, 4));
 }
 
+// An order that was given then is played, from a recording of when orders had a key, but the player
+// does not obey it; and what processes said of themselves then is not so now.
+TEST_F(Replay, OldOrdersAreHeardButNotObeyedAndOldStatusesAreNot) {
+  const std::string tape = file("old.mcap");
+  {
+    auto recording = create("old.mcap");
+    const auto source = [&](std::string_view topic, const char* type) {
+      return recorder::Source{{std::string(topic), type, true, *dds::find_topic(topic)}, name_};
+    };
+    v1::OperatorCommand order;
+    order.id("then");
+    order.action(v1::ACTION_STOP);
+    v1::ServiceStatus status;
+    status.service("ghost@then/1");
+    v1::GraspReport report;
+    report.hand("hand");
+    const auto statuses = source("service/status", "prehend::v1::ServiceStatus"),
+               orders = source("operator/command", "prehend::v1::OperatorCommand"),
+               reports = source("grasp/report", "prehend::v1::GraspReport");
+    for (int i = 0; i < 4; ++i) {
+      const Duration time = i * milliseconds(100);
+      report.sequence_number(static_cast<std::uint64_t>(i));
+      write(recording, statuses, dds::service_status, status, time);
+      write(recording, orders, dds::operator_command, order, time);
+      write(recording, reports, dds::grasp_report, report, time);
+    }
+    ASSERT_TRUE(recording.close());
+  }
+  auto orders = reader(dds::operator_command);
+  auto statuses = reader(dds::service_status);
+  auto reports = reader(dds::grasp_report);
+  auto player = start_program("prehend-replay", with_lab({tape, "--quiet", "--loop"}));
+  std::size_t given = 0, judged = 0, ours = 0;
+  EXPECT_TRUE(eventually(20,
+                         [&] {
+                           given += orders.take().size();
+                           judged += reports.take().size();
+                           for (const auto& sample : statuses.take()) {
+                             EXPECT_NE(sample.data.service().to_string(), "ghost@then/1");
+                             ours += sample.data.service().to_string().starts_with("replayer");
+                           }
+                           return given > 4 && judged > 4 && ours > 1;
+                         }))
+      << given << " orders, " << judged << " reports, " << ours << " statuses";
+  EXPECT_FALSE(player.exit()) << "it obeyed an order that it played";
+}
+
 TEST_F(Replay, WrongUseIsOneLine) {
   const std::string tape = reports("tape.mcap", {0, 1}, milliseconds(10));
   for (const Strings& arguments :

@@ -73,8 +73,6 @@ TEST(KeyHash, IsTheOneOfFastDdsForEveryKeyedType) {
   agrees<v1::SceneStatePubSubType>(*contract, "prehend::v1::SceneState");
   agrees<v1::ObjectStatePubSubType>(*contract, "prehend::v1::ObjectState");
   agrees<v1::GraspReportPubSubType>(*contract, "prehend::v1::GraspReport");
-  agrees<v1::OperatorCommandPubSubType>(*contract, "prehend::v1::OperatorCommand");
-  agrees<v1::OperatorReplyPubSubType>(*contract, "prehend::v1::OperatorReply");
   agrees<v1::LabProgressPubSubType>(*contract, "prehend::v1::LabProgress");
   agrees<v1::ServiceStatusPubSubType>(*contract, "prehend::v1::ServiceStatus");
 }
