@@ -25,7 +25,9 @@
 #include <utility>
 
 #include "dds_log.hpp"
-#include "security.hpp"
+#include "packet.hpp"
+#include "server_watch.hpp"
+#include "sites.hpp"
 
 namespace prehend::dds {
 
@@ -45,27 +47,6 @@ constexpr std::pair<const char*, const char*> variables[] = {
     {"FASTDDS_ENVIRONMENT_FILE", "names a file with further variables"},
     {"FASTDDS_STATISTICS", "adds writers to every participant"},
 };
-
-/// The port at which linked discovery servers begin to count: server n listens at 11811 + n.
-constexpr std::uint16_t first_server_port = 11811;
-
-/// Clients know a server by this prefix, which is that of `fast-discovery-server -i N`.
-rtps::GuidPrefix_t server_prefix(std::uint16_t port) {
-  constexpr std::array<std::uint8_t, 12> pattern{0x44, 0x53, 0x00, 0x5f, 0x45, 0x50,
-                                                 0x52, 0x4f, 0x53, 0x49, 0x4d, 0x41};
-  rtps::GuidPrefix_t prefix;
-  std::copy(pattern.begin(), pattern.end(), prefix.value);
-  prefix.value[2] = static_cast<rtps::octet>(port - first_server_port);
-  return prefix;
-}
-
-rtps::Locator_t locator_of(const Address& address, std::int32_t kind) {
-  rtps::Locator_t locator;
-  locator.kind = kind;
-  locator.port = address.port;
-  rtps::IPLocator::setIPv4(locator, address.ip[0], address.ip[1], address.ip[2], address.ip[3]);
-  return locator;
-}
 
 /// A profile as it stands in its file. Each file is read once.
 Expected<fdds::DomainParticipantQos> load(const std::string& profile) {
@@ -143,7 +124,7 @@ Expected<void> use_servers(fdds::DomainParticipantQos& qos, const Network& netwo
     const auto own = resolve(discovering.serves, first_server_port);
     if (!own) return tl::unexpected(own.error());
     builtin.discovery_config.discoveryProtocol = rtps::DiscoveryProtocol_t::SERVER;
-    builtin.metatrafficUnicastLocatorList.push_back(locator_of(*own, LOCATOR_KIND_UDPv4));
+    builtin.metatrafficUnicastLocatorList.push_back(locator_of(*own));
     qos.wire_protocol().prefix = server_prefix(own->port);
     // A server that is started again knows nobody, and its clients tell it of themselves anew only
     // after they have missed it. They keep each other meanwhile.
@@ -163,79 +144,8 @@ Expected<void> use_servers(fdds::DomainParticipantQos& qos, const Network& netwo
     if (server.guidPrefix == qos.wire_protocol().prefix)
       return fail("linked discovery servers must have different ports", text,
                   "the first listens at 11811, the next at 11812");
-    server.metatrafficUnicastLocatorList.push_back(locator_of(*address, LOCATOR_KIND_UDPv4));
+    server.metatrafficUnicastLocatorList.push_back(locator_of(*address));
     builtin.discovery_config.m_DiscoveryServers.push_back(server);
-  }
-  return {};
-}
-
-/// Where the processes of a listening site are found.
-constexpr std::uint16_t first_wan_port = 7420;
-constexpr std::uint16_t wan_ports = 16;
-
-/// A port that nobody listens at; 0: all are taken.
-std::uint16_t free_port() {
-  for (std::uint16_t port = first_wan_port; port < first_wan_port + wan_ports; ++port) {
-    const int socket = ::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
-    sockaddr_in address{};
-    address.sin_family = AF_INET;
-    address.sin_port = htons(port);
-    const int on = 1;
-    ::setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &on, sizeof on);
-    const bool free =
-        ::bind(socket, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0;
-    ::close(socket);
-    if (free) return port;
-  }
-  return 0;
-}
-
-/// Only one side dials: when two connect to each other at once, Fast DDS 2.9 takes the two
-/// connections for one and both fail.
-Expected<void> use_peers(fdds::DomainParticipantQos& qos, const Network& network) {
-  const auto& all = qos.transport().user_transports;
-  const auto found = std::find_if(all.begin(), all.end(), [](const auto& one) {
-    return dynamic_cast<transport::TCPv4TransportDescriptor*>(one.get()) != nullptr;
-  });
-  if (found == all.end()) return fail("has no TCPv4 transport", "profile wan");
-  auto& tcp = dynamic_cast<transport::TCPv4TransportDescriptor&>(**found);
-  if (!network.keys.empty()) {
-    using Tls = transport::TCPTransportDescriptor::TLSConfig;
-    tcp.apply_security = true;
-    tcp.tls_config.verify_file = network.keys / key_files::authority;
-    tcp.tls_config.cert_chain_file = network.keys / key_files::certificate;
-    tcp.tls_config.private_key_file = network.keys / key_files::key;
-    tcp.tls_config.add_verify_mode(Tls::VERIFY_PEER);
-    tcp.tls_config.add_verify_mode(Tls::VERIFY_FAIL_IF_NO_PEER_CERT);
-    for (const auto old : {Tls::NO_SSLV2, Tls::NO_SSLV3, Tls::NO_TLSV1, Tls::NO_TLSV1_1})
-      tcp.tls_config.add_option(old);
-  }
-  if (network.peers.empty()) {
-    const std::uint16_t port = free_port();
-    if (port == 0)
-      return fail("all ports from 7420 to 7435 are taken", "lab.network = wan",
-                  "end other processes of the lab on this machine");
-    tcp.add_listener_port(port);
-    return {};
-  }
-  auto& initial = qos.wire_protocol().builtin.initialPeersList;
-  // Who names peers is no longer given the group of its own site.
-  rtps::Locator_t site;
-  site.kind = LOCATOR_KIND_UDPv4;
-  rtps::IPLocator::setIPv4(site, "239.255.0.1");
-  initial.push_back(site);
-  for (const std::string& text : network.peers) {
-    const auto address = resolve(text, std::uint16_t{0});
-    if (!address) return tl::unexpected(address.error());
-    const std::uint16_t first = address->port ? address->port : first_wan_port;
-    for (int n = 0; n < (address->port ? 1 : wan_ports); ++n) {
-      rtps::Locator_t peer;
-      peer.kind = LOCATOR_KIND_TCPv4;
-      rtps::IPLocator::setIPv4(peer, address->ip[0], address->ip[1], address->ip[2],
-                               address->ip[3]);
-      rtps::IPLocator::setPhysicalPort(peer, static_cast<std::uint16_t>(first + n));
-      initial.push_back(peer);
-    }
   }
   return {};
 }
@@ -270,6 +180,21 @@ Expected<Address> resolve(const std::string& text, std::optional<std::uint16_t> 
   return address;
 }
 
+rtps::GuidPrefix_t server_prefix(std::uint16_t port) {
+  rtps::GuidPrefix_t prefix;
+  std::copy(first_server.begin(), first_server.end(), prefix.value);
+  prefix.value[2] = static_cast<rtps::octet>(port - first_server_port);
+  return prefix;
+}
+
+rtps::Locator_t locator_of(const Address& address) {
+  rtps::Locator_t locator;
+  locator.kind = LOCATOR_KIND_UDPv4;
+  locator.port = address.port;
+  rtps::IPLocator::setIPv4(locator, address.ip[0], address.ip[1], address.ip[2], address.ip[3]);
+  return locator;
+}
+
 Expected<fdds::DomainParticipantQos> participant_qos(const Network& network,
                                                      const Discovering& discovering) {
   take_charge();
@@ -289,7 +214,8 @@ Expected<fdds::DomainParticipantQos> participant_qos(const Network& network,
       given = std::make_shared<transport::TCPv4TransportDescriptor>(*tcp);
   }
   if (network.profile == "wan")
-    if (const auto used = use_peers(*qos, network); !used) return tl::unexpected(used.error());
+    if (const auto joined = join_sites(*qos, network); !joined)
+      return tl::unexpected(joined.error());
   if (network.profile == "server")
     if (const auto used = use_servers(*qos, network, discovering); !used)
       return tl::unexpected(used.error());
@@ -297,9 +223,9 @@ Expected<fdds::DomainParticipantQos> participant_qos(const Network& network,
 }
 
 bool is_server(const rtps::GuidPrefix_t& prefix) {
-  rtps::GuidPrefix_t pattern = server_prefix(first_server_port);
-  pattern.value[2] = prefix.value[2];
-  return prefix == pattern;
+  GuidPrefix bytes;
+  std::copy_n(prefix.value, bytes.size(), bytes.begin());
+  return is_server(bytes);
 }
 
 std::vector<Error> outside_influence() {

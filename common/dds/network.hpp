@@ -17,6 +17,8 @@ struct Network {
   std::string profile = "laptop";    // laptop, lan, server or wan
   std::vector<std::string> servers;  // server: ADDRESS:PORT of each discovery server
   std::vector<std::string> peers;    // wan: HOST or HOST:PORT to dial; empty: this site listens
+  std::string listen;                // wan: HOST:PORT where others dial this process; empty: at
+                                     // its own address
   std::filesystem::path keys;        // of this process, see security.hpp; empty: not secured
 };
 

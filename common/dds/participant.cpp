@@ -2,6 +2,7 @@
 
 #include <fastdds/rtps/transport/SocketTransportDescriptor.h>
 #include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <fastdds/dds/domain/DomainParticipant.hpp>
@@ -11,8 +12,13 @@
 #include <fastdds/dds/topic/Topic.hpp>
 #include <map>
 #include <mutex>
+#include <prehend/base/log.hpp>
+#include <set>
 
-#include "packet.hpp"
+#include "gate.hpp"
+#include "guarded_transport.hpp"
+#include "peers.hpp"
+#include "server_watch.hpp"
 
 namespace prehend::dds {
 
@@ -24,6 +30,12 @@ namespace {
 eprosima::fastrtps::Duration_t duration(std::chrono::milliseconds time) {
   return {static_cast<int32_t>(time.count() / 1000),
           static_cast<uint32_t>(time.count() % 1000) * 1'000'000u};
+}
+
+GuidPrefix prefix_of(const rtps::GuidPrefix_t& from) {
+  GuidPrefix prefix;
+  std::copy_n(from.value, prefix.size(), prefix.begin());
+  return prefix;
 }
 
 /// What a writer and a reader of one topic set alike.
@@ -51,6 +63,9 @@ void apply(Qos& qos, const TopicQos& topic, int depth, bool lockstep) {
   if (topic.deadline.count() > 0) qos.deadline().period = duration(topic.deadline);
 }
 
+constexpr std::chrono::milliseconds longest_goodbye{1000};
+constexpr std::size_t most_attempts = 4;  // at joining a secured lab
+
 }  // namespace
 
 std::uint64_t instance_hash(const std::array<std::uint8_t, 16>& key) {
@@ -65,100 +80,45 @@ std::uint64_t instance_hash(const eprosima::fastrtps::rtps::InstanceHandle_t& ha
   return instance_hash(key);
 }
 
-/// Hears of every peer before anybody else does, and keeps count of those that are refused.
-class Participant::Guard : public fdds::DomainParticipantListener {
- public:
-  /// authority: of our own keys; nothing: we have none.
-  Guard(fdds::DomainParticipantListener* next, std::optional<std::string> authority)
-      : next_(next), authority_(std::move(authority)) {}
-
-  std::map<std::string, std::uint64_t> refused() const {
-    const std::scoped_lock lock(mutex_);
-    return refused_;
-  }
-
-  void on_participant_discovery(fdds::DomainParticipant* participant,
-                                rtps::ParticipantDiscoveryInfo&& found) override {
-    using Found = rtps::ParticipantDiscoveryInfo;
-    if (found.status == Found::DISCOVERED_PARTICIPANT)
-      meet(found.info);
-    else if (found.status != Found::CHANGED_QOS_PARTICIPANT)
-      leave(found.info.m_guid);
-    if (next_) next_->on_participant_discovery(participant, std::move(found));
-  }
-  void onParticipantAuthentication(fdds::DomainParticipant* participant,
-                                   rtps::ParticipantAuthenticationInfo&& info) override {
-    if (info.status == rtps::ParticipantAuthenticationInfo::UNAUTHORIZED_PARTICIPANT)
-      refuse(info.guid);
-    if (next_) next_->onParticipantAuthentication(participant, std::move(info));
-  }
-  void on_publisher_discovery(fdds::DomainParticipant* participant,
-                              rtps::WriterDiscoveryInfo&& info) override {
-    if (next_) next_->on_publisher_discovery(participant, std::move(info));
-  }
-  void on_subscriber_discovery(fdds::DomainParticipant* participant,
-                               rtps::ReaderDiscoveryInfo&& info) override {
-    if (next_) next_->on_subscriber_discovery(participant, std::move(info));
-  }
-
- private:
-  struct Peer {
-    std::string name, authority;
-    bool secured = false;
-  };
-
-  void meet(const rtps::ParticipantProxyData& info) {
-    Peer peer;
-    peer.name = info.m_participantName.to_string();
-    for (const rtps::Property& property : info.identity_token_.properties()) {
-      peer.secured = true;
-      if (property.name() == "dds.ca.sn") peer.authority = property.value();
-    }
-    const std::scoped_lock lock(mutex_);
-    if (peer.secured && !authority_)
-      note(peer.name + ", which is secured while this process is not");
-    // Only who is to be judged, and not without bound.
-    if (authority_ && peers_.size() < 1024) peers_.insert_or_assign(info.m_guid, std::move(peer));
-  }
-  void leave(const rtps::GUID_t& guid) {
-    const std::scoped_lock lock(mutex_);
-    peers_.erase(guid);
-  }
-  void refuse(const rtps::GUID_t& guid) {
-    const std::scoped_lock lock(mutex_);
-    const auto found = peers_.find(guid);
-    const Peer peer = found == peers_.end() ? Peer{"somebody", {}, true} : found->second;
-    if (!peer.secured)
-      note(peer.name + ", which has no keys");
-    else if (peer.authority != "/" + *authority_)  // as the plugin writes it
-      note(peer.name + ", whose keys are of another authority");
-    else
-      note(peer.name + ", whose keys are revoked or not valid");
-  }
-  void note(const std::string& whom) {
-    if (refused_.size() < 32 || refused_.contains(whom)) ++refused_[whom];
-  }
-
-  fdds::DomainParticipantListener* next_;
-  std::optional<std::string> authority_;
-  mutable std::mutex mutex_;
-  std::map<rtps::GUID_t, Peer> peers_;
-  std::map<std::string, std::uint64_t> refused_;
-};
-
 struct Participant::State {
   ParticipantOptions options;
   std::optional<Keys> keys;
-  std::optional<Guard> guard;  // outlives the participant
+  // These outlive the participant.
+  std::optional<Peers> peers;
+  std::optional<PacketGuard> packets;
+  Gate gate;
   fdds::DomainParticipant* participant = nullptr;
   fdds::Publisher* publisher = nullptr;
   fdds::Subscriber* subscriber = nullptr;
   std::map<std::string, fdds::Topic*, std::less<>> topics;
+  std::optional<ServerWatch> servers;
 
   ~State() {
+    servers.reset();
     if (!participant) return;
+    // Otherwise its leaving may overtake its last words, which then nobody hears.
+    if (publisher) publisher->wait_for_acknowledgments(duration(longest_goodbye));
+    gate.close();
     participant->delete_contained_entities();
     fdds::DomainParticipantFactory::get_instance()->delete_participant(participant);
+  }
+
+  /// Told of a discovery server's address, new or known.
+  void server_is_at(const Address& address) {
+    fdds::DomainParticipantQos qos = participant->get_qos();
+    const auto locator = locator_of(address);
+    for (auto& server : qos.wire_protocol().builtin.discovery_config.m_DiscoveryServers) {
+      auto& known = server.metatrafficUnicastLocatorList;
+      if (server.guidPrefix != server_prefix(address.port) ||
+          std::find(known.begin(), known.end(), locator) != known.end())
+        continue;
+      log::info("the discovery server of port {} is at {} now", address.port,
+                fmt::join(address.ip, "."));
+      packets->add_server(prefix_of(server.guidPrefix), address.ip);
+      known.push_back(locator);
+      participant->set_qos(qos);
+      return;
+    }
   }
 
   Expected<fdds::Topic*> topic(std::string_view name, fdds::TypeSupport& type) {
@@ -185,6 +145,23 @@ Participant& Participant::operator=(Participant&&) noexcept = default;
 Participant::~Participant() = default;
 
 Expected<Participant> Participant::create(const ParticipantOptions& options) {
+  // Who does not answer a second time either refuses us without saying so.
+  std::set<rtps::GUID_t> silent;
+  while (true) {
+    auto made = join(options);
+    if (!made || !made->keys()) return made;
+    const rtps::GUID_t& own = made->state_->participant->guid();
+    const auto undecided = made->state_->peers->wait_until_decided(own);
+    if (!undecided) return made;
+    if (silent.size() == most_attempts || !silent.insert(undecided->guid).second) {
+      log::warning("{} neither lets this process in nor refuses it", undecided->name);
+      return made;
+    }
+    log::info("{} does not end its handshake: joining anew", undecided->name);
+  }
+}
+
+Expected<Participant> Participant::join(const ParticipantOptions& options) {
   if (options.domain < 0 || options.domain > 232)
     return fail("domain must lie in 0 to 232", "lab.domain");
   auto state = std::make_unique<State>();
@@ -201,7 +178,7 @@ Expected<Participant> Participant::create(const ParticipantOptions& options) {
   if (!qos) return tl::unexpected(qos.error());
   qos->name(options.name);
   if (state->keys) secure(*qos, *state->keys);
-  state->guard.emplace(options.listener,
+  state->peers.emplace(options.listener,
                        state->keys ? std::optional(state->keys->authority) : std::nullopt);
   // Who listens to the whole domain is a recorder: pictures that come while it has no processor
   // wait in the socket (as far as net.core.rmem_max allows), for on best effort topics nothing else
@@ -211,18 +188,29 @@ Expected<Participant> Participant::create(const ParticipantOptions& options) {
       if (auto* socket =
               dynamic_cast<eprosima::fastdds::rtps::SocketTransportDescriptor*>(transport.get()))
         socket->receiveBufferSize = 1 << 24;
+  state->packets.emplace(!options.serves.empty());
+  // Over TCP Fast DDS does not tell who sent a packet; there TLS decides who connects.
   for (auto& transport : qos->transport().user_transports)
     if (dynamic_cast<eprosima::fastdds::rtps::UDPv4TransportDescriptor*>(transport.get()))
-      transport = guarded(transport);
+      transport = guarded(transport, *state->packets);
+  for (auto& transport : qos->transport().user_transports)
+    transport = gated(transport, state->gate);
+  for (const auto& server : qos->wire_protocol().builtin.discovery_config.m_DiscoveryServers)
+    for (const auto& locator : server.metatrafficUnicastLocatorList)
+      state->packets->add_server(prefix_of(server.guidPrefix), ip_of(locator));
   auto* factory = fdds::DomainParticipantFactory::get_instance();
   state->participant =
-      factory->create_participant(options.domain, *qos, &*state->guard, fdds::StatusMask::none());
+      factory->create_participant(options.domain, *qos, &*state->peers, fdds::StatusMask::none());
   if (!state->participant)
     return state->keys
                ? fail("cannot join the secured lab", state->keys->folder.string(),
                       "what Fast DDS says of it stands above; are the keys meant for this lab?")
                : fail("cannot join the domain", "dds",
                       "is a network interface up, at least loopback?");
+  if (network.profile == "server")
+    state->servers.emplace(
+        network.servers, [at = state.get()](const Address& address) { at->server_is_at(address); });
+  state->packets->add_own(prefix_of(state->participant->guid().guidPrefix));
   if (state->keys)
     if (const auto effective = confirm(*state->participant, *state->keys); !effective)
       return tl::unexpected(effective.error());
@@ -244,7 +232,11 @@ const Keys* Participant::keys() const {
 }
 
 std::map<std::string, std::uint64_t> Participant::refused() const {
-  return state_->guard->refused();
+  return state_->peers->refused();
+}
+
+GuidPrefix Participant::identity() const {
+  return prefix_of(state_->participant->guid().guidPrefix);
 }
 
 Expected<TopicQos> Participant::table_entry(std::string_view name) {
@@ -266,6 +258,10 @@ Expected<fdds::DataWriter*> Participant::make_writer(const TopicQos& topic, fdds
   if (topic.lifespan.count() > 0 && !state_->options.lockstep)
     qos.lifespan().duration = duration(topic.lifespan);
   qos.writer_data_lifecycle().autodispose_unregistered_instances = !raw;
+  // What is kept for good takes what it needs: otherwise every buffer is as large as the largest
+  // message. (The end of an instance without its key, as raw topics have it, needs such a one.)
+  if (!raw && topic.writer_depth == 0)
+    qos.endpoint().history_memory_policy = eprosima::fastrtps::rtps::DYNAMIC_RESERVE_MEMORY_MODE;
   // With the default of 3 s a lost single sample is noticed very late.
   qos.reliable_writer_qos().times.heartbeatPeriod = duration(std::chrono::milliseconds(100));
   qos.reliability().max_blocking_time = duration(std::chrono::milliseconds(100));

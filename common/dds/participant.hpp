@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "network.hpp"
+#include "packet.hpp"
 #include "security.hpp"
 #include "topics.hpp"
 
@@ -37,8 +38,8 @@ struct ParticipantOptions {
 
 /// Provenance of a received sample.
 struct SampleInfo {
-  Time sent;                                   // the writer's clock
-  std::array<std::uint8_t, 12> participant{};  // of the writer: first bytes of its identity
+  Time sent;                   // the writer's clock
+  GuidPrefix participant{};    // of the writer: first bytes of its identity
   std::uint64_t instance = 0;  // hash of the key, the same for all samples of an instance
   bool gone = false;  // the instance was disposed or lost its last writer: only its key is set
 };
@@ -59,10 +60,11 @@ class Writer {
   explicit Writer(eprosima::fastdds::dds::DataWriter* writer) : writer_(writer) {}
   /// False when the sample could not be queued (it timed out on a full history).
   bool write(const T& sample) { return writer_->write(const_cast<T*>(&sample)); }
-  /// Tells readers that the instance with this sample's key is gone.
+  /// Tells readers that the instance with this sample's key is gone, and forgets it.
   bool dispose(const T& key) {
     auto* sample = const_cast<T*>(&key);
-    return writer_->dispose(sample, writer_->lookup_instance(sample)) == ReturnCode_t::RETCODE_OK;
+    return writer_->unregister_instance(sample, writer_->lookup_instance(sample)) ==
+           ReturnCode_t::RETCODE_OK;
   }
   eprosima::fastdds::dds::DataWriter& raw() { return *writer_; }
 
@@ -100,6 +102,8 @@ class Reader {
     }
     return samples;
   }
+  /// Living instances that have been seen.
+  std::size_t instances() const { return first_.size(); }
   eprosima::fastdds::dds::DataReader& raw() { return *reader_; }
 
  private:
@@ -126,9 +130,11 @@ class Careful final : public P {
 /// safe from one thread at a time; each writer and reader likewise.
 class Participant {
  public:
+  /// With keys it returns when the peers that answer have been let in or refused.
   static Expected<Participant> create(const ParticipantOptions& options);
   Participant(Participant&&) noexcept;
   Participant& operator=(Participant&&) noexcept;
+  /// Waits until readers have what was written last and reliably, for at most 1 s.
   ~Participant();
 
   /// Those that it joined with; nothing when it is not secured. They live as long as it does.
@@ -136,6 +142,8 @@ class Participant {
   /// Peers that were refused, or that refuse us, with the reason, and how often: «mallory, whose
   /// keys are of another authority». At most 32 different ones. Safe from every thread.
   std::map<std::string, std::uint64_t> refused() const;
+  /// As others see it in SampleInfo::participant.
+  GuidPrefix identity() const;
 
   template <class P>
   Expected<Writer<typename P::type>> writer(const Topic<P>& topic) {
@@ -159,9 +167,9 @@ class Participant {
  private:
   friend class RawReader;
   friend class RawWriter;
-  class Guard;
   struct State;
   explicit Participant(std::unique_ptr<State> state);
+  static Expected<Participant> join(const ParticipantOptions& options);
   static Expected<TopicQos> table_entry(std::string_view topic);
   Expected<eprosima::fastdds::dds::DataWriter*> make_writer(
       const TopicQos& topic, eprosima::fastdds::dds::TypeSupport type, bool raw = false);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <deque>
 #include <fastdds/dds/subscriber/Subscriber.hpp>
 #include <map>
 #include <mutex>
@@ -99,16 +100,18 @@ void Discovery::on_publisher_discovery(fdds::DomainParticipant*,
 
 class RawReader::Listener : public fdds::DataReaderListener {
  public:
-  Listener(Take take, KeyOf key) : take_(std::move(take)), key_(std::move(key)) {}
+  /// kept: samples that a writer keeps of each instance for who comes late; 0: none, or all.
+  Listener(Take take, KeyOf key, int kept)
+      : take_(std::move(take)), key_(std::move(key)), kept_(kept) {}
 
   void on_subscription_matched(fdds::DataReader*,
                                const fdds::SubscriptionMatchedStatus& status) override {
     const std::scoped_lock lock(mutex_);
     const Guid writer = guid_of(status.last_publication_handle);
     if (status.current_count_change > 0)
-      writers_[writer].matched = std::chrono::system_clock::now();
+      writers_.try_emplace(writer);
     else if (status.current_count_change < 0)
-      writers_.erase(writer);
+      forget(writer);
   }
 
   void on_data_available(fdds::DataReader* reader) override {
@@ -131,8 +134,9 @@ class RawReader::Listener : public fdds::DataReaderListener {
       for (std::size_t i = 0; i < samples.size(); ++i) find_key(samples[i], infos[i].valid_data);
     for (std::size_t i = 0; i < samples.size(); ++i) {
       samples[i].kind = kind_of(samples, infos, i);
-      count(samples[i]);
+      if (samples[i].kind != RawSample::Kind::data) end(samples[i].instance);
     }
+    count(samples);
     for (RawSample& sample : samples) take_(std::move(sample));
   }
 
@@ -145,9 +149,14 @@ class RawReader::Listener : public fdds::DataReaderListener {
 
  private:
   struct Seen {
-    Time matched{}, sent{};
     std::uint64_t sequence = 0;
+    /// Of what the writer had kept from before: how many of each instance. Nothing once it is known
+    /// to be live.
+    std::map<Guid, int> kept;
+    bool live = false;
   };
+  /// Instances whose end is remembered: what becomes of others next may be told wrongly.
+  static constexpr std::size_t most_ended = 4096;
 
   /// The wire says whether an instance was disposed or unregistered, the middleware only how it is
   /// now: with several changes at once, the next life of the instance tells how this one ended.
@@ -182,22 +191,54 @@ class RawReader::Listener : public fdds::DataReaderListener {
     }
   }
 
+  /// Instances come and go without number: of those that have ended only the last are remembered.
+  void end(const Guid& instance) {
+    ended_.push_back(instance);
+    if (ended_.size() <= most_ended) return;
+    const Guid oldest = ended_.front();
+    ended_.pop_front();
+    instances_.erase(oldest);
+    for (auto it = disposed_.lower_bound({oldest, {}});
+         it != disposed_.end() && it->first == oldest;)
+      it = disposed_.erase(it);
+  }
+
+  /// What has come at once comes instance by instance: losses are gaps in the order of the numbers.
+  void count(const std::vector<RawSample>& samples) {
+    std::vector<const RawSample*> ordered;
+    for (const RawSample& sample : samples) ordered.push_back(&sample);
+    std::sort(ordered.begin(), ordered.end(),
+              [](const auto* a, const auto* b) { return a->sequence < b->sequence; });
+    for (const RawSample* sample : ordered) count(*sample);
+  }
+
   void count(const RawSample& sample) {
     ++received;
     Seen& seen = writers_[sample.writer];
-    // What a writer kept from before may have gaps that are no losses.
-    if (seen.sequence > 0 && seen.sent >= seen.matched && sample.sequence > seen.sequence + 1)
+    // What a writer kept from before has gaps that are no losses, but never more samples of an
+    // instance than it keeps: the next one of it was written since.
+    if (!seen.live && (kept_ == 0 || ++seen.kept[sample.instance] > kept_)) {
+      seen.live = true;
+      seen.kept.clear();
+    }
+    if (seen.live && seen.sequence > 0 && sample.sequence > seen.sequence + 1)
       lost += sample.sequence - seen.sequence - 1;
     seen.sequence = std::max(seen.sequence, sample.sequence);
-    seen.sent = sample.sent;
+  }
+
+  void forget(const Guid& writer) {
+    writers_.erase(writer);
+    std::erase_if(disposed_, [&](const auto& ended) { return ended.second == writer; });
   }
 
   Take take_;
   KeyOf key_;
   std::set<Guid> instances_;  // that have been seen, where we find the keys
   std::mutex mutex_;
+  int kept_;
   std::map<Guid, Seen> writers_;
   std::set<std::pair<Guid, Guid>> disposed_;  // instance and writer, until its next change
+  std::deque<Guid> ended_;                    // last instances that have, in order
 };
 
 RawReader::RawReader(std::unique_ptr<Listener> listener, fdds::Subscriber* subscriber,
@@ -212,7 +253,8 @@ RawReader::~RawReader() {
 Expected<std::unique_ptr<RawReader>> RawReader::create(Participant& participant,
                                                        const RawTopic& topic, Take take,
                                                        KeyOf key) {
-  auto listener = std::make_unique<Listener>(std::move(take), key);
+  auto listener = std::make_unique<Listener>(
+      std::move(take), key, topic.qos.transient_local ? topic.qos.writer_depth : 0);
   TopicQos qos = topic.qos;
   qos.name = topic.name;
   qos.reader_depth = 0;

@@ -119,7 +119,7 @@ inline constexpr std::array topic_table{
     TopicQos{.name = "object/state", .reliable = false, .from = Role::simulation, .to = anyone},
     TopicQos{.name = "grasp/report",
              .transient_local = true,
-             .writer_depth = 0,
+             .writer_depth = 256,
              .reader_depth = 0,
              .from = Role::simulation,
              .to = anyone},

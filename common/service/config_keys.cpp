@@ -19,6 +19,9 @@ const std::vector<ConfigKey>& config_keys() {
        "what a complete lab has: `prehend status` says who of them is missing"},
       {"lab.peers", Names{},
        "wan: HOST or HOST:PORT of the site that listens; empty: this is the one that listens"},
+      {"lab.listen", Text(""),
+       "wan: HOST:PORT where other sites dial this process, when a gateway forwards the port; "
+       "empty: at its own address, the first free port from 7420"},
       {"lab.keys", Text(""),
        "folder of this process's keys, or of all, from `prehend keys`; empty: not secured"},
       {"lab.lockstep", false, "follow lab/clock instead of the system clock"},

@@ -10,6 +10,7 @@ dds::ParticipantOptions membership(const Config& config, const std::string& name
           .network = {.profile = config.text("lab.network"),
                       .servers = config.names("lab.server"),
                       .peers = config.names("lab.peers"),
+                      .listen = config.text("lab.listen"),
                       .keys = config.path("lab.keys")},
           .role = role};
 }

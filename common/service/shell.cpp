@@ -20,7 +20,8 @@
 #include <prehend/base/log.hpp>
 #include <prehend/base/paths.hpp>
 #include <prehend/clock/peers.hpp>
-#include <prehend/dds/packet.hpp>
+#include <prehend/dds/gate.hpp>
+#include <prehend/dds/guarded_transport.hpp>
 #include <prehend/dds/security.hpp>
 #include <thread>
 
@@ -51,7 +52,7 @@ std::string signed_seconds(Duration duration) {
   return fmt::format("{:+.3f} s", to_seconds(duration));
 }
 
-/// Waited for by a thread parked in sigwait: a handler must not touch what wakes run().
+/// Waited for by a thread of its own: a handler must not touch what wakes run().
 sigset_t stop_signals() {
   sigset_t set;
   sigemptyset(&set);
@@ -102,11 +103,11 @@ struct Shell::State {
   Time last_beacon{};
   Duration clock_step{};
 
-  std::atomic<bool> stopping = false;
+  std::atomic<bool> stopping = false, left = false;
   std::atomic<int> exit_code = 0;
 
   v1::ServiceStatus status_message;
-  std::uint64_t unsound = 0;  // messages that were told of
+  std::map<dds::Verdict, std::uint64_t> dropped;  // packets, as far as the status tells
   std::vector<std::unique_ptr<fdds::DataReaderListener>> listeners;
   // Goes before all that its threads may still touch.
   std::optional<dds::Participant> participant;
@@ -141,8 +142,7 @@ struct Shell::State {
   }
 
   /// The same program with the same arguments in this process, which keeps its number.
-  [[noreturn]] void join_anew() {
-    participant.reset();
+  [[noreturn]] void start_anew() {
     std::vector<char*> arguments;
     for (std::string& text : command) arguments.push_back(text.data());
     arguments.push_back(nullptr);
@@ -153,15 +153,33 @@ struct Shell::State {
     log::error("cannot start anew: {}", std::strerror(errno));
     std::_Exit(3);
   }
+
+  /// Waits for signals to stop, and looks whether Fast DDS has locked itself up: then nothing of it
+  /// can be used any more, not even to leave.
+  void watch() {
+    const sigset_t waited = stop_signals();
+    const timespec while_waiting{0, 500'000'000};
+    dds::DeafnessWatch deafness;
+    while (!left) {
+      if (sigtimedwait(&waited, nullptr, &while_waiting) > 0) {
+        stopping = true;
+        wake();
+      } else if (!lockstep && deafness.look()) {
+        log::error("Fast DDS has locked itself up and receives nothing any more");
+        if (options.restarts && !stopping) start_anew();
+        std::_Exit(3);
+      }
+    }
+  }
 };
 
 Shell::Shell(std::unique_ptr<State> state) : state_(std::move(state)) {}
 
 Shell::~Shell() {
   state_->participant.reset();  // ends the threads that hand over samples
-  // The watcher sleeps in sigwait; a signal of our own lets it go.
+  // The watcher waits for a signal; one of our own lets it go.
   if (state_->signals.joinable()) {
-    state_->stopping = true;
+    state_->left = true;
     pthread_kill(state_->signals.native_handle(), SIGTERM);
     state_->signals.join();
   }
@@ -230,13 +248,7 @@ std::unique_ptr<Shell> Shell::create(int argc, char** argv, const Options& optio
       (options.name + "@" + host + "/" + std::to_string(getpid())).substr(0, 128).c_str());
 
   State* raw = state.get();
-  state->signals = std::thread([raw] {
-    const sigset_t waited = stop_signals();
-    int signal = 0;
-    sigwait(&waited, &signal);
-    raw->stopping = true;
-    raw->wake();
-  });
+  state->signals = std::thread([raw] { raw->watch(); });
   exit_code = 0;
   std::unique_ptr<Shell> shell(new Shell(std::move(state)));
   if (raw->lockstep) {
@@ -404,9 +416,12 @@ void Shell::stop(int exit_code) {
 int Shell::run() {
   State& state = *state_;
   const auto publish_status = [&](Time now) {
-    const std::uint64_t unsound = dds::unsound_messages();
-    if (unsound > state.unsound)
-      state.status.drop("malformed packet", unsound - std::exchange(state.unsound, unsound));
+    for (const dds::Dropped& dropped : dds::dropped_packets()) {
+      const auto reason = dds::verdict_names[static_cast<std::size_t>(dropped.reason)];
+      std::uint64_t& told = state.dropped[dropped.reason];
+      if (told == 0) log::warning("dropped: {}, from {}", reason, dropped.last_source);
+      state.status.drop(reason, dropped.count - std::exchange(told, dropped.count));
+    }
     for (const auto& [peer, count] : state.participant->refused()) {
       std::uint64_t& told = state.refused[peer];
       if (told == 0) log::warning("peer refused: {}", peer);
@@ -531,7 +546,8 @@ int Shell::run() {
   state.running = false;
   if (again) {
     lock.unlock();
-    state.join_anew();
+    state.participant.reset();
+    state.start_anew();
   }
   log::info("stopped");
   return state.exit_code;

@@ -1,11 +1,17 @@
 // Glove frame read until the world has accepted the command, over two DDS hops and three processes,
 // against a floor: raw Fast DDS processes that do nothing but pass messages of the same types, over
 // the same two hops, with the same QoS, paced at the same rate, in the same run. Both run side by
-// side in slices, so that a machine that changes its speed changes both.
+// side in slices, so that a machine that changes its speed changes both. The floor takes the same
+// way, keys and delay included.
 //
-//   benchmark_latency [--json] [--seconds S] [--network laptop|lan|server]      at 30 and at 500 Hz
+//   benchmark_latency [--json] [--seconds S] [--case NAME]...     each at 30 and at 500 Hz
 //
-// Floor and lab use the same network; for `server` one is started for the run.
+// Cases:
+//   laptop       over loopback
+//   containers   each process in a network space of its own on one bridge, as engines make them
+//   (root) server       loopback, found through a discovery server that is started for the run
+//   secure       as laptop, encrypted with keys that are made for the run
+//   far          as containers, secure, and the glove is 20 ms away (root)
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -19,10 +25,13 @@
 #include <nlohmann/json.hpp>
 #include <prehend/base/paths.hpp>
 #include <prehend/dds/participant.hpp>
+#include <prehend/service/lab.hpp>
 #include <prehend/service/process.hpp>
 #include <prehend/service/status.hpp>
 #include <random>
 #include <thread>
+
+#include "hosts.hpp"
 
 namespace prehend {
 namespace {
@@ -34,10 +43,11 @@ Time now() {
   return std::chrono::time_point_cast<Duration>(std::chrono::system_clock::now());
 }
 
+/// Where a process of the run is and how it reaches the others.
 struct Place {
-  int domain;
-  std::string rig;
-  std::string network = "laptop";
+  int domain = 0;
+  std::string rig, network = "laptop";
+  std::filesystem::path keys;  // of all roles; empty: not secured
 };
 
 /// Where the discovery server of the run listens, by its domain: other runs have other numbers.
@@ -45,15 +55,12 @@ std::string server_of(const Place& place) {
   return "127.0.0.1:" + std::to_string(21000 + place.domain);
 }
 
-dds::Network network_of(const Place& place) {
-  dds::Network network{.profile = place.network};
+/// role: whose keys it has.
+dds::Participant join(const Place& place, const char* name, const char* role) {
+  dds::Network network{.profile = place.network, .keys = place.keys};
   if (place.network == "server") network.servers = {server_of(place)};
-  return network;
-}
-
-dds::Participant join(const Place& place, const char* name) {
   auto made = dds::Participant::create(
-      {.name = name, .domain = place.domain, .rig = place.rig, .network = network_of(place)});
+      {.name = name, .domain = place.domain, .rig = place.rig, .network = network, .role = role});
   if (!made) {
     std::cerr << made.error().message() << "\n";
     std::exit(3);
@@ -79,7 +86,7 @@ class Relay : public fdds::DataReaderListener {
 
 /// First of the floor's processes: a posture at the given rate, stamped when it is made.
 int floor_source(const Place& place, double rate) {
-  auto participant = join(place, "floor-source");
+  auto participant = join(place, "floor-source", "glove");
   auto writer = *participant.writer(dds::hand_posture);
   v1::HandPosture posture;
   posture.glove("glove");
@@ -96,7 +103,7 @@ int floor_source(const Place& place, double rate) {
 
 /// Second: a command for every posture.
 int floor_relay(const Place& place) {
-  auto participant = join(place, "floor-relay");
+  auto participant = join(place, "floor-relay", "mapping");
   auto writer = *participant.writer(dds::robot_command);
   auto reader = *participant.reader(dds::hand_posture);
   v1::HandCommand command;
@@ -117,20 +124,58 @@ struct Figures {
   std::size_t count = 0;
 };
 
-/// The floor's last process is this one: latencies of `wanted` commands.
-Figures measure_floor(double rate, std::size_t wanted, const std::string& self, Place place) {
-  place.rig = fmt::format("floor-{}-{}", getpid(), rate);
-  const auto spawn = [&](const char* role) {
-    auto made =
-        service::Process::start({.command = {self, role, std::to_string(place.domain), place.rig,
-                                             std::to_string(rate), place.network}});
+/// A case of the table, while it is measured: its place, and on which host each process runs.
+class Case {
+ public:
+  Case(const std::string& name, const std::filesystem::path& keys)
+      : place_{static_cast<int>(std::random_device{}() % 200), "", "laptop", {}} {
+    if (name == "server") place_.network = "server";
+    if (name == "secure" || name == "far") place_.keys = keys;
+    if (name == "containers" || name == "far") {
+      if (const auto why = integration::Hosts::unavailable()) throw std::runtime_error(*why);
+      place_.network = "lan";
+      hosts_.emplace((program_directory() / "prehend-delay-line").string());
+      hosts_->add("glove", {.delay_ms = name == "far" ? 20.0 : 0.0});
+      hosts_->add("mapping");
+      hosts_->add("simulation");
+      hosts_->enter("simulation");
+    }
+    if (name != "server") return;
+    server_.emplace(start("", {(program_directory() / "prehend").string(), "discovery-server",
+                               "--listen", server_of(place_)}));
+    std::this_thread::sleep_for(2s);  // it listens 1.2 s after its start
+  }
+  /// `rig` alone: what went before is still told of.
+  Place place(const std::string& rig) const {
+    Place own = place_;
+    own.rig = rig;
+    return own;
+  }
+  service::Process start(const std::string& host, std::vector<std::string> command,
+                         const std::filesystem::path& log = "/dev/null") const {
+    if (hosts_ && !host.empty()) command = hosts_->on(host, std::move(command));
+    auto made = service::Process::start({.command = std::move(command), .log = log});
     if (!made) {
       std::cerr << made.error().message() << "\n";
       std::exit(3);
     }
     return std::move(*made);
+  }
+
+ private:
+  Place place_;
+  std::optional<integration::Hosts> hosts_;
+  std::optional<service::Process> server_;
+};
+
+/// The floor's last process is this one: latencies of `wanted` commands.
+Figures measure_floor(double rate, std::size_t wanted, const std::string& self, const Case& at) {
+  const Place place = at.place(fmt::format("floor-{}-{}", getpid(), rate));
+  const auto spawn = [&](const char* role, const char* host) {
+    return at.start(host, {self, role, std::to_string(place.domain), place.rig,
+                           std::to_string(rate), place.network, place.keys.string()});
   };
-  auto participant = join(place, "floor-sink");
+  auto participant = join(place, "floor-sink", "viewer");
   auto reader = *participant.reader(dds::robot_command);
   std::mutex mutex;
   service::LatencyWindow window;
@@ -142,8 +187,8 @@ Figures measure_floor(double rate, std::size_t wanted, const std::string& self, 
     if (++seen > warm_up) window.add(latency);
   });
   reader.raw().set_listener(&relay);
-  auto second = spawn("--floor-relay");
-  auto first = spawn("--floor-source");
+  auto second = spawn("--floor-relay", "mapping");
+  auto first = spawn("--floor-source", "glove");
   while (seen < warm_up + wanted) std::this_thread::sleep_for(20ms);
   reader.raw().set_listener(nullptr);
   first.stop(1s);
@@ -152,33 +197,22 @@ Figures measure_floor(double rate, std::size_t wanted, const std::string& self, 
 }
 
 /// The real chain: the world's own measure, from its status.
-Figures measure_lab(double rate, std::size_t wanted, Place place) {
+Figures measure_lab(double rate, std::size_t wanted, const Case& at) {
   const std::string rig = fmt::format("lab-{}-{}", getpid(), rate);
-  place.rig = rig;
-  const auto bin = program_directory();
+  const Place place = at.place(rig);
   const auto spawn = [&](const std::string& name, std::vector<std::string> more) {
-    std::vector<std::string> command{(bin / ("prehend-" + name)).string(),
-                                     "--set",
-                                     "lab.rig=" + rig,
-                                     "--set",
-                                     "lab.domain=" + std::to_string(place.domain),
-                                     "--set",
-                                     "lab.network=" + place.network,
-                                     "--set",
-                                     "lab.server=[\"" + server_of(place) + "\"]"};
+    std::vector<std::string> command{(program_directory() / ("prehend-" + name)).string()};
+    more.insert(more.end(),
+                {"lab.rig=" + rig, fmt::format("lab.domain={}", place.domain),
+                 "lab.network=" + place.network, "lab.server=[\"" + server_of(place) + "\"]",
+                 "lab.keys=" + place.keys.string()});
     for (std::string& argument : more) {
       command.push_back("--set");
       command.push_back(std::move(argument));
     }
-    auto made = service::Process::start(
-        {.command = command, .log = std::filesystem::temp_directory_path() / (rig + name)});
-    if (!made) {
-      std::cerr << made.error().message() << "\n";
-      std::exit(3);
-    }
-    return std::move(*made);
+    return at.start(name, command, std::filesystem::temp_directory_path() / (rig + name));
   };
-  auto participant = join(place, "watcher");
+  auto participant = join(place, "watcher", "viewer");
   auto statuses = *participant.reader(dds::service_status);
   auto simulation = spawn("simulation", {});
   auto mapping = spawn("mapping", {});
@@ -186,8 +220,7 @@ Figures measure_lab(double rate, std::size_t wanted, Place place) {
   Figures figures;
   std::uint64_t accepted = 0;
   // A full window that was begun after the start: the world keeps the last 1024.
-  const std::uint64_t needed =
-      static_cast<std::uint64_t>(rate) + std::max<std::uint64_t>(wanted, 0);
+  const std::uint64_t needed = static_cast<std::uint64_t>(rate) + wanted;
   while (accepted < needed) {
     statuses.raw().wait_for_unread_message({5, 0});
     for (const auto& sample : statuses.take()) {
@@ -208,38 +241,44 @@ Figures measure_lab(double rate, std::size_t wanted, Place place) {
   return figures;
 }
 
-int run(bool json, double seconds, const std::string& network, const std::string& self) {
-  const Place place{static_cast<int>(std::random_device{}() % 200), "", network};
-  std::optional<service::Process> server;
-  if (network == "server") {
-    auto made =
-        service::Process::start({.command = {(program_directory() / "prehend").string(),
-                                             "discovery-server", "--listen", server_of(place)},
-                                 .log = "/dev/null"});
-    if (!made) {
-      std::cerr << made.error().message() << "\n";
-      return 3;
-    }
-    server.emplace(std::move(*made));
-    std::this_thread::sleep_for(2s);  // it listens 1.2 s after its start
+int run(bool json, double seconds, const std::vector<std::string>& cases, const std::string& self) {
+  const auto folder = service::TemporaryFolder::create(false);
+  if (!folder) {
+    std::cerr << folder.error().message() << "\n";
+    return 3;
+  }
+  const std::filesystem::path keys = folder->path() / "keys";
+  auto made = service::Process::start(
+      {.command = {(program_directory() / "prehend").string(), "keys", "init", keys.string()},
+       .log = "/dev/null"});
+  if (!made || !made->wait(30s)) {
+    std::cerr << "prehend keys does not work\n";
+    return 3;
   }
   nlohmann::json rows = nlohmann::json::array();
-  for (const double rate : {30.0, 500.0}) {
-    const auto wanted = static_cast<std::size_t>(std::min(1024.0, rate * seconds));
-    const Figures before = measure_floor(rate, wanted, self, place);
-    const Figures lab = measure_lab(rate, wanted, place);
-    const Figures after = measure_floor(rate, wanted, self, place);
-    const double floor = 0.5 * (before.p50 + after.p50);
-    rows.push_back({{"rate_hz", rate},
-                    {"floor_us", {{"p50", floor}, {"p99", 0.5 * (before.p99 + after.p99)}}},
-                    {"lab_us", {{"p50", lab.p50}, {"p99", lab.p99}}},
-                    {"ratio_of_medians", lab.p50 / floor},
-                    {"samples", lab.count}});
-    if (!json)
-      fmt::print(
-          "{:5.0f} Hz: floor p50 {:.0f} p99 {:.0f} us, lab p50 {:.0f} p99 {:.0f} us, "
-          "ratio of medians {:.2f}\n",
-          rate, floor, 0.5 * (before.p99 + after.p99), lab.p50, lab.p99, lab.p50 / floor);
+  if (!json)
+    fmt::print(
+        "| case | rate, Hz | raw p50, ms | raw p99 | lab p50, ms | lab p99 | lab / raw, p50 |\n"
+        "|---|---|---|---|---|---|---|\n");
+  for (const std::string& name : cases) {
+    const Case at(name, keys);
+    for (const double rate : {30.0, 500.0}) {
+      const auto wanted = static_cast<std::size_t>(std::min(1024.0, rate * seconds));
+      const Figures before = measure_floor(rate, wanted, self, at);
+      const Figures lab = measure_lab(rate, wanted, at);
+      const Figures after = measure_floor(rate, wanted, self, at);
+      const double p50 = 0.5 * (before.p50 + after.p50), p99 = 0.5 * (before.p99 + after.p99);
+      rows.push_back({{"case", name},
+                      {"rate_hz", rate},
+                      {"floor_us", {{"p50", p50}, {"p99", p99}}},
+                      {"lab_us", {{"p50", lab.p50}, {"p99", lab.p99}}},
+                      {"ratio_of_medians", lab.p50 / p50},
+                      {"samples", lab.count}});
+      if (json) continue;
+      fmt::print("| {} | {:.0f} | {:.3f} | {:.3f} | {:.3f} | {:.3f} | {:.2f} |\n", name, rate,
+                 1e-3 * p50, 1e-3 * p99, 1e-3 * lab.p50, 1e-3 * lab.p99, lab.p50 / p50);
+      std::cout.flush();
+    }
   }
   if (json) std::cout << rows.dump() << "\n";
   return 0;
@@ -250,18 +289,24 @@ int run(bool json, double seconds, const std::string& network, const std::string
 
 int main(int argc, char** argv) {
   using namespace prehend;
-  if (argc == 6 && std::string_view(argv[1]).starts_with("--floor-")) {
-    const Place place{std::atoi(argv[2]), argv[3], argv[5]};
+  if (argc == 7 && std::string_view(argv[1]).starts_with("--floor-")) {
+    const Place place{std::atoi(argv[2]), argv[3], argv[5], argv[6]};
     return std::string_view(argv[1]) == "--floor-source" ? floor_source(place, std::atof(argv[4]))
                                                          : floor_relay(place);
   }
   bool json = false;
   double seconds = 8;
-  std::string network = "laptop";
+  std::vector<std::string> cases;
   for (int i = 1; i < argc; ++i) {
     if (std::string_view(argv[i]) == "--json") json = true;
     if (std::string_view(argv[i]) == "--seconds" && i + 1 < argc) seconds = std::atof(argv[++i]);
-    if (std::string_view(argv[i]) == "--network" && i + 1 < argc) network = argv[++i];
+    if (std::string_view(argv[i]) == "--case" && i + 1 < argc) cases.emplace_back(argv[++i]);
   }
-  return run(json, seconds, network, std::filesystem::read_symlink("/proc/self/exe").string());
+  if (cases.empty()) cases = {"laptop", "containers", "server", "secure", "far"};
+  try {
+    return run(json, seconds, cases, std::filesystem::read_symlink("/proc/self/exe").string());
+  } catch (const std::exception& trouble) {
+    std::cerr << trouble.what() << "\n";
+    return 3;
+  }
 }

@@ -36,7 +36,7 @@ std::string record(const types::Library& contract, const std::string& path,
     mcap::Metadata idl{"idl", {}};
     std::uint64_t time = 1'000'000'000;
     for (const auto& [topic, name] : {std::pair("object/detection", "prehend::v1::ObjectDetection"),
-                                      std::pair("operator/command", "prehend::v1::OperatorCommand"),
+                                      std::pair("robot/command", "prehend::v1::HandCommand"),
                                       std::pair("lab/clock", "prehend::v1::LabClock")}) {
       const types::Structure& type = *contract.find(name);
       idl.metadata.emplace_back(name, types::omgidl(type));

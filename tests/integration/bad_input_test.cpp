@@ -79,10 +79,13 @@ TEST_F(BadInput, MissingScene) {
   expect_refusal("simulation", lab_arguments({"lab.scene=" + missing}), 3, missing);
 }
 
+// There is none, it is no camera, it is not even a device.
 TEST_F(BadInput, AbsentCamera) {
-  expect_refusal("recognition",
-                 lab_arguments({"recognition.source=device", "recognition.path=/dev/none"}), 3,
-                 "/dev/none");
+  for (const std::string& path : {std::string("/dev/none"), std::string("/dev/null"),
+                                  write("camera", "no device"), std::string("7")})
+    expect_refusal("recognition",
+                   lab_arguments({"recognition.source=device", "recognition.path=" + path}), 3,
+                   path);
 }
 
 TEST_F(BadInput, AbsentRecording) {

@@ -90,6 +90,12 @@ ip link set outside multicast off
 exec $doctor --set lab.network=lan)");
   EXPECT_TRUE(found.contains("multicast"));
   EXPECT_FALSE(found.contains("interface"));
+  // And a firewall that lets none in.
+  if (std::system("unshare -n iptables -A INPUT -d 239.255.0.1 -j DROP >/dev/null 2>&1") == 0) {
+    EXPECT_TRUE(ask_in_script("ip link set lo up; iptables -A INPUT -d 239.255.0.1 -j DROP; "
+                              "exec $doctor")
+                    .contains("multicast"));
+  }
 }
 
 TEST_F(Doctor, NamesSharedMemoryThatIsLeftOverOrOutOfReach) {
@@ -173,6 +179,46 @@ TEST_F(Doctor, NamesADiscoveryServerThatDoesNotAnswer) {
   EXPECT_TRUE(eventually(20, [&] { return !ask(sets).contains("discovery server"); }));
 }
 
+TEST_F(Doctor, NamesASiteThatTakesNoCalls) {
+  if (!may_make_namespaces()) GTEST_SKIP() << "namespaces need root and ip";
+  const std::string dial = "$doctor --set lab.network=wan --set 'lab.peers=[\"127.0.0.1:7420\"]'";
+  const std::string up = "ip link set lo up; ip link set lo multicast on; ";
+  EXPECT_NE(ask_in_script(up + "exec " + dial)["sites"].find("127.0.0.1:7420"), std::string::npos);
+  std::string lab;
+  for (const std::string& word : with_lab({})) (lab += word) += " ";
+  const std::string listens = "$bin/prehend-simulation " + lab +
+                              "--set lab.network=wan & peer=$!\n"
+                              "until bash -c 'exec 3<>/dev/tcp/127.0.0.1/7420' 2>/dev/null; "
+                              "do sleep 0.05; done\n";
+  EXPECT_FALSE(ask_in_script(up + listens + dial + "; code=$?; kill $peer; wait $peer; exit $code")
+                   .contains("sites"));
+}
+
+// A service on another host, by the kernel's name, whose clock is an hour behind.
+TEST_F(Doctor, NamesAServiceWhoseHostHasAnotherTime) {
+  const std::string faketime = "/usr/lib/x86_64-linux-gnu/faketime/libfaketimeMT.so.1";
+  if (!may_make_namespaces()) GTEST_SKIP() << "namespaces need root and ip";
+  if (!fs::exists(faketime)) GTEST_SKIP() << "libfaketime is not installed";
+  service::Process::Options options;
+  options.command = {"unshare",
+                     "--uts",
+                     "sh",
+                     "-c",
+                     "hostname elsewhere; exec \"$@\"",
+                     "sh",
+                     program("prehend-simulation")};
+  for (const std::string& word : lab_arguments()) options.command.push_back(word);
+  options.environment = {
+      {"LD_PRELOAD", faketime}, {"FAKETIME", "-3600s"}, {"FAKETIME_DONT_FAKE_MONOTONIC", "1"}};
+  options.log = folder_ / "simulation.log";
+  auto simulation = service::Process::start(options);
+  ASSERT_TRUE(simulation);
+  std::map<std::string, std::string> found;
+  ASSERT_TRUE(eventually(20, [&] { return (found = ask()).contains("clocks"); }));
+  EXPECT_NE(found.at("clocks").find("elsewhere"), std::string::npos) << found.at("clocks");
+  EXPECT_NE(found.at("clocks").find("behind"), std::string::npos) << found.at("clocks");
+}
+
 // A status with the stamp that another host's clock would give it.
 TEST_F(Doctor, NamesAHostWhoseClockIsWrong) {
   auto statuses = writer(dds::service_status);
@@ -221,6 +267,23 @@ TEST_F(Doctor, NamesKeysThatAreOpenOrAboutToExpire) {
   fs::permissions(store->folder() / "viewer" / "key.pem", fs::perms::others_read,
                   fs::perm_options::add);
   EXPECT_NE(ask({keys})["keys"].find("read by others"), std::string::npos);
+}
+
+TEST_F(Doctor, NamesTheGroupOfADeviceAndALibraryThatIsMissing) {
+  if (!may_make_namespaces()) GTEST_SKIP() << "namespaces need root and ip";
+  // Even root may not, without its powers.
+  const auto closed = ask_in_script(R"(
+ip link set lo up; port=/dev/shm/tracker; mknod $port c 4 64; chown 65534:dialout $port; chmod 660 $port
+exec setpriv --clear-groups --bounding-set=-all --inh-caps=-all $doctor --set glove.port=$port)");
+  ASSERT_TRUE(closed.contains("devices"));
+  EXPECT_NE(closed.at("devices").find("dialout"), std::string::npos) << closed.at("devices");
+  // Nothing where a library of the simulation alone was.
+  const auto broken = ask_in_script(R"sh(
+ip link set lo up
+mount --bind /dev/null "$(ldd $bin/prehend-simulation | awk '/libBulletDynamics/ {print $3}')"
+exec $doctor)sh");
+  ASSERT_TRUE(broken.contains("programs"));
+  EXPECT_NE(broken.at("programs").find("Bullet"), std::string::npos) << broken.at("programs");
 }
 
 TEST_F(Doctor, NamesDevicesThatCannotBeOpenedAndProgramsThatAreMissing) {

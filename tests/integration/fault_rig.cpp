@@ -23,10 +23,13 @@ class Table : public testing::Environment {
     fmt::print(
         "\n| fault | rounds | lost | recovery p50, s | p99, s | memory before, MB | after, MB |\n"
         "|---|---|---|---|---|---|---|\n");
+    const auto mb = [](double bytes) {
+      return bytes > 0 ? fmt::format("{:.1f}", bytes / 1e6) : std::string("–");
+    };
     for (const FaultRow& row : rows_)
-      fmt::print("| {} | {} | {} | {:.3f} | {:.3f} | {:.1f} | {:.1f} |\n", row.fault, row.rounds,
-                 row.lost, quantile(row.recoveries, 0.5), quantile(row.recoveries, 0.99),
-                 row.memory_before / 1e6, row.memory_after / 1e6);
+      fmt::print("| {} | {} | {} | {:.3f} | {:.3f} | {} | {} |\n", row.fault, row.rounds, row.lost,
+                 quantile(row.recoveries, 0.5), quantile(row.recoveries, 0.99),
+                 mb(row.memory_before), mb(row.memory_after));
   }
 
  private:
@@ -57,6 +60,13 @@ OnHosts::OnHosts() {
   hosts_.emplace(std::string(PREHEND_PROGRAMS) + "/prehend-delay-line");
   hosts_->add("operator");
   hosts_->enter("operator");
+}
+
+void FaultRig::secure() {
+  network_.keys = folder_ / "keys";
+  const Answer made = run("prehend", {"keys", "init", network_.keys.string()}, 30);
+  if (made.exit_code != 0) throw std::runtime_error(made.log);
+  join("replayer");  // which writes orders and reads everything
 }
 
 void FaultRig::SetUp() {
@@ -115,7 +125,10 @@ bool FaultRig::operate(double limit_s, const std::function<bool()>& condition) {
     for (auto& sample : health_->take())
       if (!sample.info.gone) statuses_[sample.data.name().to_string()] = sample.data;
     for (auto& sample : replies_->take())
-      if (!sample.info.gone) open_.erase(sample.data.id().to_string());
+      if (!sample.info.gone) {
+        open_.erase(sample.data.id().to_string());
+        ++answered_;
+      }
     if (orders_ && processes_.contains("mapping") && now_ns() > next_order_) {
       next_order_ = now_ns() + static_cast<std::int64_t>(operating_period * 1e9);
       eprosima::fastdds::dds::PublicationMatchedStatus matched;
@@ -135,9 +148,30 @@ bool FaultRig::operate(double limit_s, const std::function<bool()>& condition) {
   });
 }
 
+double FaultRig::longest_pause(double limit_s, const std::function<bool()>& condition) {
+  std::int64_t last = now_ns(), moved = moved_by_;
+  double longest = 0;
+  operate(limit_s, [&] {
+    if (moved_by_ != moved) {
+      moved = moved_by_;
+      last = now_ns();
+    }
+    longest = std::max(longest, static_cast<double>(now_ns() - last) * 1e-9);
+    return condition();
+  });
+  return longest;
+}
+
 double FaultRig::recovery(std::int64_t time, double limit_s) {
   if (!operate(limit_s, [&] { return moved_by_ > time; })) return -1;
   return static_cast<double>(now_ns() - time) * 1e-9;
+}
+
+void FaultRig::resume_orders() {
+  orders_ = true;
+  const std::uint64_t before = answered_;
+  EXPECT_TRUE(operate(10, [&] { return answered_ > before; })) << "no order is answered";
+  open_.clear();
 }
 
 std::uint64_t FaultRig::unanswered() {
@@ -151,7 +185,7 @@ std::uint64_t FaultRig::unanswered() {
 
 std::uint64_t FaultRig::unreported() {
   auto late = dds::Participant::create(
-      {.name = "late", .domain = domain_, .rig = name_, .network = {.profile = network_}});
+      {.name = "late", .domain = domain_, .rig = name_, .network = network_, .role = "viewer"});
   if (!late) throw std::runtime_error(late.error().message());
   auto reader = late->reader(dds::grasp_report);
   if (!reader) throw std::runtime_error(reader.error().message());
@@ -174,6 +208,29 @@ double FaultRig::memory() const {
   return std::accumulate(
       statuses_.begin(), statuses_.end(), 0.0,
       [](double sum, const auto& entry) { return sum + entry.second.resident(); });
+}
+
+FaultRow FaultRig::begin(const std::string& fault) {
+  FaultRow row;
+  row.fault = fault;
+  operate(1.5);  // a status of each
+  row.memory_before = memory();
+  return row;
+}
+
+void FaultRig::expect_recovery(FaultRow& row, double limit_s) {
+  row.recoveries.push_back(recovery(now_ns()));
+  EXPECT_GT(row.recoveries.back(), 0);
+  EXPECT_LT(row.recoveries.back(), limit_s);
+}
+
+void FaultRig::finish(FaultRow row) {
+  operate(1.5);
+  row.memory_after = memory();
+  row.lost += unanswered() + unreported();
+  EXPECT_EQ(row.lost, 0u);
+  report(row);
+  expect_alive();
 }
 
 void FaultRig::expect_alive() {

@@ -17,7 +17,7 @@ struct FaultRow {
   int rounds = 0;
   std::uint64_t lost = 0;          // samples of operator/* and grasp/report
   std::vector<double> recoveries;  // s, from the fault's end until a new frame moved the hand
-  double memory_before = 0, memory_after = 0;  // bytes, of all services together
+  double memory_before = 0, memory_after = 0;  // bytes, of all services together; 0: not measured
 };
 void report(const FaultRow& row);
 
@@ -33,8 +33,11 @@ class OnHosts {
 /// «robot»; the test is an operator on a host of its own, who gives orders and reads everything.
 class FaultRig : public OnHosts, public Rig {
  protected:
-  FaultRig() : Rig("lan") {}
+  explicit FaultRig(dds::Network network = {.profile = "lan"}) : Rig(std::move(network)) {}
   static constexpr double operating_period = 0.1;  // s, between orders
+
+  /// Makes keys for everybody, before SetUp().
+  void secure();
 
   void SetUp() override;
   /// Starts all four and waits until a frame of the glove moves the hand.
@@ -46,13 +49,25 @@ class FaultRig : public OnHosts, public Rig {
   /// Lets the lab run, giving orders and reading, until the condition holds; false: not in time.
   bool operate(
       double limit_s, const std::function<bool()>& condition = [] { return false; });
+  /// The longest time without a new frame that moved the hand, s, until the condition holds.
+  double longest_pause(
+      double limit_s, const std::function<bool()>& condition = [] { return false; });
   /// Until a frame that was taken after `time` moved the hand; s since then. -1: never.
   double recovery(std::int64_t time, double limit_s = 15);
+  /// Gives orders again, to a mapping that has just been started. Those before the first answer do
+  /// not count: it may not have met us yet when we have met it.
+  void resume_orders();
   /// Orders that were given and never answered, once they have had their time.
   std::uint64_t unanswered();
   /// Reports of grasps that a late joiner gets and the operator did not.
   std::uint64_t unreported();
   double memory() const;
+  /// A row of the table, with what is before the fault.
+  FaultRow begin(const std::string& fault);
+  /// The fault has just ended: a new frame moves the hand within so many s.
+  void expect_recovery(FaultRow& row, double limit_s);
+  /// Nothing was lost and nobody ended: the row joins the table.
+  void finish(FaultRow row);
   /// Every service is still the process that it was.
   void expect_alive();
 
@@ -61,15 +76,16 @@ class FaultRig : public OnHosts, public Rig {
   std::int64_t moved_by_ = 0;                          // origin of the last state of the hand
   std::vector<double> dof_;                            // of the last state, rad
   std::map<std::string, v1::ServiceStatus> statuses_;  // last of each name
+  std::set<std::uint64_t> reports_;                    // their numbers
   bool orders_ = true;                                 // give any
   /// Whose commands came, one entry for each change.
   std::vector<std::array<std::uint8_t, 12>> leaders_;
 
  private:
   std::uint64_t given_ = 0;
+  std::uint64_t answered_ = 0;
   std::set<std::string> open_;  // orders without an answer
   std::int64_t next_order_ = 0;
-  std::set<std::uint64_t> reports_;
   std::optional<dds::Reader<v1::HandState>> states_;
   std::optional<dds::Reader<v1::GraspReport>> grasps_;
   std::optional<dds::Reader<v1::HandCommand>> commanded_;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <prehend/service/process.hpp>
@@ -11,6 +12,12 @@ namespace prehend::integration {
 /// How far away a host is.
 struct Distance {
   double delay_ms = 0, jitter_ms = 0;  // each way; the jitter is uniform to both sides
+};
+
+/// What has passed a bridge since it was made.
+struct Traffic {
+  std::uint64_t sent_packets = 0, sent_bytes = 0;    // by the hosts
+  std::uint64_t heard_packets = 0, heard_bytes = 0;  // delivered to hosts: multicast to each
 };
 
 /// Several hosts on one machine: network and host name spaces, joined by a bridge in a space of its
@@ -43,6 +50,7 @@ class Hosts {
   void link(const std::string& host, bool up);
   /// Part of the packets that are dropped on their way to and from the host; 0: none.
   void lose(const std::string& host, double share);
+  Traffic traffic() const;
 
  private:
   struct Host {

@@ -23,7 +23,7 @@ class Profiles : public Rig {
                         << joined(lab_arguments()) << "'\n"
                         << script;
     service::Process::Options options;
-    options.command = {"unshare", "-n", "sh", file};
+    options.command = {"unshare", "-n", "-m", "sh", file};
     options.log = folder_ / "script.log";
     options.output = folder_ / "script.out";
     auto process = service::Process::start(options);
@@ -33,7 +33,7 @@ class Profiles : public Rig {
     return {exit ? exit->code : -1, text(options.output), text(options.log)};
   }
   static bool may_make_namespaces() {
-    return std::system("unshare -n ip link set lo up >/dev/null 2>&1") == 0;
+    return std::system("unshare -n -m ip link set lo up >/dev/null 2>&1") == 0;
   }
   static std::string joined(const Strings& words) {
     std::string all;
@@ -72,9 +72,9 @@ std::vector<std::pair<std::string, std::string>> misspelt(const std::string& xml
 }
 
 TEST_F(Profiles, APartThatFastDdsWouldIgnoreStopsTheProcess) {
-  const auto share = folder_ / "share";
-  std::filesystem::create_directories(share / "dds");
   const auto run_with = [&](const std::string& profile, const std::string& xml) {
+    const auto share = folder_ / profile;
+    std::filesystem::create_directories(share / "dds");
     const auto file = share / "dds" / fmt::format("{}.xml", profile);
     std::ofstream(file) << xml;
     service::Process::Options options;
@@ -84,14 +84,14 @@ TEST_F(Profiles, APartThatFastDdsWouldIgnoreStopsTheProcess) {
     const Strings lab =
         lab_arguments({fmt::format("lab.network={}", profile), "lab.server=[\"127.0.0.1\"]"});
     options.command.insert(options.command.end(), lab.begin(), lab.end());
-    options.log = folder_ / "profile.log";
+    options.log = folder_ / fmt::format("{}.log", profile);
     options.environment = {{"PREHEND_SHARE", share.string()}};
     auto process = service::Process::start(options);
     if (!process) throw std::runtime_error(process.error().message());
     const auto exit = process->wait(seconds(20));
     return Answer{exit ? exit->code : -1, "", text(options.log)};
   };
-  for (const std::string profile : {"laptop", "lan", "server", "wan"}) {
+  const auto try_all = [&](const std::string& profile) {
     const std::string xml = text(fmt::format(PREHEND_SOURCE "/deploy/dds/{}.xml", profile));
     ASSERT_EQ(run_with(profile, xml).exit_code, 1) << profile;  // fine: nobody is there
     auto broken = misspelt(xml);
@@ -113,8 +113,12 @@ TEST_F(Profiles, APartThatFastDdsWouldIgnoreStopsTheProcess) {
       EXPECT_EQ(answer.exit_code, 3) << profile << ", " << what << ": " << answer.log;
       EXPECT_NE(answer.log.find(profile), std::string::npos) << answer.log;
     }
+  };
+  {
+    std::vector<std::jthread> at_once;
+    for (const char* profile : {"laptop", "lan", "server", "wan"})
+      at_once.emplace_back(try_all, profile);
   }
-  std::filesystem::remove(share / "dds" / "lan.xml");
   EXPECT_EQ(run("prehend", {"status", "--set", "lab.network=house"}, 10).exit_code, 3);
 }
 
@@ -174,6 +178,70 @@ sees --timeout 30 --set lab.keys=$keys || exit 15
   EXPECT_EQ(answer.exit_code, 0) << answer.log;
 }
 
+// Two sites whose networks have the same addresses, as two container engines give them, each behind
+// a router that translates them: they meet only at the two ports that the robot's router forwards.
+TEST_F(Profiles, SitesBehindRoutersMeetAtForwardedPortsAlone) {
+  if (!may_make_namespaces()) GTEST_SKIP() << "a network namespace needs root";
+  const Answer answer = alone(R"sh(
+spaces= services=
+trap 'kill $services $spaces; rm -r ${keys%/keys}' EXIT
+space() {
+  unshare -n sleep 300 & spaces="$spaces $!"
+  until [ "$(readlink /proc/$!/ns/net)" != "$(readlink /proc/$$/ns/net)" ]; do sleep 0.05; done
+  eval "$1=$! in_$1='nsenter -t $! -n'"
+}
+for one in robot robot_router glove_router glove; do space $one; eval "\$in_$one ip link set lo up"; done
+wire() {  # SPACE ADDRESS SPACE ADDRESS
+  eval "one=\$$1 other=\$$3"
+  ip link add to_$3 netns $one type veth peer name to_$1 netns $other
+  nsenter -t $one -n ip addr add $2/24 dev to_$3; nsenter -t $one -n ip link set to_$3 up
+  nsenter -t $other -n ip addr add $4/24 dev to_$1; nsenter -t $other -n ip link set to_$1 up
+}
+wire robot 192.168.7.2 robot_router 192.168.7.1
+wire robot_router 198.51.100.1 glove_router 198.51.100.2
+wire glove 192.168.7.2 glove_router 192.168.7.1
+$in_robot ip route add default via 192.168.7.1; $in_glove ip route add default via 192.168.7.1
+for one in robot glove; do
+  eval "there=\$in_${one}_router"
+  $there sh -c 'echo 1 >/proc/sys/net/ipv4/ip_forward' && $there iptables -P FORWARD DROP || exit 77
+  $there iptables -A FORWARD -m state --state ESTABLISHED,RELATED -j ACCEPT
+done
+$in_glove_router iptables -A FORWARD -i to_glove -j ACCEPT
+$in_glove_router iptables -t nat -A POSTROUTING -o to_robot_router -j MASQUERADE
+$in_robot_router iptables -A FORWARD -o to_robot -p tcp --dport 7420:7421 -j ACCEPT
+$in_robot_router iptables -t nat -A PREROUTING -i to_glove_router -p tcp --dport 7420:7421 \
+  -j DNAT --to-destination 192.168.7.2
+
+keys=$(mktemp -d)/keys
+$bin/prehend keys init $keys
+wan="$lab --set lab.network=wan --set lab.keys=$keys"
+start() { "$@" & services="$services $!"; }
+start $in_robot $bin/prehend-mapping $wan --set lab.listen=198.51.100.1:7420
+start $in_robot $bin/prehend-simulation $wan --set lab.listen=198.51.100.1:7421
+dial="--set lab.peers=[\"198.51.100.1:7420\",\"198.51.100.1:7421\"]"
+$in_glove $bin/prehend status --wait mapping --wait simulation --timeout 30 $wan $dial || exit 10
+moved() {  # the hand follows the glove within $1 s
+  end=$(($(date +%s) + $1))
+  until $in_robot $bin/prehend status --json $wan | grep -q '"commands":{"per_second":[1-9]'; do
+    [ $(date +%s) -lt $end ] || return 1
+  done
+}
+$in_glove $bin/prehend-glove $wan $dial & glove=$!
+moved 30 || exit 11
+kill -9 $glove; wait $glove || true
+$in_glove $bin/prehend-glove $wan $dial & glove=$!
+services="$services $glove"
+sleep 4  # until nothing of the first can be left in the rate
+moved 20 || exit 12
+# A port that is taken, and one that both listens and dials, are errors.
+$in_robot $bin/prehend status $wan --set lab.listen=198.51.100.1:7420 && exit 13 || [ $? -eq 3 ] || exit 14
+$in_glove $bin/prehend status $wan $dial --set lab.listen=198.51.100.1:7422 && exit 15 || [ $? -eq 3 ] || exit 16
+)sh",
+                              150);
+  if (answer.exit_code == 77) GTEST_SKIP() << "iptables and forwarding are needed";
+  EXPECT_EQ(answer.exit_code, 0) << answer.log;
+}
+
 // Over loopback addresses, so that it needs no network; multicast is not used by this profile.
 TEST_F(Profiles, ADiscoveryServerBringsThemTogetherAndLinkedServersTheirClients) {
   const int port = 20000 + static_cast<int>(std::random_device{}() % 10000);
@@ -214,6 +282,30 @@ TEST_F(Profiles, ADiscoveryServerBringsThemTogetherAndLinkedServersTheirClients)
 
   const Answer alone = run("prehend", {"discovery-server", "--listen", at(0), "--link", at(0)}, 10);
   EXPECT_EQ(alone.exit_code, 3);
+}
+
+// A container that is started again has another address under the same name.
+TEST_F(Profiles, ADiscoveryServerIsFoundAgainByItsName) {
+  if (!may_make_namespaces()) GTEST_SKIP() << "a network namespace needs root";
+  const Answer answer = alone(R"sh(
+ip link set lo up
+hosts=$(mktemp)
+mount --bind $hosts /etc/hosts
+named="$lab --set lab.network=server --set lab.server=[\"post:11811\"]"
+echo 127.0.0.1 post >$hosts
+$bin/prehend discovery-server --listen 127.0.0.1:11811 $lab & first=$!
+$bin/prehend-simulation $named & simulation=$!
+trap 'kill $simulation $second || true; rm $hosts' EXIT
+second=
+$bin/prehend status --wait simulation --timeout 15 $named || exit 10
+kill -9 $first
+echo 127.0.0.2 post >$hosts
+$bin/prehend discovery-server --listen 127.0.0.2:11811 $lab & second=$!
+$bin/prehend status --wait simulation --timeout 20 $named || exit 11
+kill -0 $simulation || exit 12
+)sh",
+                              60);
+  EXPECT_EQ(answer.exit_code, 0) << answer.log;
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 #include "rig.hpp"
 
+#include <fmt/format.h>
 #include <unistd.h>
 
 #include <atomic>
@@ -30,15 +31,20 @@ std::int64_t now_ns() {
   return to_ns(std::chrono::system_clock::now());
 }
 
-Rig::Rig(const std::string& network) : network_(network) {
+Rig::Rig(dds::Network network) : network_(std::move(network)) {
   // Other runs on this machine have other numbers; the partition keeps apart even those that do
   // not.
   domain_ = 20 + static_cast<int>((::getpid() * 7 + now_ns() / 1000) % 180);
   name_ = "test-" + std::to_string(::getpid()) + "-" + std::to_string(now_ns());
   folder_ = std::filesystem::temp_directory_path() / ("prehend-" + name_);
   std::filesystem::create_directories(folder_);
+  join();
+}
+
+void Rig::join(const std::string& role) {
+  participant_.reset();
   auto made = dds::Participant::create(
-      {.name = "test", .domain = domain_, .rig = name_, .network = {.profile = network_}});
+      {.name = "test", .domain = domain_, .rig = name_, .network = network_, .role = role});
   if (!made) throw std::runtime_error(made.error().message());
   participant_.emplace(std::move(*made));
 }
@@ -59,7 +65,13 @@ std::string Rig::program(const std::string& name) {
 Strings Rig::lab_arguments(const Strings& sets) const {
   Strings arguments{"--set", "lab.rig=" + name_,
                     "--set", "lab.domain=" + std::to_string(domain_),
-                    "--set", "lab.network=" + network_};
+                    "--set", "lab.network=" + network_.profile};
+  if (!network_.servers.empty())
+    arguments.insert(
+        arguments.end(),
+        {"--set", fmt::format("lab.server=[\"{}\"]", fmt::join(network_.servers, "\", \""))});
+  if (!network_.keys.empty())
+    arguments.insert(arguments.end(), {"--set", "lab.keys=" + network_.keys.string()});
   for (const std::string& set : sets) arguments.insert(arguments.end(), {"--set", set});
   return arguments;
 }

@@ -28,8 +28,7 @@ struct Answer {
 /// removed at the end. The test takes part in it.
 class Rig : public testing::Test {
  protected:
-  /// network: as lab.network.
-  explicit Rig(const std::string& network = "laptop");
+  explicit Rig(dds::Network network = {});
   ~Rig() override;
 
   /// A program of the build.
@@ -68,7 +67,10 @@ class Rig : public testing::Test {
     }));
   }
 
-  std::string network_;
+  /// The test takes part anew, on network_ as it is then. role: whose keys it takes.
+  void join(const std::string& role = {});
+
+  dds::Network network_;
   int domain_;
   std::string name_;
   std::filesystem::path folder_;

@@ -4,6 +4,7 @@
 // that it approaches have refused it and samples among the others have passed since.
 #include <sys/stat.h>
 
+#include <atomic>
 #include <fastdds/dds/domain/DomainParticipant.hpp>
 #include <fastdds/dds/domain/DomainParticipantFactory.hpp>
 #include <fastdds/dds/publisher/Publisher.hpp>
@@ -12,6 +13,7 @@
 #include <prehend/cli_keys/keystore.hpp>
 #include <prehend/dds/raw.hpp>
 #include <prehend/keys/certificate.hpp>
+#include <thread>
 
 #include "rig.hpp"
 
@@ -288,6 +290,70 @@ TEST_F(Security, BrokenKeysStopAProcess) {
   const Answer revoked = status_with(store_.folder());
   EXPECT_EQ(revoked.exit_code, 3);
   EXPECT_NE(revoked.log.find("revoked"), std::string::npos) << revoked.log;
+}
+
+// Handshakes of Fast DDS that begin at the same moment sometimes never end: one pair in thirty then
+// stayed strangers for good.
+TEST_F(Security, ManyThatJoinAtOnceAllMeet) {
+  const Strings names{"glove", "recognition", "mapping", "simulation", "robot", "operator"};
+  struct Member {
+    std::optional<dds::Participant> participant;
+    std::optional<dds::Writer<v1::ClockBeacon>> writer;
+    std::optional<dds::Reader<v1::ClockBeacon>> reader;
+    std::exception_ptr trouble;
+  };
+  std::vector<Member> members(names.size());
+  {
+    std::vector<std::jthread> threads;
+    for (std::size_t i = 0; i < names.size(); ++i)
+      threads.emplace_back([&, i] {
+        Member& member = members[i];
+        try {
+          member.participant.emplace(this->member(names[i], store_.folder()));
+          member.writer.emplace(*member.participant->writer(dds::lab_beacon));
+          member.reader.emplace(*member.participant->reader(dds::lab_beacon));
+        } catch (...) {
+          member.trouble = std::current_exception();
+        }
+      });
+  }
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    ASSERT_FALSE(members[i].trouble) << names[i];
+    // Also its own.
+    EXPECT_TRUE(eventually(10,
+                           [&] {
+                             eprosima::fastdds::dds::SubscriptionMatchedStatus status;
+                             members[i].reader->raw().get_subscription_matched_status(status);
+                             return status.current_count == static_cast<int>(names.size());
+                           }))
+        << names[i] << "\n"
+        << refusals(*members[i].participant);
+  }
+}
+
+// Fast DDS locked itself up when one secured participant left while another shook hands: a service
+// received nothing any more, for good. Health checks of containers come and go like this.
+TEST_F(Security, ThoseWhoComeAndGoLockNobodyUp) {
+  const int visits = std::getenv("PREHEND_LONG") ? 800 : 120, at_once = 14;
+  auto simulation = start("simulation", {"lab.keys=" + store_.folder().string()});
+  const Strings wait{"--wait", "simulation", "--timeout", "15"};
+  ASSERT_EQ(status_with(store_.folder(), wait).exit_code, 0);
+  std::atomic<int> begun = 0, stuck = 0;
+  {
+    std::vector<std::jthread> crowd;
+    for (int k = 0; k < at_once; ++k)
+      crowd.emplace_back([&] {
+        while (begun++ < visits)
+          if (status_with(store_.folder(), {"--wait", "simulation", "--timeout", "1"}).exit_code <
+              0)
+            ++stuck;
+      });
+  }
+  EXPECT_EQ(stuck, 0);
+  EXPECT_EQ(status_with(store_.folder(), wait).exit_code, 0);
+  EXPECT_FALSE(simulation.exit());
+  const std::string log = service::last_lines(folder_ / "prehend-simulation.log", 1000);
+  EXPECT_EQ(log.find("locked itself up"), std::string::npos) << log;
 }
 
 // A service that has been running since before reads the list anew and keeps its process number.

@@ -39,6 +39,7 @@ int doctor_command(const std::vector<std::string>& arguments) {
                     check_devices(*config)};
   const std::string network = config->text("lab.network");
   if (network == "laptop" || network == "lan") findings.push_back(check_multicast(*config));
+  if (network == "wan") findings.push_back(check_sites(*config));
   auto neighbours = check_neighbours(*config, seconds(listen));
   if (neighbours)
     std::move(neighbours->begin(), neighbours->end(), std::back_inserter(findings));

@@ -25,6 +25,8 @@ namespace {
 
 /// Beyond this, frames of one host look stale on another.
 constexpr Duration clock_tolerance = std::chrono::milliseconds(50);
+/// Everybody has announced itself twice.
+constexpr Duration enough = std::chrono::milliseconds(1200);
 
 /// The types of our topics, as they are called in discovery.
 std::map<std::string, std::string> contract_types() {
@@ -144,7 +146,7 @@ Expected<Findings> check_neighbours(const service::Config& config, Duration list
   // Before joining, so that what is heard is of others.
   const bool multicast = network == "laptop" || network == "lan";
   const auto heard =
-      multicast ? heard_domains(config, std::chrono::milliseconds(1200)) : std::map<int, int>();
+      multicast ? heard_domains(config, std::min<Duration>(listen, enough)) : std::map<int, int>();
   Ear ear;
   lab.listener = &ear;
   auto participant = dds::Participant::create(lab);
@@ -169,7 +171,8 @@ Expected<Findings> check_neighbours(const service::Config& config, Duration list
   const std::scoped_lock lock(ear.mutex);
   Findings findings;
   if (network == "server") {
-    const bool found = std::any_of(ear.peers.begin(), ear.peers.end(), dds::is_server);
+    const bool found =
+        std::ranges::any_of(ear.peers, [](const auto& peer) { return dds::is_server(peer); });
     findings.push_back(
         found ? Finding{"discovery server", true, "answers", ""}
               : Finding{"discovery server", false,

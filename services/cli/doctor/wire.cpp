@@ -1,6 +1,7 @@
 #include "wire.hpp"
 
 #include <arpa/inet.h>
+#include <fmt/format.h>
 #include <netinet/in.h>
 #include <poll.h>
 #include <sys/socket.h>
@@ -9,6 +10,7 @@
 #include <cerrno>
 #include <chrono>
 #include <cstring>
+#include <prehend/dds/sites.hpp>
 #include <string_view>
 #include <vector>
 
@@ -25,7 +27,8 @@ int announcement_port(int domain) {
 
 class Socket {
  public:
-  Socket() : handle_(::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0)) {}
+  explicit Socket(int type = SOCK_DGRAM)
+      : handle_(::socket(AF_INET, type | SOCK_CLOEXEC | SOCK_NONBLOCK, 0)) {}
   Socket(Socket&& other) noexcept : handle_(std::exchange(other.handle_, -1)) {}
   Socket& operator=(Socket&&) = delete;
   ~Socket() {
@@ -123,6 +126,51 @@ std::map<int, int> heard_domains(const service::Config& config, Duration listen)
         ++heard[domains[i]];
     }
   }
+}
+
+Finding check_sites(const service::Config& config) {
+  const auto peers = config.names("lab.peers");
+  if (peers.empty()) return {"sites", true, "this site listens", ""};
+  std::string silent;
+  for (const std::string& peer : peers) {
+    bool answers = false;
+    const auto places = dds::dialled(peer);
+    if (!places) return {"sites", false, places.error().message(), places.error().mend};
+    std::vector<Socket> calls;
+    std::vector<pollfd> waiting;
+    for (const dds::Address& place : *places) {
+      Socket call(SOCK_STREAM);
+      sockaddr_in address{};
+      address.sin_family = AF_INET;
+      address.sin_port = htons(place.port);
+      std::memcpy(&address.sin_addr, place.ip.data(), place.ip.size());
+      const int done =
+          ::connect(call.handle(), reinterpret_cast<sockaddr*>(&address), sizeof address);
+      answers = answers || done == 0;
+      waiting.push_back({call.handle(), POLLOUT, 0});
+      calls.push_back(std::move(call));
+    }
+    const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(1);
+    while (!answers && !waiting.empty()) {
+      const auto left =
+          std::chrono::ceil<std::chrono::milliseconds>(end - std::chrono::steady_clock::now());
+      if (left.count() <= 0 ||
+          ::poll(waiting.data(), waiting.size(), static_cast<int>(left.count())) <= 0)
+        break;
+      std::erase_if(waiting, [&](const pollfd& one) {
+        if (one.revents == 0) return false;
+        int error = 0;
+        socklen_t size = sizeof error;
+        ::getsockopt(one.fd, SOL_SOCKET, SO_ERROR, &error, &size);
+        answers = answers || error == 0;
+        return true;
+      });
+    }
+    if (!answers) (silent += silent.empty() ? "" : ", ") += peer;
+  }
+  if (silent.empty()) return {"sites", true, "every peer takes calls", ""};
+  return {"sites", false, fmt::format("nobody takes the call at {}", silent),
+          "start the process that listens there, forward its port on the way, and let TCP through"};
 }
 
 }  // namespace prehend::cli

@@ -16,4 +16,7 @@ Finding check_multicast(const service::Config& config);
 /// of DDS came for each. (laptop, lan)
 std::map<int, int> heard_domains(const service::Config& config, Duration listen);
 
+/// That somebody takes the call at each peer that a site dials (lab.peers).
+Finding check_sites(const service::Config& config);
+
 }  // namespace prehend::cli

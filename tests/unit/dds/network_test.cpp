@@ -3,6 +3,7 @@
 // is tests/integration/profiles_test.cpp, in processes of their own: Fast DDS keeps what it has
 // read.
 #include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
+#include <fastrtps/utils/IPLocator.h>
 #include <gtest/gtest.h>
 
 #include <chrono>
@@ -66,6 +67,31 @@ TEST(Network, ClientsOfAServerKnowItByItsPort) {
   }
 }
 
+// Both found the same port free before either listened there, and one of them was never heard.
+TEST(Network, WhoJoinsAtOnceListensAtAPortOfItsOwn) {
+  const auto port_of = [](const auto& qos) {
+    for (const auto& own : qos.wire_protocol().builtin.metatrafficUnicastLocatorList)
+      if (own.kind == LOCATOR_KIND_TCPv4)
+        return eprosima::fastrtps::rtps::IPLocator::getPhysicalPort(own);
+    return std::uint16_t{0};
+  };
+  const auto one = participant_qos({.profile = "wan"});
+  ASSERT_TRUE(one) << one.error().message();
+  EXPECT_NE(port_of(*one), 0);
+  const std::string same = "127.0.0.1:" + std::to_string(port_of(*one));
+  EXPECT_FALSE(participant_qos({.profile = "wan", .listen = same}));
+  std::uint16_t other = 0;
+  {
+    const auto two = participant_qos({.profile = "wan"});
+    ASSERT_TRUE(two) << two.error().message();
+    other = port_of(*two);
+    EXPECT_NE(other, port_of(*one));
+  }
+  const auto three = participant_qos({.profile = "wan"});
+  ASSERT_TRUE(three) << three.error().message();
+  EXPECT_EQ(port_of(*three), other) << "its owner has gone";
+}
+
 TEST(Network, WrongSettingsAreErrorsWithAMend) {
   for (const Network& network :
        {Network{.profile = "house"}, Network{.profile = "server"},
@@ -73,7 +99,10 @@ TEST(Network, WrongSettingsAreErrorsWithAMend) {
         Network{.profile = "server", .servers = {"127.0.0.1:port"}},
         Network{.profile = "server", .servers = {"127.0.0.1:70000"}},
         Network{.profile = "server", .servers = {":11811"}},
-        Network{.profile = "server", .servers = {"no.such.host.invalid:11811"}}}) {
+        Network{.profile = "server", .servers = {"no.such.host.invalid:11811"}},
+        Network{.profile = "wan", .listen = "127.0.0.1"},
+        Network{.profile = "wan", .peers = {"127.0.0.1:port"}},
+        Network{.profile = "wan", .peers = {"127.0.0.1"}, .listen = "127.0.0.1:29420"}}) {
     const auto qos = participant_qos(network);
     ASSERT_FALSE(qos) << network.profile;
     EXPECT_FALSE(qos.error().what.empty());

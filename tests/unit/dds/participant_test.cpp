@@ -81,23 +81,6 @@ TEST(Participant, RigsDoNotHearEachOther) {
   EXPECT_TRUE(far.take().empty());
 }
 
-TEST(Participant, ReportsAreAllKept) {
-  const int domain = random_domain();
-  const std::string rig = "rig" + std::to_string(getpid());
-  Participant first = join(domain, rig), second = join(domain, rig);
-  auto writer = *first.writer(grasp_report);
-  for (std::uint64_t i = 0; i < 300; ++i) {
-    v1::GraspReport report;
-    report.hand("hand");
-    report.sequence_number(i);
-    ASSERT_TRUE(writer.write(report));
-  }
-  auto reader = *second.reader(grasp_report);
-  const auto samples = wait_for(reader, 300);
-  ASSERT_EQ(samples.size(), 300u);
-  for (std::uint64_t i = 0; i < 300; ++i) EXPECT_EQ(samples[i].data.sequence_number(), i);
-}
-
 TEST(Participant, MistakesAreErrors) {
   EXPECT_FALSE(Participant::create({.name = "test", .domain = 300}));
   Participant here = join(random_domain(), "x");

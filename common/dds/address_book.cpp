@@ -1,0 +1,96 @@
+#include "address_book.hpp"
+
+#include <algorithm>
+
+namespace prehend::dds {
+namespace {
+
+constexpr Ipv4 here{127, 0, 0, 1};
+constexpr Duration still_on_its_way = std::chrono::seconds(10);  // of one that has left
+bool is_here(const Ipv4& address) {
+  return address[0] == here[0];
+}
+
+}  // namespace
+
+bool AddressBook::Entry::speaks_from(const std::optional<Ipv4>& source) const {
+  return !source || is_here(*source) ||
+         std::find(addresses.begin(), addresses.end(), *source) != addresses.end();
+}
+
+void AddressBook::Entry::add(const Ipv4& address) {
+  if (addresses.size() < most_addresses && !speaks_from(address)) addresses.push_back(address);
+}
+
+void AddressBook::Entry::update(const Announcement& said, Time now) {
+  for (const Ipv4& address : said.addresses) add(address);
+  if (lease != Duration::max()) lease = said.leaves ? Duration::zero() : said.lease;
+  heard = now;
+}
+
+Verdict AddressBook::judge(std::span<const std::uint8_t> message, std::optional<Ipv4> source,
+                           Time now) {
+  const auto packet = read_packet(message);
+  if (!packet) return Verdict::malformed;
+  if (packet->for_others && !tells_of_others(packet->sender)) return Verdict::in_other_name;
+  const auto& all = packet->announcements;
+  const auto own = std::find_if(all.begin(), all.end(), [&](const Announcement& one) {
+    return one.participant == packet->sender;
+  });
+  auto found = entries_.find(packet->sender);
+  if (found == entries_.end()) {
+    if (own == all.end() || own->leaves) return Verdict::unannounced;
+    if (!make_room(source, now)) return Verdict::too_many;
+    found = entries_.try_emplace(packet->sender).first;
+    found->second.origin = source;
+  } else if (!found->second.speaks_from(source) &&
+             (own == all.end() || !found->second.silent(now))) {
+    return Verdict::elsewhere;
+  }
+  if (source) found->second.add(*source);
+  found->second.heard = now;
+  if (own != all.end()) found->second.update(*own, now);
+  for (const Announcement& other : all) {
+    if (other.participant == packet->sender) continue;
+    auto told = entries_.find(other.participant);
+    if (told == entries_.end()) {
+      if (other.leaves || !make_room(std::nullopt, now)) continue;
+      told = entries_.try_emplace(other.participant).first;
+    }
+    told->second.update(other, now);
+  }
+  return Verdict::pass;
+}
+
+void AddressBook::add_own(const GuidPrefix& own) {
+  entries_[own].lease = Duration::max();
+}
+
+void AddressBook::add_server(const GuidPrefix& server, const Ipv4& address) {
+  servers_.insert(server);
+  entries_[server].add(address);
+}
+
+bool AddressBook::tells_of_others(const GuidPrefix& sender) const {
+  return servers_.contains(sender) || (serves_ && is_server(sender));
+}
+
+bool AddressBook::make_room(const std::optional<Ipv4>& origin, Time now) {
+  std::erase_if(entries_, [&](const auto& entry) {
+    return entry.second.lease == Duration::zero() && now - entry.second.heard > still_on_its_way &&
+           !servers_.contains(entry.first);
+  });
+  const bool counted = origin && !is_here(*origin);
+  const auto of_one = [&] {
+    return static_cast<std::size_t>(
+        std::count_if(entries_.begin(), entries_.end(),
+                      [&](const auto& entry) { return entry.second.origin == origin; }));
+  };
+  if (entries_.size() < most && (!counted || of_one() < most_of_one)) return true;
+  std::erase_if(entries_, [&](const auto& entry) {
+    return entry.second.silent(now) && !servers_.contains(entry.first);
+  });
+  return entries_.size() < most && (!counted || of_one() < most_of_one);
+}
+
+}  // namespace prehend::dds

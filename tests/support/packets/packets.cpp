@@ -1,0 +1,151 @@
+#include "packets.hpp"
+
+#include <algorithm>
+
+namespace prehend::test {
+namespace {
+
+constexpr std::uint8_t info_timestamp = 0x09, info_source = 0x0c, data_kind = 0x15;
+constexpr std::uint8_t parameters_flag = 0x02, data_flag = 0x04, key_flag = 0x08;
+constexpr std::uint32_t participants = 0x000100c2, writers = 0x000003c2,
+                        liveliness_writer = 0x000200c2, a_user = 0x00000103;
+constexpr std::uint32_t participant_entity = 0x000001c1;
+
+Bytes guid(const dds::GuidPrefix& prefix, std::uint32_t entity) {
+  Bytes bytes(prefix.begin(), prefix.end());
+  for (int shift = 24; shift >= 0; shift -= 8)
+    bytes.push_back(static_cast<std::uint8_t>(entity >> shift));
+  return bytes;
+}
+
+void append(Bytes& to, std::span<const std::uint8_t> more) {
+  for (const std::uint8_t byte : more) to.push_back(byte);
+}
+
+}  // namespace
+
+dds::GuidPrefix participant(std::uint8_t n) {
+  return {1, 15, n, 2, 3, 4, 5, 6, 7, 8, 9, n};
+}
+
+Message::Message(const dds::GuidPrefix& sender, bool little_endian)
+    : little_endian_(little_endian), bytes_(20) {
+  const Bytes head{'R', 'T', 'P', 'S', 2, 3, 1, 15};
+  std::copy(head.begin(), head.end(), bytes_.begin());
+  std::copy(sender.begin(), sender.end(), bytes_.begin() + 8);
+}
+
+void Message::two(Bytes& to, std::uint32_t value) const {
+  const auto low = static_cast<std::uint8_t>(value), high = static_cast<std::uint8_t>(value >> 8);
+  to.push_back(little_endian_ ? low : high);
+  to.push_back(little_endian_ ? high : low);
+}
+
+void Message::four(Bytes& to, std::uint32_t value) const {
+  two(to, little_endian_ ? value & 0xffff : value >> 16);
+  two(to, little_endian_ ? value >> 16 : value & 0xffff);
+}
+
+void Message::parameter(Bytes& to, std::uint16_t id, const Bytes& value) const {
+  two(to, id);
+  two(to, static_cast<std::uint32_t>(value.size()));
+  append(to, value);
+}
+
+Message& Message::part(std::uint8_t kind, const Bytes& content, std::uint8_t flags) {
+  bytes_.push_back(kind);
+  bytes_.push_back(static_cast<std::uint8_t>(flags | (little_endian_ ? 1 : 0)));
+  two(bytes_, static_cast<std::uint32_t>(content.size()));
+  append(bytes_, content);
+  return *this;
+}
+
+Message& Message::timestamp() {
+  return part(info_timestamp, Bytes(8));
+}
+
+Message& Message::source(const dds::GuidPrefix& sender) {
+  Bytes content(8 + sender.size());
+  content[4] = 2;
+  content[5] = 3;
+  std::copy(sender.begin(), sender.end(), content.begin() + 8);
+  return part(info_source, content);
+}
+
+Bytes Message::list_head() const {
+  return {0, static_cast<std::uint8_t>(little_endian_ ? 3 : 2), 0, 0};
+}
+
+Bytes Message::locator(const dds::Ipv4& address) const {
+  Bytes bytes;
+  four(bytes, 1);
+  four(bytes, 7411);
+  bytes.resize(bytes.size() + 12);
+  bytes.insert(bytes.end(), address.begin(), address.end());
+  return bytes;
+}
+
+Message& Message::data(std::uint32_t writer, const Bytes& parameters, const Bytes& content,
+                       std::uint8_t content_flag) {
+  Bytes bytes;
+  two(bytes, 0);
+  two(bytes, 16);  // to what follows the number of the sample
+  append(bytes, Bytes(4));
+  for (int shift = 24; shift >= 0; shift -= 8)
+    bytes.push_back(static_cast<std::uint8_t>(writer >> shift));
+  four(bytes, 0);
+  four(bytes, 1);
+  append(bytes, parameters);
+  append(bytes, content);
+  return part(data_kind, bytes,
+              static_cast<std::uint8_t>(content_flag | (parameters.empty() ? 0 : parameters_flag)));
+}
+
+Message& Message::announcement(const dds::GuidPrefix& participant,
+                               const std::vector<dds::Ipv4>& addresses, Duration lease) {
+  Bytes content = list_head();
+  parameter(content, 0x0015, {2, 3, 0, 0});  // the protocol's version
+  parameter(content, 0x0050, guid(participant, participant_entity));
+  for (const dds::Ipv4& address : addresses) parameter(content, 0x0031, locator(address));
+  Bytes duration;
+  four(duration, static_cast<std::uint32_t>(lease / std::chrono::seconds(1)));
+  four(duration, static_cast<std::uint32_t>((lease % std::chrono::seconds(1)).count() *
+                                            0x1'0000'0000ll / 1'000'000'000));
+  parameter(content, 0x0002, duration);
+  parameter(content, 0x0001, {});
+  return data(participants, {}, content, data_flag);
+}
+
+Message& Message::departure(const dds::GuidPrefix& participant) {
+  Bytes parameters, content = list_head();
+  parameter(parameters, 0x0070, guid(participant, participant_entity));
+  parameter(parameters, 0x0071, {0, 0, 0, 3});  // disposed, unregistered
+  parameter(parameters, 0x0001, {});
+  parameter(content, 0x0050, guid(participant, participant_entity));
+  parameter(content, 0x0001, {});
+  return data(participants, parameters, content, key_flag);
+}
+
+Message& Message::endpoint(const dds::GuidPrefix& participant) {
+  Bytes content = list_head();
+  parameter(content, 0x005a, guid(participant, a_user));
+  parameter(content, 0x0005, {4, 0, 0, 0, 'a', 'b', 'c', 0});  // the topic's name
+  parameter(content, 0x0001, {});
+  return data(writers, {}, content, data_flag);
+}
+
+Message& Message::liveliness(const dds::GuidPrefix& participant) {
+  Bytes content(4 + participant.size() + 8);
+  content[1] = little_endian_ ? 1 : 0;
+  std::copy(participant.begin(), participant.end(), content.begin() + 4);
+  return data(liveliness_writer, {}, content, data_flag);
+}
+
+Message& Message::sample(std::size_t size) {
+  Bytes content(4 + size, 0x3f);
+  content[0] = content[2] = content[3] = 0;
+  content[1] = 1;
+  return data(a_user, {}, content, data_flag);
+}
+
+}  // namespace prehend::test
