@@ -41,22 +41,42 @@ async function check(o) {
   new module[o.kind](o).validate();
 }
 
+function locked(container, where) {
+  assert.equal(container.securityContext.readOnlyRootFilesystem, true, where);
+  assert.equal(container.securityContext.allowPrivilegeEscalation, false, where);
+  assert.deepEqual(container.securityContext.capabilities.drop, ["ALL"], where);
+  assert.ok(container.resources.limits.memory, `${where} may take all memory`);
+}
+
 function promises(overlay, o) {
   const pod = o.spec?.template?.spec;
   if (!pod) return;
   const where = `${overlay}: ${o.kind} ${o.metadata.name}`;
   assert.equal(pod.securityContext.runAsNonRoot, true, where);
   assert.equal(pod.automountServiceAccountToken, false, where);
+  for (const container of pod.initContainers ?? []) locked(container, where);
   for (const container of pod.containers) {
-    assert.equal(container.securityContext.readOnlyRootFilesystem, true, where);
-    assert.equal(container.securityContext.allowPrivilegeEscalation, false, where);
-    assert.deepEqual(container.securityContext.capabilities.drop, ["ALL"], where);
-    assert.ok(container.resources.limits.memory, `${where} may take all memory`);
+    locked(container, where);
     if (o.kind === "Deployment" && o.metadata.name !== "discovery") {
-      const health = `prehend status --wait ${o.metadata.name} --timeout 4`;
-      assert.equal(container.startupProbe.exec.command.join(" "), health, where);
-      assert.equal(container.livenessProbe.exec.command.join(" "), health, where);
+      const health = `prehend status --wait ${container.name} --timeout 4`;
+      for (const probe of [container.startupProbe, container.livenessProbe])
+        assert.ok(probe.exec.command.join(" ").startsWith(health), where);
     }
+  }
+}
+
+/** The two sites have one rig, and what one dials the other forwards to who listens there. */
+function sites() {
+  const find = (overlay, kind) => objects(overlay).find((o) => o.kind === kind);
+  const here = find("robot-site", "ConfigMap").data, there = find("glove-site", "ConfigMap").data;
+  assert.equal(here.PREHEND_LAB_RIG, there.PREHEND_LAB_RIG);
+  const ports = find("robot-site", "Service").spec.ports;
+  const dialled = ports.map((one) => `${here.GATEWAY}:${one.port}`);
+  assert.deepEqual(JSON.parse(there.PREHEND_LAB_PEERS), dialled);
+  for (const container of find("robot-site", "Deployment").spec.template.spec.containers) {
+    const port = ports.find((one) => one.targetPort === container.name).port;
+    assert.ok(container.command.includes(`lab.listen=$(GATEWAY):${port}`), container.name);
+    assert.ok(container.ports.some((one) => one.name === container.name && one.containerPort === port));
   }
 }
 
@@ -71,6 +91,7 @@ for (const overlay of readdirSync(root)) {
   assert.deepEqual(refusals(list), [], overlay);
   count += list.length;
 
+  if (!list.some((o) => o.kind === "Deployment")) continue;
   const misspelt = structuredClone(list.find((o) => o.kind === "Deployment"));
   misspelt.spec.template.spec.containers[0].livenesProbe = {};
   assert.equal(refusals([misspelt]).length, 1, "a field that the API does not know passes");
@@ -79,5 +100,6 @@ for (const overlay of readdirSync(root)) {
   delete wrong.spec.selector;
   await assert.rejects(check(wrong), "an object without what it must have passes");
 }
+sites();
 assert.ok(count > 10, `only ${count} objects were found`);
 console.log(`${count} objects are as the API wants them`);
