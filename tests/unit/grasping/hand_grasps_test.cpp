@@ -59,7 +59,7 @@ TEST_P(HandGrasps, HoldWhatStandsAtTheGraspFrame) {
 
 INSTANTIATE_TEST_SUITE_P(All, HandGrasps,
                          testing::Values(Grip{"barrett", "Talc", "open", true, 0.0},
-                                         Grip{"dlr", "Talc", "power", true, 0.015},
+                                         Grip{"dlr", "Talc", "power", true, 0.026},
                                          Grip{"robonaut", "Talc", "power", true, -0.01},
                                          Grip{"human", "Talc", "power", true, 0.01},
                                          Grip{"parallel_jaw", "Talc", "open", true, 0.0},
