@@ -36,8 +36,10 @@ struct Nearest {
   }
 };
 
-/// Height of G over the bottom of the object when it comes from above.
-double height_from_above(double height, const Reach& reach) {
+/// Height of G over the bottom of the object when it comes from above; none where the fingers, kept
+/// off the table, would meet above the object.
+std::optional<double> height_from_above(double height, const Reach& reach) {
+  if (reach.clearance > height) return std::nullopt;
   return std::max(height - reach.engage, reach.clearance);
 }
 
@@ -54,8 +56,9 @@ void offer_cylinder(const Shape& shape, const Reach& reach, Nearest& nearest) {
   const Vector3d p = nearest.X_OG.translation();
   const Vector3d down = -Vector3d::UnitZ();
 
-  const double above = height_from_above(height, reach) - 0.5 * height;
-  nearest.offer(grasp_axes(down, horizontal(R.col(1), Vector3d::UnitY())), Vector3d(0, 0, above));
+  if (const auto above = height_from_above(height, reach))
+    nearest.offer(grasp_axes(down, horizontal(R.col(1), Vector3d::UnitY())),
+                  Vector3d(0, 0, *above - 0.5 * height));
   // From the side the palm's width must find room above the table and some of the object to hold.
   const double lowest = reach.half_width - 0.5 * height;
   const double highest = 0.5 * height - 0.03;
@@ -79,8 +82,10 @@ void offer_box(const Shape& shape, const Reach& reach, Nearest& nearest) {
       Vector3d place = Vector3d::Zero();
       const double slack = std::max(0.0, half[along] - reach.half_width);
       place[along] = std::clamp(p[along], -slack, slack);
-      place.z() = height_from_above(shape.size.z(), reach) - half.z();
-      nearest.offer(grasp_axes(-Vector3d::UnitZ(), closing_direction), place);
+      if (const auto above = height_from_above(shape.size.z(), reach)) {
+        place.z() = *above - half.z();
+        nearest.offer(grasp_axes(-Vector3d::UnitZ(), closing_direction), place);
+      }
       // From either end, with the palm upright.
       const double lowest = reach.half_width - half.z();
       const double highest = half.z() - 0.03;

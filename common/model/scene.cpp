@@ -43,6 +43,14 @@ class TableReader {
     else
       complain(key, "needs three numbers");
   }
+  void read(std::string_view key, Reach& value) {
+    std::vector<double> n{value.opening, value.engage, value.clearance, value.half_width};
+    read_list(key, n);
+    if (n.size() != 4)
+      return complain(key, "needs four numbers: opening, engage, clearance, half width");
+    if (*std::min_element(n.begin(), n.end()) < 0) return complain(key, "must not be negative");
+    value = {n[0], n[1], n[2], n[3]};
+  }
   void read(std::string_view key, Pose& value) {
     const Eigen::Quaterniond q(value.linear());
     std::vector<double> n{value.translation().x(),
@@ -159,6 +167,7 @@ Expected<Scene> load_scene(const std::filesystem::path& file, const Catalogue& c
     reader.read("target", person.target);
     reader.read("hand_scale", person.hand_scale);
     reader.read("grasp_yaw", person.grasp_yaw);
+    reader.read("reach", person.reach);
     reader.read("approach_offset", person.approach_offset);
     reader.read("approach_turn", person.approach_turn);
     reader.read("position_noise", person.position_noise);
@@ -211,12 +220,15 @@ std::string to_toml(const Scene& scene) {
                       list(scene.light.to_light_W), number(scene.light.ambient),
                       number(scene.light.gain), list(scene.light.colour));
   text += fmt::format(
-      "[demonstrator]\nuser = {}\ntarget = {}\nhand_scale = {}\ngrasp_yaw = {}\n"
+      "[demonstrator]\nuser = {}\ntarget = {}\nhand_scale = {}\ngrasp_yaw = {}\nreach = {}\n"
       "approach_offset = {}\napproach_turn = {}\nposition_noise = {}\nangle_noise = {}\n"
       "extreme_rate = {}\nseed = {}\n",
       quoted(person.user), quoted(person.target), number(person.hand_scale),
-      number(person.grasp_yaw), list(person.approach_offset), list(person.approach_turn),
-      number(person.position_noise), number(person.angle_noise), number(person.extreme_rate),
+      number(person.grasp_yaw),
+      list({person.reach.opening, person.reach.engage, person.reach.clearance,
+            person.reach.half_width}),
+      list(person.approach_offset), list(person.approach_turn), number(person.position_noise),
+      number(person.angle_noise), number(person.extreme_rate),
       static_cast<std::int64_t>(person.seed));
   for (const PlacedObject& object : scene.objects)
     text +=

@@ -40,6 +40,7 @@ Expected<model::Scene> make_setting(const SettingOptions& options) {
     return fail("the hand can hold nothing of the catalogue", options.hand.string());
   auto scene = model::make_scene(*catalogue, options.seed, wishes);
   if (!scene) return scene;
+  scene->demonstrator.reach = hand->reach();
 
   for (const model::PlacedObject& placed : scene->objects) {
     if (placed.name != scene->demonstrator.target) continue;

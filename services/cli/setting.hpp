@@ -16,8 +16,8 @@ struct SettingOptions {
   std::filesystem::path catalogue;
 };
 
-/// Draws the scene. A recording of a bare hand, which knows no room, is put where its palm is
-/// aligned with a grasp of the object.
+/// Draws the scene; its person reaches where the robot hand has room. A recording of a bare hand,
+/// which knows no room, is put where its palm is aligned with a grasp of the object.
 Expected<model::Scene> make_setting(const SettingOptions& options);
 
 /// Writes the scene; the folder must exist.

@@ -49,16 +49,17 @@ Pose moved(const Pose& X_WH, const Vector3d& p_W) {
 }
 
 /// How a person would come at the object before taking its size into account, X_OG.
-Pose intended_grasp(const model::Shape& shape, const Pose& X_WO, double grasp_yaw) {
+Pose intended_grasp(const model::Shape& shape, const Pose& X_WO,
+                    const model::Demonstrator& person) {
   Matrix3d R_WG;
-  if (shape.kind == model::ShapeKind::box) {
+  if (shape.kind == model::ShapeKind::box && shape.size.z() >= person.reach.clearance) {
     // Across its depth, with the fingers on the far side.
     const Vector3d depth = X_WO.linear().col(0);
     const Vector3d closing =
         (Vector3d(depth.x(), depth.y(), 0).normalized()) * (depth.y() < 0 ? -1.0 : 1.0);
     R_WG = model::grasp_axes(-Vector3d::UnitZ(), closing);
   } else {
-    const Vector3d toward(-std::cos(grasp_yaw), -std::sin(grasp_yaw), 0);
+    const Vector3d toward(-std::cos(person.grasp_yaw), -std::sin(person.grasp_yaw), 0);
     R_WG = model::grasp_axes(toward, toward.cross(Vector3d::UnitZ()));
   }
   return X_WO.inverse() * make_pose(X_WO.translation(), R_WG);
@@ -120,7 +121,7 @@ Expected<SyntheticHand> SyntheticHand::create(const model::Scene& scene,
                   "name one of the scene's objects as demonstrator.target");
     const Pose& X_WO = placed->X_WO;
     const auto X_OG = model::nearest_grasp(
-        object->shape, intended_grasp(object->shape, X_WO, person.grasp_yaw), model::Reach{});
+        object->shape, intended_grasp(object->shape, X_WO, person), person.reach);
     if (!X_OG)
       return fail("no hand can grasp '" + person.target + "'", "synthetic hand",
                   "choose a smaller target");

@@ -11,30 +11,37 @@ using Eigen::Index;
 using Eigen::VectorXd;
 
 constexpr double window = 0.3;         // s
-constexpr double still_speed = 0.05;   // rad/s
-constexpr double still_closing = 0.1;  // rad, that the command may still close in the window
+constexpr double still = 0.015;        // rad, that what presses may move in the window
+constexpr double still_closing = 0.1;  // rad, that the rest and the command may
 constexpr double pressing = 0.03;      // rad, that the command is ahead of a joint that presses
 constexpr double anew = 0.1;           // rad, of movement that makes a new closure
 
-/// DoFs whose command is ahead in the closing direction by more than `margin` rad.
-int count_ahead(const model::HandModel& hand, const VectorXd& command, const VectorXd& value,
-                double margin) {
-  int count = 0;
-  for (Index i = 0; i < value.size(); ++i) {
-    const model::HandDof& dof = hand.dofs()[static_cast<std::size_t>(i)];
-    count += dof.closing * (command[i] - value[i]) > margin * grasping::radian_of(dof);
+/// Which DoFs are ahead in the closing direction by more than `margin` rad.
+std::vector<bool> ahead(const model::HandModel& hand, const VectorXd& command,
+                        const VectorXd& value, double margin) {
+  std::vector<bool> is_ahead(hand.dofs().size());
+  for (std::size_t i = 0; i < is_ahead.size(); ++i) {
+    const model::HandDof& dof = hand.dofs()[i];
+    const auto k = static_cast<Index>(i);
+    is_ahead[i] = dof.closing * (command[k] - value[k]) > margin * grasping::radian_of(dof);
   }
-  return count;
+  return is_ahead;
 }
 
-/// A joint has moved by more than `margin` rad.
+bool any(const std::vector<bool>& values) {
+  return std::find(values.begin(), values.end(), true) != values.end();
+}
+
+/// A joint has moved by more than it may. A finger that presses on nothing follows the operator's,
+/// and that trembles with the noise of the glove.
 bool has_moved(const model::HandModel& hand, const VectorXd& joint, const VectorXd& before,
-               double margin) {
+               const std::vector<bool>& presses) {
   if (before.size() != joint.size()) return true;
   for (Index i = 0; i < joint.size(); ++i) {
-    const int dof = hand.joints()[static_cast<std::size_t>(i)].dof;
-    const double unit = grasping::radian_of(hand.dofs()[static_cast<std::size_t>(dof)]);
-    if (std::abs(joint[i] - before[i]) > margin * unit) return true;
+    const auto dof = static_cast<std::size_t>(hand.joints()[static_cast<std::size_t>(i)].dof);
+    const double margin = presses[dof] ? still : still_closing;
+    if (std::abs(joint[i] - before[i]) > margin * grasping::radian_of(hand.dofs()[dof]))
+      return true;
   }
   return false;
 }
@@ -81,9 +88,10 @@ std::optional<int> ClosureDetector::update(const grasping::World& world) {
       }
     }
   }
-  const bool moved = has_moved(world.hand(), motion.joint, joint_, still_speed * window) ||
-                     count_ahead(world.hand(), command, command_, still_closing) > 0;
-  if (moved || judged_ || count_ahead(world.hand(), command, motion.dof, pressing) < 2) {
+  const std::vector<bool> presses = ahead(world.hand(), command, motion.dof, pressing);
+  const bool moved = has_moved(world.hand(), motion.joint, joint_, presses) ||
+                     any(ahead(world.hand(), command, command_, still_closing));
+  if (moved || judged_ || !any(presses)) {
     restart(motion.joint, command);
     return std::nullopt;
   }

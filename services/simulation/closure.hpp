@@ -40,9 +40,10 @@ struct Verdict {
 /// takes about half a second and touches nothing else, so it may run in another thread.
 Verdict judge(Closure& closure);
 
-/// Finds the moment at which the hand has closed on something: for 0.3 s no joint has moved faster
-/// than 0.05 rad/s, the drives of two DoFs press, and at least two contacts on two links carry
-/// force. The speed is that over the 0.3 s: a trembling hand may tremble.
+/// Finds the moment at which the hand has closed on something: for 0.3 s no joint that presses has
+/// moved by more than 0.015 rad and no other by more than 0.1 rad, something presses, and at least
+/// two contacts on two links carry force. One drive may press the object against fingers that stand
+/// at their ends; those that touch nothing tremble with the operator's hand.
 class ClosureDetector {
  public:
   explicit ClosureDetector(double time_step) : time_step_(time_step) {}

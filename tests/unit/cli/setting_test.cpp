@@ -41,6 +41,22 @@ TEST(Setting, TargetsFitTheHandAndVary) {
   EXPECT_GE(targets.size(), 4u);
 }
 
+// DLR's straight fingers met the table before they met the object: the person reached as deep as a
+// human hand can.
+TEST(Setting, ThePersonGivesTheRobotHandTheRoomItNeeds) {
+  for (const char* name : {"barrett", "dlr", "robonaut", "rutgers", "parallel_jaw"}) {
+    SettingOptions wishes = options(3);
+    wishes.hand = models / "hands" / name;
+    const auto hand = model::HandModel::load(wishes.hand);
+    const auto scene = make_setting(wishes);
+    ASSERT_TRUE(hand && scene) << name;
+    EXPECT_EQ(scene->demonstrator.reach.clearance, hand->reach().clearance) << name;
+    EXPECT_EQ(scene->demonstrator.reach.half_width, hand->reach().half_width) << name;
+    EXPECT_EQ(scene->demonstrator.reach.opening, hand->reach().opening) << name;
+    EXPECT_EQ(scene->demonstrator.reach.engage, hand->reach().engage) << name;
+  }
+}
+
 TEST(Setting, ABareHandIsPutAtTheObject) {
   const auto scene = make_setting(options(3));
   ASSERT_TRUE(scene) << scene.error().message();

@@ -86,6 +86,33 @@ TEST_F(EveryObject, GraspsWhereTheObjectStands) {
     }
 }
 
+// The person used to reach as deep as a human hand can: longer robot fingers met the table.
+TEST_F(EveryObject, LeavesTheHandThatIsLedItsRoom) {
+  int above = 0, beside = 0;
+  for (const auto& object : known.objects()) {
+    model::Scene scene = scene_with(object);
+    scene.demonstrator.reach.clearance = 0.13;
+    scene.demonstrator.reach.half_width = 0.07;
+    const auto hand = SyntheticHand::create(scene, known, {.X_WT = X_WT});
+    // What is low can be had from nowhere.
+    if (!hand) {
+      EXPECT_LT(object.shape.size.z(), 0.105) << object.name;
+      continue;
+    }
+    const Pose X_WG = hand->grasp() * hand->model().X_HG();
+    const bool from_above = X_WG.linear()(2, 2) < -0.7;
+    (from_above ? above : beside) += 1;
+    EXPECT_GT(X_WG.translation().z(), (from_above ? 0.13 : 0.07) - 0.009) << object.name;
+    // A box that is too low for the way from above is taken from the person's own side.
+    const Vector3d toward(-std::cos(-1.2), -std::sin(-1.2), 0);
+    if (!from_above) {
+      EXPECT_GT(X_WG.linear().col(2).dot(toward), 0) << object.name;
+    }
+  }
+  EXPECT_GT(above, 0);
+  EXPECT_GT(beside, 0);
+}
+
 TEST_F(EveryObject, MovesSmoothlyAndStaysAboveTheTable) {
   for (const auto& object : known.objects()) {
     const auto hand = SyntheticHand::create(scene_with(object), known, {.X_WT = X_WT});

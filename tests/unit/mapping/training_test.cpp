@@ -267,7 +267,7 @@ TEST(TrainedModel, TellsGraspTypesOfOtherPeople) {
     const auto model = MappingModel::load(PREHEND_TRAINED "/" + name + ".mapping", hand);
     ASSERT_TRUE(model) << model.error().message();
     std::map<GraspType, std::map<GraspType, int>> confusion;  // made, told
-    for (unsigned person = 0; person < 20; ++person) {
+    for (unsigned person = 0; person < 40; ++person) {
       Demonstrator demonstrator("unseen", 7'000'000 + person, {});
       for (const model::CatalogueObject& object : catalogue().objects())
         for (const Pose& X_OG : approaches(object.shape, hand.reach()))

@@ -53,10 +53,10 @@ TEST(Scene, DrawnScenesAreSoundAndRepeat) {
 TEST(Scene, AFileGivesBackTheSameScene) {
   const Catalogue objects = catalogue();
   for (std::uint64_t seed = 0; seed < 20; ++seed) {
-    const std::string text = to_toml(*make_scene(objects, seed, {}));
-    const auto read = load_scene(write(text), objects);
+    Scene scene = *make_scene(objects, seed, {});
+    scene.demonstrator.reach = {0.09, 0.03, 0.12, 0.07};
+    const auto read = load_scene(write(to_toml(scene)), objects);
     ASSERT_TRUE(read) << read.error().message();
-    const Scene scene = *make_scene(objects, seed, {});
     ASSERT_EQ(read->objects.size(), scene.objects.size());
     for (std::size_t i = 0; i < scene.objects.size(); ++i) {
       EXPECT_EQ(read->objects[i].name, scene.objects[i].name);
@@ -72,6 +72,10 @@ TEST(Scene, AFileGivesBackTheSameScene) {
     EXPECT_EQ(read->demonstrator.seed, scene.demonstrator.seed);
     EXPECT_EQ(read->demonstrator.approach_turn, scene.demonstrator.approach_turn);
     EXPECT_EQ(read->demonstrator.hand_scale, scene.demonstrator.hand_scale);
+    EXPECT_EQ(read->demonstrator.reach.opening, 0.09);
+    EXPECT_EQ(read->demonstrator.reach.engage, 0.03);
+    EXPECT_EQ(read->demonstrator.reach.clearance, 0.12);
+    EXPECT_EQ(read->demonstrator.reach.half_width, 0.07);
   }
 }
 
@@ -85,6 +89,8 @@ TEST(Scene, BadFilesSayWhatIsWrong) {
       {"[[object]]\nname = \"Cup\"\nX_WO = [0,0,nan,1,0,0,0]\n", "finite"},
       {"[demonstrator]\ntarget = \"Cup\"\n", "stands nowhere"},
       {"[demonstrator]\nhand_scale = 9\n", "hand_scale"},
+      {"[demonstrator]\nreach = [0.1, 0.1]\n", "reach needs four numbers"},
+      {"[demonstrator]\nreach = [0.1, 0.1, -1, 0.1]\n", "reach must not be negative"},
       {"[weather]\n", "weather"},
       {"= nonsense", ""},
   };

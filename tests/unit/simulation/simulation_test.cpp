@@ -157,7 +157,8 @@ struct Episode {
 };
 
 /// Commands at 30 Hz: reach from 25 cm away, close, wait, lift; `offset` is the error of the reach.
-Episode reach_and_lift(const grasping::Body& body, const Vector3d& offset) {
+/// `tremble`: the second finger does not close but trembles by so much, rad.
+Episode reach_and_lift(const grasping::Body& body, const Vector3d& offset, double tremble = 0) {
   Episode episode{{}, made()};
   Simulation& simulation = *episode.simulation;
   if (!simulation.see(body, Pose::Identity())) throw std::runtime_error("not placed");
@@ -167,7 +168,9 @@ Episode reach_and_lift(const grasping::Body& body, const Vector3d& offset) {
     const double lift = 0.12 * std::clamp((t - 3.2) / 0.8, 0.0, 1.0);
     const Time now = start + milliseconds(static_cast<long>(1000 * t));
     const Vector3d p = Vector3d(0, -0.25 * (1 - reach), 0.06 + lift) + offset;
-    if (!simulation.accept(command(p, 1.4 * close), now)) throw std::runtime_error("refused");
+    Command told = command(p, 1.4 * close);
+    if (tremble > 0) told.dof[2] = 0.3 + tremble * std::sin(2 * EIGEN_PI * 3 * t);
+    if (!simulation.accept(told, now)) throw std::runtime_error("refused");
     simulation.follow(now + milliseconds(33), true);
     while (simulation.step())
       if (auto closure = simulation.take_closure()) episode.closures.push_back(std::move(*closure));
@@ -191,6 +194,38 @@ TEST(Simulation, AGraspIsFoundOnceJudgedAndReallyLifted) {
   EXPECT_NEAR(episode.simulation->world().body_motion(0).X_WO.translation().z(), 0.0525 + 0.12,
               0.02);
   EXPECT_FALSE(episode.simulation->world().touches_others(0));
+}
+
+// DLR's hand held what stood there, and no grasp was reported: a finger that touched nothing
+// trembled with the operator's.
+TEST(Simulation, AFingerThatTouchesNothingMayTremble) {
+  EXPECT_EQ(reach_and_lift(talc, {0.005, 0.005, 0.005}, 0.04).closures.size(), 1u);
+  EXPECT_TRUE(reach_and_lift(talc, {0, -0.10, 0}, 0.04).closures.empty());
+}
+
+// Whether a hand has one drive or twelve, and whether its fingers stand at their ends or not.
+TEST(Simulation, OneDriveThatPressesIsEnough) {
+  const model::HandModel& jaw = test::hand("parallel_jaw");
+  auto simulation = std::move(*Simulation::create(jaw, {}));
+  simulation->follow(start, false);
+  ASSERT_TRUE(simulation->see(talc, Pose::Identity()));
+  Command told = command({0, 0, 0.06}, 0);
+  told.model = "parallel_jaw";
+  const Pose X_WG = told.X_WB * barrett().X_BG();
+  int closures = 0;
+  for (int i = 0; i < 90; ++i) {
+    const double t = i / 30.0;
+    const double reach = std::min(1.0, t / 0.8), close = std::clamp((t - 1.0) / 0.5, 0.0, 1.0);
+    Pose X_WB = X_WG * jaw.X_BG().inverse();
+    X_WB.pretranslate(Vector3d(0, -0.25 * (1 - reach), 0));
+    told.X_WB = X_WB;
+    told.dof = (1 - close) * jaw.postures().at("open");
+    const Time now = start + milliseconds(static_cast<long>(1000 * t));
+    ASSERT_TRUE(simulation->accept(told, now));
+    simulation->follow(now + milliseconds(33), true);
+    while (simulation->step()) closures += simulation->take_closure().has_value();
+  }
+  EXPECT_EQ(closures, 1);
 }
 
 TEST(Simulation, IsDeterministic) {
