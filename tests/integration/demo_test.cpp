@@ -45,6 +45,21 @@ TEST_P(DemoOfSeed, HoldsTheRightObjectIntelligently) {
 
 INSTANTIATE_TEST_SUITE_P(BoxAndCylinder, DemoOfSeed, testing::Values("1", "2"));
 
+// Other hands than the first one: DLR's closed on nothing for a while, since its fingers met the
+// table, and of a jaw with one drive no closure was ever reported.
+class DemoOfHand : public Demo, public testing::WithParamInterface<const char*> {};
+
+TEST_P(DemoOfHand, HoldsTheObject) {
+  const Answer answer = demo({"--seed", "1", "--hand", GetParam()});
+  ASSERT_EQ(answer.exit_code, 0) << answer.output << answer.log;
+  const json document = json::parse(answer.output);
+  EXPECT_EQ(document["grasp"]["held"], true);
+  EXPECT_EQ(document["mapping"]["mode"], "intelligent");
+  EXPECT_EQ(document["mapping"]["hand"], GetParam());
+}
+
+INSTANTIATE_TEST_SUITE_P(Others, DemoOfHand, testing::Values("dlr", "parallel_jaw"));
+
 TEST_F(Demo, WithoutRecognitionItMapsDirectly) {
   const Answer answer = demo({"--seed", "1", "--without", "recognition"});
   ASSERT_TRUE(answer.exit_code == 0 || answer.exit_code == 1) << answer.log;
