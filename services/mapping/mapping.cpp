@@ -88,6 +88,7 @@ Mapping::Mapping(const model::HandModel& hand, const MappingModel& model,
       arbitration_(options.ramp),
       grip_(hand, options.grip),
       arrival_(hand),
+      follow_through_(hand),
       right_of_way_(hand) {}
 
 Expected<void> Mapping::on_detection(const Detection& detection) {
@@ -277,6 +278,13 @@ Pose Mapping::corrected(const Pose& X_WG, const std::optional<Candidate>& seen, 
 }
 
 /// Mean angle of the closing DoFs from their open end, rad.
+/// Two fingers of this posture reach into the object, where the hand is now.
+bool Mapping::closed_on_object(const Eigen::VectorXd& dof) const {
+  const Eigen::VectorXd distances = arrival_.distances(
+      dof, engaged_->detection.shape, command_.X_WB.inverse() * engaged_->detection.X_WO);
+  return (distances.array() < 0.002).count() >= 2;
+}
+
 double Mapping::mean_closing(const Eigen::VectorXd& dof) const {
   double sum = 0;
   int count = 0;
@@ -377,6 +385,11 @@ Expected<Command> Mapping::on_posture(const Posture& posture, Time now) {
       mapping::grasp_type(mean_closing(dof), X_WG, model_.is_precision(*features));
 
   const Pose X_WB = corrected(X_WG, seen, elapsed) * hand_.X_BG().inverse();
+  if (engaged_ && options_.intelligent && command_.weight > 0.99)
+    dof = model_.limited(
+        follow_through_.go_on(dof, closed_on_object(dof), grip_.touching(), elapsed));
+  else
+    follow_through_.reset();
   move_toward(model_.limited(grip_.squeeze(dof)), X_WB, options_.intelligent ? command_.weight : 0,
               elapsed);
   command_.stamp = posture.stamp;

@@ -15,6 +15,7 @@
 #include "arbitration.hpp"
 #include "arrival.hpp"
 #include "features.hpp"
+#include "follow_through.hpp"
 #include "grasp_type.hpp"
 #include "grip.hpp"
 #include "mapping_model.hpp"
@@ -149,6 +150,7 @@ class Mapping {
   void update_trust(const std::optional<Candidate>& seen, Duration elapsed);
   double weight() const { return std::min(arbitration_.weight(), trust_); }
   double yielding(const Pose& X_WG) const;
+  bool closed_on_object(const Eigen::VectorXd& dof) const;
   Pose toward(const Pose& X_WG, const Pose& X_WG_grasp) const;
   void move_toward(const Eigen::VectorXd& dof, const Pose& X_WB, double together, Duration elapsed);
 
@@ -160,6 +162,7 @@ class Mapping {
   Arbitration arbitration_;
   Grip grip_;
   Arrival arrival_;
+  FollowThrough follow_through_;
   RightOfWay right_of_way_;
   std::map<std::uint32_t, Track> tracks_;
   std::optional<Candidate> engaged_;         // the object that the weight is for
