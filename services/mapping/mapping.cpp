@@ -277,7 +277,6 @@ Pose Mapping::corrected(const Pose& X_WG, const std::optional<Candidate>& seen, 
   return X_WG * correction_;
 }
 
-/// Mean angle of the closing DoFs from their open end, rad.
 /// Two fingers of this posture reach into the object, where the hand is now.
 bool Mapping::closed_on_object(const Eigen::VectorXd& dof) const {
   const Eigen::VectorXd distances = arrival_.distances(
@@ -285,6 +284,7 @@ bool Mapping::closed_on_object(const Eigen::VectorXd& dof) const {
   return (distances.array() < 0.002).count() >= 2;
 }
 
+/// Mean angle of the closing DoFs from their open end, rad.
 double Mapping::mean_closing(const Eigen::VectorXd& dof) const {
   double sum = 0;
   int count = 0;

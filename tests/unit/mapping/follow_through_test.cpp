@@ -74,6 +74,20 @@ TEST_P(Following, GoesOnUntilTheMostAtItsSpeed) {
   EXPECT_GT(before, 0.01);
 }
 
+// So that all arrive together: what has come twice as far goes on twice as far.
+TEST_P(Following, GoesOnInProportion) {
+  const VectorXd open = hand.postures().at("open"), from = closed(0.3);
+  const VectorXd to = go_on(0.3, true, false, 2);
+  double ratio = 0;
+  for (Index i = 0; i < from.size(); ++i) {
+    const double way = from[i] - open[i];
+    if (hand.dofs()[static_cast<std::size_t>(i)].closing == 0 || std::abs(way) < 1e-6) continue;
+    if (ratio == 0) ratio = (to[i] - from[i]) / way;
+    EXPECT_NEAR((to[i] - from[i]) / way, ratio, 1e-9) << i;
+  }
+  EXPECT_GT(ratio, 0);
+}
+
 TEST_P(Following, OpensAtOnceWithTheOperator) {
   go_on(0.6, true, true, 40);
   EXPECT_EQ(following.go_on(closed(0.3), false, true, frame), closed(0.3));

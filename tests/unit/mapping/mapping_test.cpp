@@ -133,6 +133,44 @@ TEST_F(MappingTest, KnowsTheObjectInReachAndCorrectsThePlacement) {
       barrett().clamp(model_.intelligent(f, talc, Pose::Identity())->dof), 1e-9));
 }
 
+// Whatever the networks answer: some reach into the object, and those fingers go on; none does that
+// stays clear of it.
+TEST(MappingOfKnownObject, GoesOnWhereFingersReachIntoIt) {
+  const model::Shape wide{ShapeKind::cylinder, {0.04, 0.04, 0.15}};
+  const Pose X_WO = standing(wide), X_WG = side_grasp(wide, X_WO);
+  const Features f = *features(tips({0.4, 0.4, 0.4, 0.4, 0.4}), 1);
+  const Arrival arrival(barrett());
+  int gone = 0, clear = 0;
+  for (std::uint64_t seed = 1; seed <= 40; ++seed) {
+    const MappingModel model = random_model(seed);
+    Mapping mapping = *Mapping::create(barrett(), model, {});
+    ASSERT_TRUE(mapping.on_state(state_at(base_at(X_WG), barrett().postures().at("open"), 0)));
+    Expected<Command> last = fail("");
+    for (int ms = 0; ms < 3000; ms += 33) {
+      ASSERT_TRUE(mapping.on_detection(detection(wide, X_WO, ms)));
+      last = mapping.on_posture(posture(X_WG, ms, 0.4), at(ms + 2));
+      ASSERT_TRUE(last);
+    }
+    ASSERT_EQ(last->weight, 1);
+    const Eigen::VectorXd answer =
+        barrett().clamp(model.intelligent(f, wide, Pose::Identity())->dof);
+    const Eigen::ArrayXd distances =
+        arrival.distances(answer, wide, last->X_WB.inverse() * X_WO).array();
+    double further = 0;  // rad, of the finger that has gone farthest
+    for (Eigen::Index i = 0; i < answer.size(); ++i)
+      further = std::max(further, barrett().dofs()[static_cast<std::size_t>(i)].closing *
+                                      (last->dof[i] - answer[i]));
+    EXPECT_LE(further, FollowThroughOptions{}.most + 1e-9) << seed;
+    gone += further > 0.1;
+    if (distances.minCoeff() > 0.01) {
+      ++clear;
+      EXPECT_TRUE(last->dof.isApprox(answer, 1e-9)) << seed;
+    }
+  }
+  EXPECT_GT(gone, 2);
+  EXPECT_GT(clear, 2);
+}
+
 TEST_F(MappingTest, CorrectsNoMoreThanThreeCentimetresAndTwentyDegrees) {
   const Pose X_WO = standing(talc);
   const Pose X_WG = side_grasp(talc, X_WO) *
