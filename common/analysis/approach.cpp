@@ -1,4 +1,4 @@
-#include "approach.hpp"
+#include "common/analysis/approach.hpp"
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>

@@ -1,7 +1,8 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <prehend/model/shape.hpp>
+
+#include "common/model/shape.hpp"
 
 namespace prehend::analysis {
 

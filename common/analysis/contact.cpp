@@ -1,4 +1,4 @@
-#include "contact.hpp"
+#include "common/analysis/contact.hpp"
 
 #include <algorithm>
 #include <limits>

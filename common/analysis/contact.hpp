@@ -23,7 +23,7 @@ struct Contact {
 };
 
 /// So many contacts of a grasp count, as in GraspIt!.
-inline constexpr std::size_t most_contacts = 10;
+inline constexpr std::size_t max_contacts = 10;
 
 /// At most `most` of the contacts, spread as widely over the object as possible (farthest points
 /// first, beginning with the strongest contact). Keeps the cost of a wrench space bounded.

@@ -1,4 +1,4 @@
-#include "contact_wrenches.hpp"
+#include "common/analysis/contact_wrenches.hpp"
 
 #include <Eigen/Geometry>
 #include <cmath>

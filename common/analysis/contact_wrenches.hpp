@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "contact.hpp"
+#include "common/analysis/contact.hpp"
 
 namespace prehend::analysis {
 

@@ -1,4 +1,4 @@
-#include "convex_hull.hpp"
+#include "common/analysis/convex_hull.hpp"
 
 #include <Eigen/SVD>
 

@@ -1,7 +1,8 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <prehend/base/error.hpp>
+
+#include "common/base/error.hpp"
 
 namespace prehend::analysis {
 

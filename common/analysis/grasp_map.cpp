@@ -1,11 +1,11 @@
-#include "grasp_map.hpp"
+#include "common/analysis/grasp_map.hpp"
 
 #include <Eigen/Geometry>
 #include <Eigen/QR>
 #include <Eigen/SVD>
 #include <algorithm>
 
-#include "contact_wrenches.hpp"
+#include "common/analysis/contact_wrenches.hpp"
 
 namespace prehend::analysis {
 namespace {
@@ -15,7 +15,7 @@ using Eigen::MatrixXd;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
 
-constexpr double least_singular = 1e-9;  // of the largest: below is nothing
+constexpr double min_singular = 1e-9;  // of the largest: below is nothing
 
 /// All joints that move a link.
 std::vector<int> joints_moving(const model::HandModel& hand, int link) {
@@ -49,7 +49,7 @@ int internal_force_dimension(const std::vector<Contact>& contacts, double torque
   for (const Contact& contact : contacts)
     transmitted += (contact.friction > 0 ? 3 : 1) + (contact.torsion > 0);
   Eigen::JacobiSVD<MatrixXd> svd(grasp_map(contacts, torque_scale));
-  svd.setThreshold(least_singular);
+  svd.setThreshold(min_singular);
   return static_cast<int>(transmitted - svd.rank());
 }
 
@@ -100,7 +100,7 @@ MatrixXd object_jacobian(const std::vector<Contact>& contacts, double torque_sca
   MatrixXd velocities = jacobian * coupling;
   for (Index row = 3; row < velocities.rows(); row += 4) velocities.row(row) *= torque_scale;
   Eigen::CompleteOrthogonalDecomposition<MatrixXd> inverse;
-  inverse.setThreshold(least_singular);
+  inverse.setThreshold(min_singular);
   inverse.compute(grasp_map(contacts, torque_scale).transpose());
   return inverse.solve(velocities);
 }
@@ -110,7 +110,7 @@ Transmission transmission(const MatrixXd& map) {
   const VectorXd s = Eigen::JacobiSVD<MatrixXd>(map).singularValues();
   Transmission made;
   if (!(s[0] > 0)) return made;
-  made.smallest = s[s.size() - 1] > least_singular * s[0] ? s[s.size() - 1] : 0;
+  made.smallest = s[s.size() - 1] > min_singular * s[0] ? s[s.size() - 1] : 0;
   made.isotropy = made.smallest / s[0];
   made.volume = made.smallest > 0 ? s.prod() : 0;
   return made;

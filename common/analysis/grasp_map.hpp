@@ -1,12 +1,12 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <prehend/base/error.hpp>
-#include <prehend/base/pose.hpp>
-#include <prehend/model/hand_model.hpp>
 #include <vector>
 
-#include "contact.hpp"
+#include "common/analysis/contact.hpp"
+#include "common/base/error.hpp"
+#include "common/base/pose.hpp"
+#include "common/model/hand_model.hpp"
 
 namespace prehend::analysis {
 

@@ -1,10 +1,10 @@
-#include "grip_forces.hpp"
+#include "common/analysis/grip_forces.hpp"
 
 #include <algorithm>
 #include <limits>
 
-#include "contact_wrenches.hpp"
-#include "linear_program.hpp"
+#include "common/analysis/contact_wrenches.hpp"
+#include "common/analysis/linear_program.hpp"
 
 namespace prehend::analysis {
 namespace {

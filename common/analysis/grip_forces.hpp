@@ -2,10 +2,10 @@
 
 #include <Eigen/Core>
 #include <optional>
-#include <prehend/base/error.hpp>
 #include <vector>
 
-#include "contact.hpp"
+#include "common/analysis/contact.hpp"
+#include "common/base/error.hpp"
 
 namespace prehend::analysis {
 

@@ -1,4 +1,4 @@
-#include "linear_program.hpp"
+#include "common/analysis/linear_program.hpp"
 
 #include <ClpSimplex.hpp>
 #include <limits>

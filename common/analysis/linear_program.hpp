@@ -2,7 +2,8 @@
 
 #include <Eigen/Core>
 #include <optional>
-#include <prehend/base/error.hpp>
+
+#include "common/base/error.hpp"
 
 namespace prehend::analysis {
 

@@ -1,12 +1,18 @@
-#include "materials.hpp"
+#include "common/analysis/materials.hpp"
 
 #include <array>
+
+#include "common/base/named_values.hpp"
 
 namespace prehend::analysis {
 namespace {
 
-constexpr std::array<std::string_view, 6> names{"glass", "metal",  "plastic",
-                                                "wood",  "rubber", "stone"};
+constexpr auto material_names = named_values<Material>({{Material::glass, "glass"},
+                                                        {Material::metal, "metal"},
+                                                        {Material::plastic, "plastic"},
+                                                        {Material::wood, "wood"},
+                                                        {Material::rubber, "rubber"},
+                                                        {Material::stone, "stone"}});
 
 // Symmetric; rows and columns in the order of Material.
 constexpr double table[6][6] = {{0.2, 0.2, 0.2, 0.3, 1.0, 0.3}, {0.2, 0.2, 0.2, 0.3, 1.0, 0.4},
@@ -16,13 +22,11 @@ constexpr double table[6][6] = {{0.2, 0.2, 0.2, 0.3, 1.0, 0.3}, {0.2, 0.2, 0.2, 
 }  // namespace
 
 std::optional<Material> material_from_string(std::string_view name) {
-  for (std::size_t i = 0; i < names.size(); ++i)
-    if (names[i] == name) return static_cast<Material>(i);
-  return std::nullopt;
+  return material_names.value(name);
 }
 
 std::string_view to_string(Material material) {
-  return names[static_cast<std::size_t>(material)];
+  return material_names.name(material);
 }
 
 double friction(Material a, Material b) {

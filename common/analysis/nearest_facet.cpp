@@ -1,4 +1,4 @@
-#include "nearest_facet.hpp"
+#include "common/analysis/nearest_facet.hpp"
 
 #include <Eigen/QR>
 #include <algorithm>
@@ -6,8 +6,9 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
-#include <prehend/base/random.hpp>
 #include <vector>
+
+#include "common/base/random.hpp"
 
 namespace prehend::analysis {
 namespace {
@@ -19,8 +20,8 @@ constexpr int most = 6;  // dimensions; fewer leave zeros at the end
 constexpr double joggle = 4e-12;     // of a coordinate
 constexpr double tolerance = 3e-11;  // more than twice what a joggled vertex can have moved
 constexpr double thinnest = 1e-9;
-constexpr double largest_size = 1e150;  // beyond, or below its inverse, products overflow
-constexpr std::size_t most_facets = 2'000'000;
+constexpr double max_size = 1e150;  // beyond, or below its inverse, products overflow
+constexpr std::size_t max_facets = 2'000'000;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
 using Point = Eigen::Matrix<double, most, 1>;
@@ -246,8 +247,8 @@ std::optional<Attempt::Outcome> Attempt::span() {
     const Point axis = Point::Unit(i);
     size = std::max({size, std::abs(farthest(axis)[i]), std::abs(farthest(-axis)[i])});
   }
-  if (!(size > 1 / largest_size)) return Outcome::flat;
-  if (!(size < largest_size)) return Outcome::too_wide;
+  if (!(size > 1 / max_size)) return Outcome::flat;
+  if (!(size < max_size)) return Outcome::too_wide;
   size_ = size;
   std::vector<Point> simplex{joggled(farthest(Point::Unit(0)))};
   Eigen::MatrixXd basis(dimension_, 0);  // orthonormal, of the space spanned so far
@@ -289,7 +290,7 @@ Attempt::Outcome Attempt::run() {
       result.distance *= size_;
       return Outcome::found;
     }
-    if (hull_.size() > most_facets) return Outcome::too_many;
+    if (hull_.size() > max_facets) return Outcome::too_many;
     if (!hull_.add(joggled(vertex), nearest)) return Outcome::inconsistent;
   }
 }

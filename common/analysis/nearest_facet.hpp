@@ -3,7 +3,8 @@
 #include <Eigen/Core>
 #include <functional>
 #include <optional>
-#include <prehend/base/error.hpp>
+
+#include "common/base/error.hpp"
 
 namespace prehend::analysis {
 

@@ -1,6 +1,6 @@
-#include "resistance.hpp"
+#include "common/analysis/resistance.hpp"
 
-#include "nearest_facet.hpp"
+#include "common/analysis/nearest_facet.hpp"
 
 namespace prehend::analysis {
 namespace {
@@ -19,7 +19,7 @@ Expected<Resistance> nearest(Index dimension, const Support& support) {
 }  // namespace
 
 Resistance resistance_at(double distance, const VectorXd& normal) {
-  if (!(distance >= least_epsilon)) return {-1, false, VectorXd::Zero(normal.size())};
+  if (!(distance >= min_epsilon)) return {-1, false, VectorXd::Zero(normal.size())};
   // The grasp can push least along the outward normal, so a load the other way is hardest.
   return {distance, true, -normal};
 }

@@ -1,8 +1,9 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <prehend/base/error.hpp>
 #include <vector>
+
+#include "common/base/error.hpp"
 
 namespace prehend::analysis {
 
@@ -17,7 +18,7 @@ struct Resistance {
 
 /// From here on an ε counts as force closure: a set that touches the origin and one that contains
 /// it look the same below, since coplanar points are moved by about 1e-11 to resolve them.
-inline constexpr double least_epsilon = 1e-9;
+inline constexpr double min_epsilon = 1e-9;
 
 /// What a plane of the set's surface says: distance from the origin, unit normal outward.
 Resistance resistance_at(double distance, const Eigen::VectorXd& normal);

@@ -1,9 +1,9 @@
-#include "wrench_space.hpp"
+#include "common/analysis/wrench_space.hpp"
 
 #include <cmath>
 
-#include "contact_wrenches.hpp"
-#include "convex_hull.hpp"
+#include "common/analysis/contact_wrenches.hpp"
+#include "common/analysis/convex_hull.hpp"
 
 namespace prehend::analysis {
 namespace {
@@ -34,7 +34,7 @@ double torque_scale(const model::Shape& shape) {
 
 Expected<Quality> grasp_quality(const std::vector<Contact>& contacts, double torque_scale) {
   if (!(torque_scale > 0)) return fail("the scale of torques must be positive");
-  return wrench_quality(contact_wrenches(spread_contacts(contacts, most_contacts), torque_scale));
+  return wrench_quality(contact_wrenches(spread_contacts(contacts, max_contacts), torque_scale));
 }
 
 Expected<Quality> grasp_quality(const std::vector<Contact>& contacts, const model::Shape& shape) {

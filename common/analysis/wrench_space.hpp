@@ -1,13 +1,13 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <prehend/base/error.hpp>
-#include <prehend/model/shape.hpp>
 #include <vector>
 
-#include "contact.hpp"
-#include "contact_wrenches.hpp"
-#include "resistance.hpp"
+#include "common/analysis/contact.hpp"
+#include "common/analysis/contact_wrenches.hpp"
+#include "common/analysis/resistance.hpp"
+#include "common/base/error.hpp"
+#include "common/model/shape.hpp"
 
 namespace prehend::analysis {
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "time.hpp"
+#include "common/base/time.hpp"
 
 namespace prehend {
 

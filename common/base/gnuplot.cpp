@@ -1,4 +1,4 @@
-#include "gnuplot.hpp"
+#include "common/base/gnuplot.hpp"
 
 #include <fcntl.h>
 #include <fmt/format.h>

@@ -1,4 +1,4 @@
-#include "paths.hpp"
+#include "common/base/paths.hpp"
 
 #include <cstdlib>
 

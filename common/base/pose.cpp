@@ -1,4 +1,4 @@
-#include "pose.hpp"
+#include "common/base/pose.hpp"
 
 #include <Eigen/SVD>
 #include <algorithm>

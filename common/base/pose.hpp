@@ -2,7 +2,7 @@
 
 #include <Eigen/Geometry>
 
-#include "error.hpp"
+#include "common/base/error.hpp"
 
 namespace prehend {
 

@@ -1,11 +1,11 @@
-#include "progress.hpp"
+#include "common/base/progress.hpp"
 
 #include <fmt/format.h>
 #include <unistd.h>
 
 #include <utility>
 
-#include "log.hpp"
+#include "common/base/log.hpp"
 
 namespace prehend {
 namespace {

@@ -1,4 +1,4 @@
-#include "toml_text.hpp"
+#include "common/base/toml_text.hpp"
 
 #include <fstream>
 #include <iterator>

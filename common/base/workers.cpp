@@ -1,4 +1,4 @@
-#include "workers.hpp"
+#include "common/base/workers.hpp"
 
 #include <algorithm>
 #include <condition_variable>

@@ -1,4 +1,4 @@
-#include "offset_filter.hpp"
+#include "common/clock/offset_filter.hpp"
 
 #include <algorithm>
 

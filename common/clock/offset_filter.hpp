@@ -3,7 +3,8 @@
 #include <array>
 #include <cstdint>
 #include <optional>
-#include <prehend/base/time.hpp>
+
+#include "common/base/time.hpp"
 
 namespace prehend::clock {
 

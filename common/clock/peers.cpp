@@ -1,4 +1,4 @@
-#include "peers.hpp"
+#include "common/clock/peers.hpp"
 
 #include <algorithm>
 #include <utility>
@@ -6,8 +6,8 @@
 namespace prehend::clock {
 namespace {
 
-constexpr std::size_t most_peers = 256;                // more than a rig has services
-constexpr std::size_t most_told = 64;                  // idl/Operation.idl
+constexpr std::size_t max_peers = 256;                 // more than a rig has services
+constexpr std::size_t max_told = 64;                   // idl/Operation.idl
 constexpr Duration memory = std::chrono::seconds(10);  // of who says nothing any more
 constexpr std::size_t process_bytes = 8;               // of a Participant
 
@@ -20,7 +20,7 @@ Peers::Heard Peers::hear(const v1::ClockBeacon& beacon, const Participant& from,
   forget(received);
   const std::string service = beacon.service().to_string();
   if (service == service_) return {};
-  if (!peers_.contains(service) && peers_.size() >= most_peers) return {};
+  if (!peers_.contains(service) && peers_.size() >= max_peers) return {};
   Peer& peer = peers_[service];
   const Time sent = from_ns(beacon.stamp_ns());
   peer.service = service;
@@ -48,7 +48,7 @@ v1::ClockBeacon Peers::beacon(Time now, Duration step) {
   beacon.stamp_ns(to_ns(now));
   beacon.step_ns(step.count());
   for (const auto& [service, peer] : peers_) {
-    if (beacon.peers().size() == most_told) break;
+    if (beacon.peers().size() == max_told) break;
     v1::ClockPeer told;
     told.service(service.c_str());
     told.sent_ns(to_ns(peer.sent));

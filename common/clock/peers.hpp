@@ -1,14 +1,13 @@
 #pragma once
 
-#include <prehend/idl/Operation.h>
-
 #include <array>
 #include <map>
 #include <optional>
-#include <prehend/base/time.hpp>
 #include <string>
 
-#include "offset_filter.hpp"
+#include "common/base/time.hpp"
+#include "common/clock/offset_filter.hpp"
+#include "idl/Operation.h"
 
 namespace prehend::clock {
 

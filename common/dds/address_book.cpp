@@ -1,4 +1,4 @@
-#include "address_book.hpp"
+#include "common/dds/address_book.hpp"
 
 #include <algorithm>
 
@@ -19,7 +19,7 @@ bool AddressBook::Entry::speaks_from(const std::optional<Ipv4>& source) const {
 }
 
 void AddressBook::Entry::add(const Ipv4& address) {
-  if (addresses.size() < most_addresses && !speaks_from(address)) addresses.push_back(address);
+  if (addresses.size() < max_addresses && !speaks_from(address)) addresses.push_back(address);
 }
 
 void AddressBook::Entry::update(const Announcement& said, Time now) {
@@ -28,24 +28,24 @@ void AddressBook::Entry::update(const Announcement& said, Time now) {
   heard = now;
 }
 
-Verdict AddressBook::judge(std::span<const std::uint8_t> message, std::optional<Ipv4> source,
-                           Time now) {
+PacketVerdict AddressBook::judge(std::span<const std::uint8_t> message, std::optional<Ipv4> source,
+                                 Time now) {
   const auto packet = read_packet(message);
-  if (!packet) return Verdict::malformed;
-  if (packet->for_others && !tells_of_others(packet->sender)) return Verdict::in_other_name;
+  if (!packet) return PacketVerdict::malformed;
+  if (packet->for_others && !tells_of_others(packet->sender)) return PacketVerdict::in_other_name;
   const auto& all = packet->announcements;
   const auto own = std::find_if(all.begin(), all.end(), [&](const Announcement& one) {
     return one.participant == packet->sender;
   });
   auto found = entries_.find(packet->sender);
   if (found == entries_.end()) {
-    if (own == all.end() || own->leaves) return Verdict::unannounced;
-    if (!make_room(source, now)) return Verdict::too_many;
+    if (own == all.end() || own->leaves) return PacketVerdict::unannounced;
+    if (!make_room(source, now)) return PacketVerdict::too_many;
     found = entries_.try_emplace(packet->sender).first;
     found->second.origin = source;
   } else if (!found->second.speaks_from(source) &&
              (own == all.end() || !found->second.silent(now))) {
-    return Verdict::elsewhere;
+    return PacketVerdict::elsewhere;
   }
   if (source) found->second.add(*source);
   found->second.heard = now;
@@ -59,7 +59,7 @@ Verdict AddressBook::judge(std::span<const std::uint8_t> message, std::optional<
     }
     told->second.update(other, now);
   }
-  return Verdict::pass;
+  return PacketVerdict::pass;
 }
 
 void AddressBook::add_own(const GuidPrefix& own) {
@@ -86,11 +86,11 @@ bool AddressBook::make_room(const std::optional<Ipv4>& origin, Time now) {
         std::count_if(entries_.begin(), entries_.end(),
                       [&](const auto& entry) { return entry.second.origin == origin; }));
   };
-  if (entries_.size() < most && (!counted || of_one() < most_of_one)) return true;
+  if (entries_.size() < max_participants && (!counted || of_one() < max_of_one)) return true;
   std::erase_if(entries_, [&](const auto& entry) {
     return entry.second.silent(now) && !servers_.contains(entry.first);
   });
-  return entries_.size() < most && (!counted || of_one() < most_of_one);
+  return entries_.size() < max_participants && (!counted || of_one() < max_of_one);
 }
 
 }  // namespace prehend::dds

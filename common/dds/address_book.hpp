@@ -9,12 +9,12 @@
 #include <string_view>
 #include <vector>
 
-#include "packet.hpp"
+#include "common/dds/packet.hpp"
 
 namespace prehend::dds {
 
 /// What becomes of a packet: it is passed on, or why it is not.
-enum class Verdict : std::uint8_t {
+enum class PacketVerdict : std::uint8_t {
   pass,
   malformed,
   unannounced,
@@ -47,7 +47,7 @@ class AddressBook {
 
   /// source: where it came from, 127.x.x.x for all of this host's own addresses; nothing where the
   /// transport does not tell, then addresses are not compared.
-  Verdict judge(std::span<const std::uint8_t> message, std::optional<Ipv4> source, Time now);
+  PacketVerdict judge(std::span<const std::uint8_t> message, std::optional<Ipv4> source, Time now);
 
   /// The participant that asks speaks from this host for ever.
   void add_own(const GuidPrefix& own);
@@ -55,9 +55,9 @@ class AddressBook {
   void add_server(const GuidPrefix& server, const Ipv4& address);
 
   std::size_t size() const { return entries_.size(); }
-  static constexpr std::size_t most = 4096;        // participants
-  static constexpr std::size_t most_of_one = 256;  // that first spoke from one other host
-  static constexpr std::size_t most_addresses = 16;
+  static constexpr std::size_t max_participants = 4096;
+  static constexpr std::size_t max_of_one = 256;  // that first spoke from one other host
+  static constexpr std::size_t max_addresses = 16;
 
  private:
   struct Entry {

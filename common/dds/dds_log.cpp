@@ -1,12 +1,13 @@
-#include "dds_log.hpp"
+#include "common/dds/dds_log.hpp"
 
 #include <chrono>
 #include <fastdds/dds/log/Log.hpp>
 #include <map>
 #include <mutex>
 #include <optional>
-#include <prehend/base/log.hpp>
 #include <utility>
+
+#include "common/base/log.hpp"
 
 namespace prehend::dds {
 
@@ -15,13 +16,13 @@ using eprosima::fastdds::dds::Log;
 namespace {
 
 /// Shared by the consumer, which Fast DDS calls in a thread of its own, and those that hear it.
-struct Ear {
+struct CaptureState {
   std::mutex mutex;
   std::optional<std::string> category;  // that somebody hears
   std::string heard;
 };
-Ear& ear() {
-  static auto* instance = new Ear;  // outlives the thread that logs
+CaptureState& capture() {
+  static auto* instance = new CaptureState;  // outlives the thread that logs
   return *instance;
 }
 
@@ -31,9 +32,9 @@ class Consumer : public eprosima::fastdds::dds::LogConsumer {
     if (entry.kind == Log::Info) return;
     const std::string_view category = entry.context.category ? entry.context.category : "";
     {
-      const std::scoped_lock lock(ear().mutex);
-      if (ear().category == category) {
-        ear().heard += (ear().heard.empty() ? "" : "; ") + entry.message;
+      const std::scoped_lock lock(capture().mutex);
+      if (capture().category == category) {
+        capture().heard += (capture().heard.empty() ? "" : "; ") + entry.message;
         return;
       }
     }
@@ -61,25 +62,25 @@ void DdsLog::install() {
   Log::RegisterConsumer(std::make_unique<Consumer>());
 }
 
-DdsLog::Hearing::Hearing(std::string category) {
+DdsLog::Capture::Capture(std::string category) {
   Log::Flush();
   Log::SetVerbosity(Log::Warning);
-  const std::scoped_lock lock(ear().mutex);
-  ear().category = std::move(category);
-  ear().heard.clear();
+  const std::scoped_lock lock(capture().mutex);
+  capture().category = std::move(category);
+  capture().heard.clear();
 }
 
-DdsLog::Hearing::~Hearing() {
+DdsLog::Capture::~Capture() {
   Log::Flush();
   Log::SetVerbosity(Log::Error);
-  const std::scoped_lock lock(ear().mutex);
-  ear().category.reset();
+  const std::scoped_lock lock(capture().mutex);
+  capture().category.reset();
 }
 
-std::string DdsLog::Hearing::text() const {
+std::string DdsLog::Capture::text() const {
   Log::Flush();
-  const std::scoped_lock lock(ear().mutex);
-  return ear().heard;
+  const std::scoped_lock lock(capture().mutex);
+  return capture().heard;
 }
 
 }  // namespace prehend::dds

@@ -12,12 +12,12 @@ class DdsLog {
   static void install();
 
   /// Collects the complaints of one category instead, for as long as it lives. One at a time.
-  class Hearing {
+  class Capture {
    public:
-    explicit Hearing(std::string category);
-    ~Hearing();
-    Hearing(const Hearing&) = delete;
-    Hearing& operator=(const Hearing&) = delete;
+    explicit Capture(std::string category);
+    ~Capture();
+    Capture(const Capture&) = delete;
+    Capture& operator=(const Capture&) = delete;
     /// All that has been said so far, in one line; empty when nothing has.
     std::string text() const;
   };

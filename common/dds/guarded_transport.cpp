@@ -1,16 +1,13 @@
-#include "guarded_transport.hpp"
+#include "common/dds/guarded_transport.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <prehend/base/clock.hpp>
 
-#include "passing_transport.hpp"
+#include "common/base/clock.hpp"
+#include "common/dds/pass_through_transport.hpp"
 
 namespace prehend::dds {
-
-namespace transport = eprosima::fastdds::rtps;
-namespace rtps = eprosima::fastrtps::rtps;
 
 namespace {
 
@@ -23,7 +20,7 @@ Count& count() {
   return *instance;
 }
 
-void add(Verdict reason, const Ipv4& source) {
+void add(PacketVerdict reason, const Ipv4& source) {
   const std::scoped_lock lock(count().mutex);
   Dropped& dropped = count().dropped[static_cast<std::size_t>(reason)];
   dropped.reason = reason;
@@ -31,16 +28,16 @@ void add(Verdict reason, const Ipv4& source) {
   dropped.last_source = fmt::format("{}", fmt::join(source, "."));
 }
 
-class Transport final : public PassingTransport {
+class Transport final : public PassThroughTransport {
  public:
   Transport(const transport::ChainingTransportDescriptor& descriptor, PacketGuard& guard)
-      : PassingTransport(descriptor), guard_(guard) {}
+      : PassThroughTransport(descriptor), guard_(guard) {}
   void receive(transport::TransportReceiverInterface* next, const rtps::octet* bytes,
                std::uint32_t size, const rtps::Locator_t& local,
                const rtps::Locator_t& remote) override {
     const Ipv4 source =
         low_level_transport_->is_local_locator(remote) ? Ipv4{127, 0, 0, 1} : ip_of(remote);
-    if (guard_.lets_pass({bytes, size}, source)) next->OnDataReceived(bytes, size, local, remote);
+    if (guard_.accepts({bytes, size}, source)) next->OnDataReceived(bytes, size, local, remote);
   }
 
  private:
@@ -64,14 +61,14 @@ Ipv4 ip_of(const rtps::Locator_t& locator) {
   return address;
 }
 
-bool PacketGuard::lets_pass(std::span<const std::uint8_t> message, const Ipv4& source) {
-  Verdict verdict;
+bool PacketGuard::accepts(std::span<const std::uint8_t> message, const Ipv4& source) {
+  PacketVerdict verdict;
   {
     const std::scoped_lock lock(mutex_);
     verdict = book_.judge(message, source, process_now());
   }
-  if (verdict != Verdict::pass) add(verdict, source);
-  return verdict == Verdict::pass;
+  if (verdict != PacketVerdict::pass) add(verdict, source);
+  return verdict == PacketVerdict::pass;
 }
 
 void PacketGuard::add_own(const GuidPrefix& own) {

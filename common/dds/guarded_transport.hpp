@@ -1,29 +1,24 @@
 #pragma once
 
-#include <fastdds/rtps/common/Locator.h>
-
 #include <cstdint>
 #include <memory>
 #include <mutex>
 #include <string>
 #include <vector>
 
-#include "address_book.hpp"
-
-namespace eprosima::fastdds::rtps {
-struct TransportDescriptorInterface;
-}
+#include "common/dds/address_book.hpp"
+#include "common/dds/fastdds.hpp"
 
 namespace prehend::dds {
 
 /// The address in a locator of UDPv4 or TCPv4.
-Ipv4 ip_of(const eprosima::fastrtps::rtps::Locator_t& locator);
+Ipv4 ip_of(const rtps::Locator_t& locator);
 
 /// Judges every packet that one participant receives by UDP, in the threads that receive them.
 class PacketGuard {
  public:
   explicit PacketGuard(bool serves) : book_(serves) {}
-  bool lets_pass(std::span<const std::uint8_t> message, const Ipv4& source);
+  bool accepts(std::span<const std::uint8_t> message, const Ipv4& source);
   void add_own(const GuidPrefix& own);
   void add_server(const GuidPrefix& server, const Ipv4& address);
 
@@ -34,13 +29,12 @@ class PacketGuard {
 
 /// The same transport, of UDPv4, with a guard before it, which must outlive it. Fast DDS 2.9.1 does
 /// not tell the source of what comes over TCP, so that is not guarded.
-std::shared_ptr<eprosima::fastdds::rtps::TransportDescriptorInterface> guarded(
-    std::shared_ptr<eprosima::fastdds::rtps::TransportDescriptorInterface> transport,
-    PacketGuard& guard);
+std::shared_ptr<transport::TransportDescriptorInterface> guarded(
+    std::shared_ptr<transport::TransportDescriptorInterface> transport, PacketGuard& guard);
 
 /// Packets of this process that were dropped for one reason.
 struct Dropped {
-  Verdict reason{};
+  PacketVerdict reason{};
   std::uint64_t count = 0;
   std::string last_source;  // "10.0.0.7"
 };

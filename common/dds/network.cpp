@@ -1,9 +1,6 @@
-#include "network.hpp"
+#include "common/dds/network.hpp"
 
 #include <arpa/inet.h>
-#include <fastdds/rtps/transport/TCPv4TransportDescriptor.h>
-#include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
-#include <fastrtps/utils/IPLocator.h>
 #include <fmt/format.h>
 #include <ifaddrs.h>
 #include <net/if.h>
@@ -20,20 +17,16 @@
 #include <map>
 #include <memory>
 #include <mutex>
-#include <prehend/base/log.hpp>
-#include <prehend/base/paths.hpp>
 #include <utility>
 
-#include "dds_log.hpp"
-#include "packet.hpp"
-#include "server_watch.hpp"
-#include "sites.hpp"
+#include "common/base/log.hpp"
+#include "common/base/paths.hpp"
+#include "common/dds/dds_log.hpp"
+#include "common/dds/packet.hpp"
+#include "common/dds/server_watch.hpp"
+#include "common/dds/wan_transport.hpp"
 
 namespace prehend::dds {
-
-namespace fdds = eprosima::fastdds::dds;
-namespace transport = eprosima::fastdds::rtps;
-namespace rtps = eprosima::fastrtps::rtps;
 
 namespace {
 
@@ -51,7 +44,7 @@ constexpr std::pair<const char*, const char*> variables[] = {
 /// A profile as it stands in its file. Each file is read once.
 Expected<fdds::DomainParticipantQos> load(const std::string& profile) {
   const std::string file = (share_directory() / "dds" / (profile + ".xml")).string();
-  const std::string mend = "put back the file from deploy/dds, or name it rightly in lab.network";
+  const std::string hint = "put back the file from deploy/dds, or name it rightly in lab.network";
   static std::mutex mutex;
   static std::map<std::string, fdds::DomainParticipantQos> known;
   const std::scoped_lock lock(mutex);
@@ -59,17 +52,17 @@ Expected<fdds::DomainParticipantQos> load(const std::string& profile) {
 
   std::error_code code;
   if (!std::filesystem::is_regular_file(file, code))
-    return fail("there is no such profile", file, mend);
+    return fail("there is no such profile", file, hint);
   auto* factory = fdds::DomainParticipantFactory::get_instance();
-  DdsLog::Hearing complaints("XMLPARSER");
+  DdsLog::Capture complaints("XMLPARSER");
   const auto loaded = factory->load_XML_profiles_file(file);
   fdds::DomainParticipantQos qos;
   const auto found = factory->get_participant_qos_from_profile(profile, qos);
   const std::string said = complaints.text();
-  if (!said.empty()) return fail("cannot be used: " + said, file, mend);
-  if (loaded != ReturnCode_t::RETCODE_OK) return fail("cannot be read", file, mend);
-  if (found != ReturnCode_t::RETCODE_OK)
-    return fail(fmt::format("has no participant profile \"{}\"", profile), file, mend);
+  if (!said.empty()) return fail("cannot be used: " + said, file, hint);
+  if (!succeeded(loaded)) return fail("cannot be read", file, hint);
+  if (!succeeded(found))
+    return fail(fmt::format("has no participant profile \"{}\"", profile), file, hint);
   known.emplace(file, qos);
   return qos;
 }
@@ -90,8 +83,7 @@ std::string violation(const std::string& profile, const fdds::DomainParticipantQ
       return "it is not confined to 127.0.0.1";
   }
   const auto protocol = qos.wire_protocol().builtin.discovery_config.discoveryProtocol;
-  const auto due =
-      profile == "server" ? rtps::DiscoveryProtocol_t::CLIENT : rtps::DiscoveryProtocol_t::SIMPLE;
+  const auto due = profile == "server" ? DiscoveryProtocol::CLIENT : DiscoveryProtocol::SIMPLE;
   if (protocol != due)
     return profile == "server" ? "discoveryProtocol is not CLIENT"
                                : "discoveryProtocol is not SIMPLE";
@@ -114,16 +106,16 @@ Expected<void> need_interface(const std::string& profile) {
 }
 
 Expected<void> use_servers(fdds::DomainParticipantQos& qos, const Network& network,
-                           const Discovering& discovering) {
+                           const DiscoveryOptions& discovery) {
   auto& builtin = qos.wire_protocol().builtin;
   // Seen with 2.9.1: such clients never find each other.
   if (!network.keys.empty())
     return fail("discovery servers of Fast DDS 2.9 cannot be secured", "lab.keys",
                 "use lab.network = lan");
-  if (!discovering.serves.empty()) {
-    const auto own = resolve(discovering.serves, first_server_port);
+  if (!discovery.serves.empty()) {
+    const auto own = resolve(discovery.serves, first_server_port);
     if (!own) return tl::unexpected(own.error());
-    builtin.discovery_config.discoveryProtocol = rtps::DiscoveryProtocol_t::SERVER;
+    builtin.discovery_config.discoveryProtocol = DiscoveryProtocol::SERVER;
     builtin.metatrafficUnicastLocatorList.push_back(locator_of(*own));
     qos.wire_protocol().prefix = server_prefix(own->port);
     // A server that is started again knows nobody, and its clients tell it of themselves anew only
@@ -133,8 +125,8 @@ Expected<void> use_servers(fdds::DomainParticipantQos& qos, const Network& netwo
   } else if (network.servers.empty()) {
     return fail("names no discovery server", "lab.server",
                 "give ADDRESS:PORT of `prehend discovery-server`");
-  } else if (discovering.sees_all) {
-    builtin.discovery_config.discoveryProtocol = rtps::DiscoveryProtocol_t::SUPER_CLIENT;
+  } else if (discovery.sees_all) {
+    builtin.discovery_config.discoveryProtocol = DiscoveryProtocol::SUPER_CLIENT;
   }
   for (const std::string& text : network.servers) {
     const auto address = resolve(text, first_server_port);
@@ -196,8 +188,8 @@ rtps::Locator_t locator_of(const Address& address) {
 }
 
 Expected<fdds::DomainParticipantQos> participant_qos(const Network& network,
-                                                     const Discovering& discovering) {
-  take_charge();
+                                                     const DiscoveryOptions& discovery) {
+  isolate_from_environment();
   constexpr std::string_view profiles[] = {"laptop", "lan", "server", "wan"};
   if (std::find(std::begin(profiles), std::end(profiles), network.profile) == std::end(profiles))
     return fail("must be laptop, lan, server or wan, not " + network.profile, "lab.network");
@@ -217,7 +209,7 @@ Expected<fdds::DomainParticipantQos> participant_qos(const Network& network,
     if (const auto joined = join_sites(*qos, network); !joined)
       return tl::unexpected(joined.error());
   if (network.profile == "server")
-    if (const auto used = use_servers(*qos, network, discovering); !used)
+    if (const auto used = use_servers(*qos, network, discovery); !used)
       return tl::unexpected(used.error());
   return qos;
 }
@@ -228,7 +220,7 @@ bool is_server(const rtps::GuidPrefix_t& prefix) {
   return is_server(bytes);
 }
 
-std::vector<Error> outside_influence() {
+std::vector<Error> environment_overrides() {
   std::vector<Error> found;
   for (const auto& [name, effect] : variables)
     if (const char* value = std::getenv(name))
@@ -244,11 +236,11 @@ std::vector<Error> outside_influence() {
   return found;
 }
 
-void take_charge() {
+void isolate_from_environment() {
   static std::mutex mutex;
   static bool first = true;
   const std::scoped_lock lock(mutex);
-  for (const Error& influence : outside_influence())
+  for (const Error& influence : environment_overrides())
     if (first || std::getenv(influence.where.c_str())) log::warning("{}", influence.message());
   for (const auto& [name, effect] : variables)
     if (std::getenv(name)) ::unsetenv(name);

@@ -5,9 +5,11 @@
 #include <fastdds/dds/domain/qos/DomainParticipantQos.hpp>
 #include <filesystem>
 #include <optional>
-#include <prehend/base/error.hpp>
 #include <string>
 #include <vector>
+
+#include "common/base/error.hpp"
+#include "common/dds/fastdds.hpp"
 
 namespace prehend::dds {
 
@@ -23,7 +25,7 @@ struct Network {
 };
 
 /// What a participant is to the discovery of a network.
-struct Discovering {
+struct DiscoveryOptions {
   bool sees_all = false;  // server: is told of topics that it neither reads nor writes
   std::string serves;     // ADDRESS:PORT at which it is itself the server; empty: it is none
 };
@@ -42,16 +44,16 @@ Expected<Address> resolve(const std::string& text, std::optional<std::uint16_t> 
 /// that it does not understand: here both are errors, and so is a profile that is not what its name
 /// says.
 Expected<eprosima::fastdds::dds::DomainParticipantQos> participant_qos(
-    const Network& network, const Discovering& discovering = {});
+    const Network& network, const DiscoveryOptions& discovery = {});
 
 /// Is this the prefix of a discovery server's GUID?
-bool is_server(const eprosima::fastrtps::rtps::GuidPrefix_t& prefix);
+bool is_server(const rtps::GuidPrefix_t& prefix);
 
 /// What in the environment and the working directory would have changed DDS behind our back.
-std::vector<Error> outside_influence();
+std::vector<Error> environment_overrides();
 
 /// Switches that off, and sends what Fast DDS has to say to our log instead of standard output.
 /// Must come before every participant; participant_qos() sees to it.
-void take_charge();
+void isolate_from_environment();
 
 }  // namespace prehend::dds

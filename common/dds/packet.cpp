@@ -1,4 +1,4 @@
-#include "packet.hpp"
+#include "common/dds/packet.hpp"
 
 #include <algorithm>
 #include <string_view>
@@ -16,7 +16,7 @@ constexpr std::uint8_t statistics = 0x80;                          // of Fast DD
 
 constexpr std::size_t header_size = 20, part_header_size = 4, statistics_size = 56;
 constexpr std::size_t info_source_size = 20, prefix_in_info_source = 8;
-constexpr std::size_t least_data_size = 20, least_fragment_size = 32;
+constexpr std::size_t min_data_size = 20, min_fragment_size = 32;
 
 // Flags of data.
 constexpr std::uint8_t little_endian_flag = 0x01, parameters_flag = 0x02, data_flag = 0x04,
@@ -76,7 +76,7 @@ class Telling {
 
   bool read(Bytes part, std::uint8_t kind, std::uint8_t flags) {
     const Numbers numbers{part, (flags & little_endian_flag) != 0};
-    if (part.size() < (kind == data ? least_data_size : least_fragment_size)) return false;
+    if (part.size() < (kind == data ? min_data_size : min_fragment_size)) return false;
     // Entities are not numbers: their bytes do not change places.
     const std::uint32_t writer = Numbers{part, false}.four(8);
     if (writer != participants && writer != topics && writer != writers && writer != readers &&

@@ -3,9 +3,10 @@
 #include <array>
 #include <cstdint>
 #include <optional>
-#include <prehend/base/time.hpp>
 #include <span>
 #include <vector>
+
+#include "common/base/time.hpp"
 
 namespace prehend::dds {
 

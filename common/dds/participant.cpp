@@ -1,7 +1,5 @@
-#include "participant.hpp"
+#include "common/dds/participant.hpp"
 
-#include <fastdds/rtps/transport/SocketTransportDescriptor.h>
-#include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -12,22 +10,19 @@
 #include <fastdds/dds/topic/Topic.hpp>
 #include <map>
 #include <mutex>
-#include <prehend/base/log.hpp>
 #include <set>
 
-#include "gate.hpp"
-#include "guarded_transport.hpp"
-#include "peers.hpp"
-#include "server_watch.hpp"
+#include "common/base/log.hpp"
+#include "common/dds/guarded_transport.hpp"
+#include "common/dds/peers.hpp"
+#include "common/dds/serialized_transport.hpp"
+#include "common/dds/server_watch.hpp"
 
 namespace prehend::dds {
 
-namespace fdds = eprosima::fastdds::dds;
-namespace rtps = eprosima::fastrtps::rtps;
-
 namespace {
 
-eprosima::fastrtps::Duration_t duration(std::chrono::milliseconds time) {
+DdsDuration duration(std::chrono::milliseconds time) {
   return {static_cast<int32_t>(time.count() / 1000),
           static_cast<uint32_t>(time.count() % 1000) * 1'000'000u};
 }
@@ -40,13 +35,14 @@ GuidPrefix prefix_of(const rtps::GuidPrefix_t& from) {
 
 /// What a writer and a reader of one topic set alike.
 template <class Qos>
-void apply(Qos& qos, const TopicQos& topic, int depth, bool lockstep) {
+void apply(Qos& qos, const TopicQos& contract, int depth, bool lockstep) {
   const bool all = depth == 0 || lockstep;
-  qos.reliability().kind = topic.reliable || lockstep ? fdds::RELIABLE_RELIABILITY_QOS
-                                                      : fdds::BEST_EFFORT_RELIABILITY_QOS;
+  qos.reliability().kind = contract.reliable || lockstep ? fdds::RELIABLE_RELIABILITY_QOS
+                                                         : fdds::BEST_EFFORT_RELIABILITY_QOS;
   // In lockstep nothing may be missed by a service that is still being discovered.
-  qos.durability().kind = topic.transient_local || lockstep ? fdds::TRANSIENT_LOCAL_DURABILITY_QOS
-                                                            : fdds::VOLATILE_DURABILITY_QOS;
+  qos.durability().kind = contract.transient_local || lockstep
+                              ? fdds::TRANSIENT_LOCAL_DURABILITY_QOS
+                              : fdds::VOLATILE_DURABILITY_QOS;
   qos.history().kind = all ? fdds::KEEP_ALL_HISTORY_QOS : fdds::KEEP_LAST_HISTORY_QOS;
   if (!all) qos.history().depth = depth;
   // Unlimited, allocated as needed: instances come and go, pictures are large.
@@ -54,17 +50,16 @@ void apply(Qos& qos, const TopicQos& topic, int depth, bool lockstep) {
   qos.resource_limits().max_instances = 0;
   qos.resource_limits().max_samples_per_instance = 0;
   qos.resource_limits().allocated_samples = 1;
-  qos.endpoint().history_memory_policy =
-      eprosima::fastrtps::rtps::PREALLOCATED_WITH_REALLOC_MEMORY_MODE;
+  qos.endpoint().history_memory_policy = rtps::PREALLOCATED_WITH_REALLOC_MEMORY_MODE;
   // Data sharing fails between users and containers and delays restarts by seconds.
   qos.data_sharing().off();
   if (lockstep) return;
-  if (topic.exclusive) qos.ownership().kind = fdds::EXCLUSIVE_OWNERSHIP_QOS;
-  if (topic.deadline.count() > 0) qos.deadline().period = duration(topic.deadline);
+  if (contract.exclusive_ownership) qos.ownership().kind = fdds::EXCLUSIVE_OWNERSHIP_QOS;
+  if (contract.deadline.count() > 0) qos.deadline().period = duration(contract.deadline);
 }
 
-constexpr std::chrono::milliseconds longest_goodbye{1000};
-constexpr std::size_t most_attempts = 4;  // at joining a secured lab
+constexpr std::chrono::milliseconds max_goodbye{1000};
+constexpr std::size_t max_attempts = 4;  // at joining a secured lab
 
 }  // namespace
 
@@ -74,7 +69,7 @@ std::uint64_t instance_hash(const std::array<std::uint8_t, 16>& key) {
   return hash;
 }
 
-std::uint64_t instance_hash(const eprosima::fastrtps::rtps::InstanceHandle_t& handle) {
+std::uint64_t instance_hash(const rtps::InstanceHandle_t& handle) {
   std::array<std::uint8_t, 16> key;
   std::copy_n(static_cast<const std::uint8_t*>(handle.value), key.size(), key.begin());
   return instance_hash(key);
@@ -86,7 +81,7 @@ struct Participant::State {
   // These outlive the participant.
   std::optional<Peers> peers;
   std::optional<PacketGuard> packets;
-  Gate gate;
+  SerializedTransport serializer;
   fdds::DomainParticipant* participant = nullptr;
   fdds::Publisher* publisher = nullptr;
   fdds::Subscriber* subscriber = nullptr;
@@ -97,8 +92,8 @@ struct Participant::State {
     servers.reset();
     if (!participant) return;
     // Otherwise its leaving may overtake its last words, which then nobody hears.
-    if (publisher) publisher->wait_for_acknowledgments(duration(longest_goodbye));
-    gate.close();
+    if (publisher) publisher->wait_for_acknowledgments(duration(max_goodbye));
+    serializer.close();
     participant->delete_contained_entities();
     fdds::DomainParticipantFactory::get_instance()->delete_participant(participant);
   }
@@ -127,7 +122,7 @@ struct Participant::State {
     if (participant->find_type(type.get_type_name()).empty()) {
       type.get()->auto_fill_type_object(false);
       type.get()->auto_fill_type_information(false);
-      if (type.register_type(participant) != ReturnCode_t::RETCODE_OK)
+      if (!succeeded(type.register_type(participant)))
         return fail("type of the topic cannot be registered", std::string(name));
     }
     fdds::Topic* made =
@@ -153,7 +148,7 @@ Expected<Participant> Participant::create(const ParticipantOptions& options) {
     const rtps::GUID_t& own = made->state_->participant->guid();
     const auto undecided = made->state_->peers->wait_until_decided(own);
     if (!undecided) return made;
-    if (silent.size() == most_attempts || !silent.insert(undecided->guid).second) {
+    if (silent.size() == max_attempts || !silent.insert(undecided->guid).second) {
       log::warning("{} neither lets this process in nor refuses it", undecided->name);
       return made;
     }
@@ -185,16 +180,15 @@ Expected<Participant> Participant::join(const ParticipantOptions& options) {
   // holds them.
   if (options.listener)
     for (auto& transport : qos->transport().user_transports)
-      if (auto* socket =
-              dynamic_cast<eprosima::fastdds::rtps::SocketTransportDescriptor*>(transport.get()))
+      if (auto* socket = dynamic_cast<transport::SocketTransportDescriptor*>(transport.get()))
         socket->receiveBufferSize = 1 << 24;
   state->packets.emplace(!options.serves.empty());
   // Over TCP Fast DDS does not tell who sent a packet; there TLS decides who connects.
   for (auto& transport : qos->transport().user_transports)
-    if (dynamic_cast<eprosima::fastdds::rtps::UDPv4TransportDescriptor*>(transport.get()))
+    if (dynamic_cast<transport::UDPv4TransportDescriptor*>(transport.get()))
       transport = guarded(transport, *state->packets);
   for (auto& transport : qos->transport().user_transports)
-    transport = gated(transport, state->gate);
+    transport = serialized(transport, state->serializer);
   for (const auto& server : qos->wire_protocol().builtin.discovery_config.m_DiscoveryServers)
     for (const auto& locator : server.metatrafficUnicastLocatorList)
       state->packets->add_server(prefix_of(server.guidPrefix), ip_of(locator));
@@ -239,52 +233,54 @@ GuidPrefix Participant::identity() const {
   return prefix_of(state_->participant->guid().guidPrefix);
 }
 
-Expected<TopicQos> Participant::table_entry(std::string_view name) {
-  const TopicQos* topic = find_topic(name);
-  if (!topic) return fail("is not in the table of topics", std::string(name));
-  return *topic;
+Expected<void> Participant::confirm_listed(std::string_view topic) {
+  if (!find_topic(topic)) return fail("is not in the table of topics", std::string(topic));
+  return {};
 }
 
 fdds::Subscriber* Participant::subscriber() {
   return state_->subscriber;
 }
 
-Expected<fdds::DataWriter*> Participant::make_writer(const TopicQos& topic, fdds::TypeSupport type,
-                                                     bool raw) {
-  const auto handle = state_->topic(topic.name, type);
+Expected<fdds::DataWriter*> Participant::make_writer(std::string_view topic,
+                                                     const TopicQos& contract,
+                                                     fdds::TypeSupport type, bool raw) {
+  const auto handle = state_->topic(topic, type);
   if (!handle) return tl::unexpected(handle.error());
   fdds::DataWriterQos qos = state_->publisher->get_default_datawriter_qos();
-  apply(qos, topic, topic.writer_depth, state_->options.lockstep);
-  if (topic.lifespan.count() > 0 && !state_->options.lockstep)
-    qos.lifespan().duration = duration(topic.lifespan);
+  apply(qos, contract, contract.writer_depth, state_->options.lockstep);
+  if (contract.lifespan.count() > 0 && !state_->options.lockstep)
+    qos.lifespan().duration = duration(contract.lifespan);
   qos.writer_data_lifecycle().autodispose_unregistered_instances = !raw;
   // What is kept for good takes what it needs: otherwise every buffer is as large as the largest
   // message. (The end of an instance without its key, as raw topics have it, needs such a one.)
-  if (!raw && topic.writer_depth == 0)
-    qos.endpoint().history_memory_policy = eprosima::fastrtps::rtps::DYNAMIC_RESERVE_MEMORY_MODE;
+  if (!raw && contract.writer_depth == 0)
+    qos.endpoint().history_memory_policy = rtps::DYNAMIC_RESERVE_MEMORY_MODE;
   // With the default of 3 s a lost single sample is noticed very late.
   qos.reliable_writer_qos().times.heartbeatPeriod = duration(std::chrono::milliseconds(100));
   qos.reliability().max_blocking_time = duration(std::chrono::milliseconds(100));
   fdds::DataWriter* writer = state_->publisher->create_datawriter(*handle, qos);
   if (!writer)
-    return fail("writer cannot be created", std::string(topic.name),
+    return fail("writer cannot be created", std::string(topic),
                 state_->keys ? "do the keys of this process permit it? prehend keys show" : "");
   return writer;
 }
 
-Expected<fdds::DataReader*> Participant::make_reader(const TopicQos& topic, fdds::TypeSupport type,
+Expected<fdds::DataReader*> Participant::make_reader(std::string_view topic,
+                                                     const TopicQos& contract,
+                                                     fdds::TypeSupport type,
                                                      fdds::DataReaderListener* listener, bool raw,
                                                      bool ask_for_keys) {
-  const auto handle = state_->topic(topic.name, type);
+  const auto handle = state_->topic(topic, type);
   if (!handle) return tl::unexpected(handle.error());
   fdds::DataReaderQos qos = state_->subscriber->get_default_datareader_qos();
-  apply(qos, topic, topic.reader_depth, state_->options.lockstep);
+  apply(qos, contract, contract.reader_depth, state_->options.lockstep);
   fdds::StatusMask mask = fdds::StatusMask::data_available();
   if (raw) mask << fdds::StatusMask::subscription_matched();
   if (ask_for_keys) qos.expects_inline_qos(true);
   fdds::DataReader* reader = state_->subscriber->create_datareader(*handle, qos, listener, mask);
   if (!reader)
-    return fail("reader cannot be created", std::string(topic.name),
+    return fail("reader cannot be created", std::string(topic),
                 state_->keys ? "do the keys of this process permit it? prehend keys show" : "");
   return reader;
 }

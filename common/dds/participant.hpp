@@ -10,15 +10,17 @@
 #include <functional>
 #include <map>
 #include <memory>
-#include <prehend/base/error.hpp>
-#include <prehend/base/time.hpp>
 #include <string>
+#include <string_view>
 #include <vector>
 
-#include "network.hpp"
-#include "packet.hpp"
-#include "security.hpp"
-#include "topics.hpp"
+#include "common/base/error.hpp"
+#include "common/base/time.hpp"
+#include "common/dds/fastdds.hpp"
+#include "common/dds/network.hpp"
+#include "common/dds/packet.hpp"
+#include "common/dds/security.hpp"
+#include "common/dds/topics.hpp"
 
 namespace prehend::dds {
 
@@ -45,7 +47,7 @@ struct SampleInfo {
 };
 
 std::uint64_t instance_hash(const std::array<std::uint8_t, 16>& key);
-std::uint64_t instance_hash(const eprosima::fastrtps::rtps::InstanceHandle_t& handle);
+std::uint64_t instance_hash(const rtps::InstanceHandle_t& handle);
 
 template <class T>
 struct Sample {
@@ -59,12 +61,11 @@ class Writer {
  public:
   explicit Writer(eprosima::fastdds::dds::DataWriter* writer) : writer_(writer) {}
   /// False when the sample could not be queued (it timed out on a full history).
-  bool write(const T& sample) { return writer_->write(const_cast<T*>(&sample)); }
+  bool write(const T& sample) { return succeeded(writer_->write(const_cast<T*>(&sample))); }
   /// Tells readers that the instance with this sample's key is gone, and forgets it.
   bool dispose(const T& key) {
     auto* sample = const_cast<T*>(&key);
-    return writer_->unregister_instance(sample, writer_->lookup_instance(sample)) ==
-           ReturnCode_t::RETCODE_OK;
+    return succeeded(writer_->unregister_instance(sample, writer_->lookup_instance(sample)));
   }
   eprosima::fastdds::dds::DataWriter& raw() { return *writer_; }
 
@@ -84,7 +85,7 @@ class Reader {
     while (true) {
       Sample<T> sample;
       eprosima::fastdds::dds::SampleInfo info;
-      if (reader_->take_next_sample(&sample.data, &info) != ReturnCode_t::RETCODE_OK) break;
+      if (!succeeded(reader_->take_next_sample(&sample.data, &info))) break;
       sample.info.gone = !info.valid_data;
       sample.info.sent = from_ns(info.source_timestamp.to_ns());
       sample.info.instance = instance_hash(info.instance_handle);
@@ -115,9 +116,9 @@ class Reader {
 /// A type whose messages may be damaged: what the generated code throws over some of them would end
 /// the process, in a thread of Fast DDS.
 template <class P>
-class Careful final : public P {
+class NoThrowPubSubType final : public P {
  public:
-  bool deserialize(eprosima::fastrtps::rtps::SerializedPayload_t* payload, void* data) override {
+  bool deserialize(rtps::SerializedPayload_t* payload, void* data) override {
     try {
       return P::deserialize(payload, data);
     } catch (const std::exception&) {
@@ -126,7 +127,7 @@ class Careful final : public P {
   }
 };
 
-/// A place in the DDS domain. QoS comes from topic_table, transport from the profile. Every call is
+/// A place in the DDS domain. QoS comes from topics.hpp, transport from the profile. Every call is
 /// safe from one thread at a time; each writer and reader likewise.
 class Participant {
  public:
@@ -147,9 +148,10 @@ class Participant {
 
   template <class P>
   Expected<Writer<typename P::type>> writer(const Topic<P>& topic) {
-    const auto qos = table_entry(topic.name);
-    if (!qos) return tl::unexpected(qos.error());
-    auto made = make_writer(*qos, eprosima::fastdds::dds::TypeSupport(new Careful<P>()));
+    static_assert(is_listed<P>, "typed_topics in topics.hpp lacks this topic");
+    if (const auto known = confirm_listed(topic.name); !known) return tl::unexpected(known.error());
+    auto made = make_writer(topic.name, topic.qos,
+                            eprosima::fastdds::dds::TypeSupport(new NoThrowPubSubType<P>()));
     if (!made) return tl::unexpected(made.error());
     return Writer<typename P::type>(*made);
   }
@@ -157,9 +159,11 @@ class Participant {
   template <class P>
   Expected<Reader<typename P::type>> reader(
       const Topic<P>& topic, eprosima::fastdds::dds::DataReaderListener* listener = nullptr) {
-    const auto qos = table_entry(topic.name);
-    if (!qos) return tl::unexpected(qos.error());
-    auto made = make_reader(*qos, eprosima::fastdds::dds::TypeSupport(new Careful<P>()), listener);
+    static_assert(is_listed<P>, "typed_topics in topics.hpp lacks this topic");
+    if (const auto known = confirm_listed(topic.name); !known) return tl::unexpected(known.error());
+    auto made =
+        make_reader(topic.name, topic.qos,
+                    eprosima::fastdds::dds::TypeSupport(new NoThrowPubSubType<P>()), listener);
     if (!made) return tl::unexpected(made.error());
     return Reader<typename P::type>(*made);
   }
@@ -170,13 +174,14 @@ class Participant {
   struct State;
   explicit Participant(std::unique_ptr<State> state);
   static Expected<Participant> join(const ParticipantOptions& options);
-  static Expected<TopicQos> table_entry(std::string_view topic);
+  static Expected<void> confirm_listed(std::string_view topic);
   Expected<eprosima::fastdds::dds::DataWriter*> make_writer(
-      const TopicQos& topic, eprosima::fastdds::dds::TypeSupport type, bool raw = false);
+      std::string_view topic, const TopicQos& contract, eprosima::fastdds::dds::TypeSupport type,
+      bool raw = false);
   /// raw: the reader is told also of matches; the writer unregisters an instance without disposing
   /// it. ask_for_keys: writers shall send them beside the samples.
   Expected<eprosima::fastdds::dds::DataReader*> make_reader(
-      const TopicQos& topic, eprosima::fastdds::dds::TypeSupport type,
+      std::string_view topic, const TopicQos& contract, eprosima::fastdds::dds::TypeSupport type,
       eprosima::fastdds::dds::DataReaderListener* listener, bool raw = false,
       bool ask_for_keys = false);
   eprosima::fastdds::dds::Subscriber* subscriber();

@@ -1,10 +1,9 @@
-#include "peers.hpp"
+#include "common/dds/peers.hpp"
 
 #include <algorithm>
 
 namespace prehend::dds {
 
-namespace rtps = eprosima::fastrtps::rtps;
 using std::chrono::milliseconds;
 
 namespace {
@@ -13,7 +12,7 @@ namespace {
 constexpr milliseconds quiet{400};
 // A handshake takes some 100 ms, and a lost message of it is sent again after 500 ms.
 constexpr milliseconds patience{1500}, longer_patience{3000};
-constexpr std::size_t most_peers = 1024, most_reasons = 32;
+constexpr std::size_t max_peers = 1024, max_reasons = 32;
 
 }  // namespace
 
@@ -80,7 +79,7 @@ void Peers::meet(const rtps::ParticipantProxyData& info) {
   const std::scoped_lock lock(mutex_);
   if (peer.secured && !authority_) note(peer.name + ", which is secured while this process is not");
   // Only who is to be judged, and not without bound.
-  if (!authority_ || peers_.size() >= most_peers) return;
+  if (!authority_ || peers_.size() >= max_peers) return;
   peer.decided = !peer.secured;
   newest_ = peer.met;
   peers_.insert_or_assign(info.m_guid, std::move(peer));
@@ -105,7 +104,7 @@ void Peers::refuse(const Peer& peer) {
 }
 
 void Peers::note(const std::string& whom) {
-  if (refused_.size() < most_reasons || refused_.contains(whom)) ++refused_[whom];
+  if (refused_.size() < max_reasons || refused_.contains(whom)) ++refused_[whom];
 }
 
 }  // namespace prehend::dds

@@ -15,7 +15,7 @@ namespace prehend::dds {
 class Peers : public eprosima::fastdds::dds::DomainParticipantListener {
  public:
   using DomainParticipant = eprosima::fastdds::dds::DomainParticipant;
-  using Guid = eprosima::fastrtps::rtps::GUID_t;
+  using Guid = rtps::GUID_t;
 
   /// next: told of everything as well, or nullptr. authority: of our own keys; nothing: we have
   /// none.
@@ -35,16 +35,14 @@ class Peers : public eprosima::fastdds::dds::DomainParticipantListener {
   };
   std::optional<Undecided> wait_until_decided(const Guid& own) const;
 
-  void on_participant_discovery(
-      DomainParticipant* participant,
-      eprosima::fastrtps::rtps::ParticipantDiscoveryInfo&& found) override;
-  void onParticipantAuthentication(
-      DomainParticipant* participant,
-      eprosima::fastrtps::rtps::ParticipantAuthenticationInfo&& info) override;
+  void on_participant_discovery(DomainParticipant* participant,
+                                rtps::ParticipantDiscoveryInfo&& found) override;
+  void onParticipantAuthentication(DomainParticipant* participant,
+                                   rtps::ParticipantAuthenticationInfo&& info) override;
   void on_publisher_discovery(DomainParticipant* participant,
-                              eprosima::fastrtps::rtps::WriterDiscoveryInfo&& info) override;
+                              rtps::WriterDiscoveryInfo&& info) override;
   void on_subscriber_discovery(DomainParticipant* participant,
-                               eprosima::fastrtps::rtps::ReaderDiscoveryInfo&& info) override;
+                               rtps::ReaderDiscoveryInfo&& info) override;
 
  private:
   using Clock = std::chrono::steady_clock;
@@ -55,7 +53,7 @@ class Peers : public eprosima::fastdds::dds::DomainParticipantListener {
     Clock::time_point met = Clock::now();
   };
 
-  void meet(const eprosima::fastrtps::rtps::ParticipantProxyData& info);
+  void meet(const rtps::ParticipantProxyData& info);
   void decide(const Guid& guid, bool let_in);
   void refuse(const Peer& peer);
   void note(const std::string& whom);

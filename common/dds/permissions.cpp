@@ -1,4 +1,4 @@
-#include "permissions.hpp"
+#include "common/dds/permissions.hpp"
 
 #include <fmt/format.h>
 #include <tinyxml2.h>
@@ -37,9 +37,9 @@ std::string child(const XMLElement* parent, const char* name) {
 
 }  // namespace
 
-Permissions least_permissions(Role role) {
+Permissions min_permissions(Role role) {
   Permissions permissions;
-  for (const TopicQos& topic : topic_table) {
+  for (const TopicInfo& topic : topic_table) {
     if (may_write(role, topic)) permissions.writes.emplace(topic.name);
     if (may_read(role, topic)) permissions.reads.emplace(topic.name);
   }

@@ -1,11 +1,11 @@
 #pragma once
 
-#include <prehend/base/error.hpp>
 #include <set>
 #include <string>
 #include <string_view>
 
-#include "topics.hpp"
+#include "common/base/error.hpp"
+#include "common/dds/topics.hpp"
 
 /// Who may write and read what, from topic_table, as the texts of DDS Security that say so.
 namespace prehend::dds {
@@ -19,7 +19,7 @@ struct Permissions {
 };
 
 /// The least that a role needs.
-Permissions least_permissions(Role role);
+Permissions min_permissions(Role role);
 
 /// The rules of the lab: only who is authenticated joins, and only what is permitted is written and
 /// read; discovery, liveliness and all samples are encrypted.

@@ -1,4 +1,4 @@
-#include "raw.hpp"
+#include "common/dds/raw.hpp"
 
 #include <algorithm>
 #include <cstring>
@@ -9,9 +9,6 @@
 #include <set>
 
 namespace prehend::dds {
-
-namespace fdds = eprosima::fastdds::dds;
-namespace rtps = eprosima::fastrtps::rtps;
 
 namespace {
 
@@ -69,8 +66,8 @@ class RawType : public fdds::TopicDataType {
   KeyOf key_;
 };
 
-std::chrono::milliseconds milliseconds_of(const eprosima::fastrtps::Duration_t& period) {
-  if (period == eprosima::fastrtps::c_TimeInfinite) return std::chrono::milliseconds(0);
+std::chrono::milliseconds milliseconds_of(const DdsDuration& period) {
+  if (period == endless) return std::chrono::milliseconds(0);
   return std::chrono::milliseconds(period.to_ns() / 1'000'000);
 }
 
@@ -79,7 +76,7 @@ std::chrono::milliseconds milliseconds_of(const eprosima::fastrtps::Duration_t& 
 void Discovery::on_publisher_discovery(fdds::DomainParticipant*,
                                        rtps::WriterDiscoveryInfo&& discovered) {
   const rtps::WriterProxyData& info = discovered.info;
-  Discovered found;
+  DiscoveredWriter found;
   found.writer = guid_of(info.guid());
   found.gone = discovered.status == rtps::WriterDiscoveryInfo::REMOVED_WRITER;
   found.topic.name = info.topicName().to_string();
@@ -89,11 +86,11 @@ void Discovery::on_publisher_discovery(fdds::DomainParticipant*,
   qos.reliable = info.m_qos.m_reliability.kind == fdds::RELIABLE_RELIABILITY_QOS;
   // Whatever lasts longer than transient local we can neither ask for nor offer.
   qos.transient_local = info.m_qos.m_durability.kind != fdds::VOLATILE_DURABILITY_QOS;
-  qos.exclusive = info.m_qos.m_ownership.kind == fdds::EXCLUSIVE_OWNERSHIP_QOS;
+  qos.exclusive_ownership = info.m_qos.m_ownership.kind == fdds::EXCLUSIVE_OWNERSHIP_QOS;
   qos.deadline = milliseconds_of(info.m_qos.m_deadline.period);
   qos.lifespan = milliseconds_of(info.m_qos.m_lifespan.duration);
-  const TopicQos* known = find_topic(found.topic.name);
-  qos.writer_depth = known ? known->writer_depth : qos.transient_local ? 1 : 64;
+  const TopicInfo* known = find_topic(found.topic.name);
+  qos.writer_depth = known ? known->qos.writer_depth : qos.transient_local ? 1 : 64;
   for (const std::string& name : info.m_qos.m_partition.getNames()) found.rigs.push_back(name);
   found_(found);
 }
@@ -121,7 +118,7 @@ class RawReader::Listener : public fdds::DataReaderListener {
     while (true) {
       fdds::SampleInfo& info = infos.emplace_back();
       RawSample& sample = samples.emplace_back();
-      if (reader->take_next_sample(&sample, &info) != ReturnCode_t::RETCODE_OK) break;
+      if (!succeeded(reader->take_next_sample(&sample, &info))) break;
       sample.instance = guid_of(info.instance_handle);
       sample.writer = guid_of(info.sample_identity.writer_guid());
       sample.sequence = info.sample_identity.sequence_number().to64long();
@@ -156,7 +153,7 @@ class RawReader::Listener : public fdds::DataReaderListener {
     bool live = false;
   };
   /// Instances whose end is remembered: what becomes of others next may be told wrongly.
-  static constexpr std::size_t most_ended = 4096;
+  static constexpr std::size_t max_ended = 4096;
 
   /// The wire says whether an instance was disposed or unregistered, the middleware only how it is
   /// now: with several changes at once, the next life of the instance tells how this one ended.
@@ -194,7 +191,7 @@ class RawReader::Listener : public fdds::DataReaderListener {
   /// Instances come and go without number: of those that have ended only the last are remembered.
   void end(const Guid& instance) {
     ended_.push_back(instance);
-    if (ended_.size() <= most_ended) return;
+    if (ended_.size() <= max_ended) return;
     const Guid oldest = ended_.front();
     ended_.pop_front();
     instances_.erase(oldest);
@@ -256,13 +253,12 @@ Expected<std::unique_ptr<RawReader>> RawReader::create(Participant& participant,
   auto listener = std::make_unique<Listener>(
       std::move(take), key, topic.qos.transient_local ? topic.qos.writer_depth : 0);
   TopicQos qos = topic.qos;
-  qos.name = topic.name;
   qos.reader_depth = 0;
   qos.deadline = {};  // nobody waits here
   const bool ask_for_keys = topic.keyed && !key;
   auto made = participant.make_reader(
-      qos, fdds::TypeSupport(new RawType(topic.type, topic.keyed, std::move(key))), listener.get(),
-      true, ask_for_keys);
+      topic.name, qos, fdds::TypeSupport(new RawType(topic.type, topic.keyed, std::move(key))),
+      listener.get(), true, ask_for_keys);
   if (!made) return tl::unexpected(made.error());
   return std::unique_ptr<RawReader>(
       new RawReader(std::move(listener), participant.subscriber(), *made));
@@ -279,10 +275,8 @@ std::size_t RawReader::writers() const {
 }
 
 Expected<RawWriter> RawWriter::create(Participant& participant, const RawTopic& topic) {
-  TopicQos qos = topic.qos;
-  qos.name = topic.name;
-  auto made =
-      participant.make_writer(qos, fdds::TypeSupport(new RawType(topic.type, topic.keyed)), true);
+  auto made = participant.make_writer(
+      topic.name, topic.qos, fdds::TypeSupport(new RawType(topic.type, topic.keyed)), true);
   if (!made) return tl::unexpected(made.error());
   return RawWriter(*made);
 }
@@ -294,16 +288,16 @@ bool RawWriter::write(const RawSample& sample, Time sent) {
     rtps::Time_t stamp;
     stamp.from_ns(to_ns(sent));
     parameters.source_timestamp(stamp);
-    return writer_->write(data, parameters);
+    return succeeded(writer_->write(data, parameters));
   }
-  const eprosima::fastrtps::Time_t stamp(static_cast<std::int32_t>(to_ns(sent) / 1'000'000'000),
-                                         static_cast<std::uint32_t>(to_ns(sent) % 1'000'000'000));
+  const DdsTime stamp(static_cast<std::int32_t>(to_ns(sent) / 1'000'000'000),
+                      static_cast<std::uint32_t>(to_ns(sent) % 1'000'000'000));
   // What was written before the recording began is not known to this writer.
   const auto handle = writer_->register_instance(data);
   const auto code = sample.kind == RawSample::Kind::disposed
                         ? writer_->dispose_w_timestamp(data, handle, stamp)
                         : writer_->unregister_instance_w_timestamp(data, handle, stamp);
-  return code == ReturnCode_t::RETCODE_OK;
+  return succeeded(code);
 }
 
 }  // namespace prehend::dds

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "participant.hpp"
+#include "common/dds/participant.hpp"
 
 /// Topics whose type is not known here: found by discovery, read and written as the bytes on the
 /// wire.
@@ -23,10 +23,14 @@ using Guid = std::array<std::uint8_t, 16>;
 struct RawTopic {
   std::string name, type;
   bool keyed = true;
-  /// What its writer offers. The depth is not told by discovery: it comes from topic_table, else it
-  /// is 1 for transient local topics and 64 for others. `name` is not used.
+  /// What its writer offers. The depth is not told by discovery: it comes from topics.hpp, else it
+  /// is 1 for transient local topics and 64 for others.
   TopicQos qos;
 };
+/// One of ours.
+inline RawTopic raw_topic(const TopicInfo& topic) {
+  return {std::string(topic.name), topic.type_name(), topic.keyed(), topic.qos};
+}
 
 /// A change of an instance: its bytes, or its end.
 struct RawSample {
@@ -46,25 +50,24 @@ using KeyOf =
 /// The message in a sample; false when it does not fit the topic's type.
 template <class P>
 bool decode(const Topic<P>&, const RawSample& sample, typename P::type& message) {
-  eprosima::fastrtps::rtps::SerializedPayload_t payload(
-      static_cast<std::uint32_t>(sample.payload.size()));
+  rtps::SerializedPayload_t payload(static_cast<std::uint32_t>(sample.payload.size()));
   std::copy(sample.payload.begin(), sample.payload.end(), payload.data);
   payload.length = payload.max_size;
-  return payload.length >= 4 && P().deserialize(&payload, &message);
+  P type;
+  return payload.length >= 4 && deserialize(type, payload, &message);
 }
 
 /// A message as it is on the wire.
 template <class P>
 std::vector<std::uint8_t> encode(const Topic<P>&, const typename P::type& message) {
   P type;
-  auto* data = const_cast<typename P::type*>(&message);
-  eprosima::fastrtps::rtps::SerializedPayload_t payload(type.getSerializedSizeProvider(data)());
-  if (!type.serialize(data, &payload)) return {};
+  rtps::SerializedPayload_t payload(serialized_size(type, &message));
+  if (!serialize(type, &message, payload)) return {};
   return {payload.data, payload.data + payload.length};
 }
 
 /// A writer that has appeared, changed its QoS or gone.
-struct Discovered {
+struct DiscoveredWriter {
   RawTopic topic;
   Guid writer{};
   std::vector<std::string> rigs;  // its partitions
@@ -75,12 +78,13 @@ struct Discovered {
 /// Give it to ParticipantOptions::listener; it must outlive the participant.
 class Discovery : public eprosima::fastdds::dds::DomainParticipantListener {
  public:
-  explicit Discovery(std::function<void(const Discovered&)> found) : found_(std::move(found)) {}
+  explicit Discovery(std::function<void(const DiscoveredWriter&)> found)
+      : found_(std::move(found)) {}
   void on_publisher_discovery(eprosima::fastdds::dds::DomainParticipant*,
-                              eprosima::fastrtps::rtps::WriterDiscoveryInfo&& info) override;
+                              rtps::WriterDiscoveryInfo&& info) override;
 
  private:
-  std::function<void(const Discovered&)> found_;
+  std::function<void(const DiscoveredWriter&)> found_;
 };
 
 /// Reads any topic, keeping all. Lives no longer than its Participant.

@@ -1,4 +1,4 @@
-#include "security.hpp"
+#include "common/dds/security.hpp"
 
 #include <fmt/chrono.h>
 #include <fmt/format.h>
@@ -6,11 +6,10 @@
 
 #include <fstream>
 #include <iterator>
-#include <prehend/keys/certificate.hpp>
+
+#include "common/keys/certificate.hpp"
 
 namespace prehend::dds {
-
-namespace fdds = eprosima::fastdds::dds;
 
 namespace {
 

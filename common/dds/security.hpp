@@ -4,12 +4,13 @@
 #include <fastdds/dds/domain/qos/DomainParticipantQos.hpp>
 #include <filesystem>
 #include <optional>
-#include <prehend/base/error.hpp>
-#include <prehend/base/time.hpp>
 #include <string>
 #include <string_view>
 
-#include "permissions.hpp"
+#include "common/base/error.hpp"
+#include "common/base/time.hpp"
+#include "common/dds/fastdds.hpp"
+#include "common/dds/permissions.hpp"
 
 namespace prehend::dds {
 

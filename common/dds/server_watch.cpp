@@ -1,4 +1,4 @@
-#include "server_watch.hpp"
+#include "common/dds/server_watch.hpp"
 
 #include <arpa/inet.h>
 

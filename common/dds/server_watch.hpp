@@ -7,16 +7,17 @@
 #include <thread>
 #include <vector>
 
-#include "network.hpp"
+#include "common/dds/fastdds.hpp"
+#include "common/dds/network.hpp"
 
 namespace prehend::dds {
 
 /// The port at which linked discovery servers begin to count: server n listens at 11811 + n.
 inline constexpr std::uint16_t first_server_port = 11811;
 /// Clients know a server by this prefix, which is that of `fast-discovery-server -i N`.
-eprosima::fastrtps::rtps::GuidPrefix_t server_prefix(std::uint16_t port);
+rtps::GuidPrefix_t server_prefix(std::uint16_t port);
 /// Where it is reached by UDP.
-eprosima::fastrtps::rtps::Locator_t locator_of(const Address& address);
+rtps::Locator_t locator_of(const Address& address);
 
 /// Looks every two seconds where the names of discovery servers lead to: a container that is
 /// started again comes back at another address.

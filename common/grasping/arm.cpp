@@ -1,4 +1,4 @@
-#include "arm.hpp"
+#include "common/grasping/arm.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <prehend/base/pose.hpp>
+#include "common/base/pose.hpp"
 
 namespace prehend::grasping {
 

@@ -1,4 +1,4 @@
-#include "blocking.hpp"
+#include "common/grasping/blocking.hpp"
 
 #include <BulletDynamics/Featherstone/btMultiBodyConstraintSolver.h>
 #include <BulletDynamics/Featherstone/btMultiBodyDynamicsWorld.h>
@@ -8,8 +8,8 @@
 #include <map>
 #include <utility>
 
-#include "closest.hpp"
-#include "hand_body.hpp"
+#include "common/grasping/closest.hpp"
+#include "common/grasping/hand_body.hpp"
 
 namespace prehend::grasping {
 namespace {

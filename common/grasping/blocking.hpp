@@ -2,10 +2,11 @@
 
 #include <Eigen/Core>
 #include <optional>
-#include <prehend/base/error.hpp>
-#include <prehend/model/hand_model.hpp>
 #include <string>
 #include <vector>
+
+#include "common/base/error.hpp"
+#include "common/model/hand_model.hpp"
 
 namespace prehend::grasping {
 

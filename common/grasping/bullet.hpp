@@ -2,7 +2,7 @@
 
 #include <LinearMath/btTransform.h>
 
-#include <prehend/base/pose.hpp>
+#include "common/base/pose.hpp"
 
 /// Between Eigen's values and Bullet's.
 namespace prehend::grasping {

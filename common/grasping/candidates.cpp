@@ -1,10 +1,11 @@
-#include "candidates.hpp"
+#include "common/grasping/candidates.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <prehend/base/random.hpp>
 #include <vector>
+
+#include "common/base/random.hpp"
 
 namespace prehend::grasping {
 namespace {
@@ -20,7 +21,7 @@ constexpr double deepest = 0.02;     // m, that the others may go beyond the usu
 constexpr double shallowest = 0.03;  // m, that they may stay before it
 constexpr double off_posture = 0.7;  // share in which DoFs that do not close are sampled
 constexpr double half_closed = 0.3;  // share in which the closing DoFs begin closed, up to
-constexpr double most_closed = 0.4;  // this share of their range
+constexpr double max_closed = 0.4;   // this share of their range
 
 /// Independent streams from neighbouring numbers (the finaliser of splitmix64).
 std::uint64_t mixed(std::uint64_t seed, std::uint64_t index) {
@@ -81,7 +82,7 @@ std::vector<std::string> opened_postures(const model::HandModel& hand) {
 VectorXd sample_preshape(const model::HandModel& hand, const VectorXd& posture, Random& random) {
   VectorXd dof = posture;
   const bool sampled = random.uniform() < off_posture;
-  const double closed = random.uniform() < half_closed ? random.uniform(0, most_closed) : 0;
+  const double closed = random.uniform() < half_closed ? random.uniform(0, max_closed) : 0;
   for (Eigen::Index i = 0; i < dof.size(); ++i) {
     const model::HandDof& limits = hand.dofs()[static_cast<std::size_t>(i)];
     const double place = random.uniform();  // drawn for every DoF, used or not

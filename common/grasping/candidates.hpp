@@ -2,11 +2,12 @@
 
 #include <Eigen/Core>
 #include <cstdint>
-#include <prehend/base/error.hpp>
-#include <prehend/base/pose.hpp>
-#include <prehend/model/hand_model.hpp>
-#include <prehend/model/shape.hpp>
 #include <string>
+
+#include "common/base/error.hpp"
+#include "common/base/pose.hpp"
+#include "common/model/hand_model.hpp"
+#include "common/model/shape.hpp"
 
 namespace prehend::grasping {
 

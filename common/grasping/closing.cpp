@@ -1,4 +1,4 @@
-#include "closing.hpp"
+#include "common/grasping/closing.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -88,7 +88,7 @@ Expected<analysis::Quality> judge(const std::vector<analysis::Contact>& contacts
                                   const Body& object, bool volume) {
   if (volume) return analysis::grasp_quality(contacts, torque_scale(object));
   auto resistance = analysis::l1_resistance(analysis::contact_wrenches(
-      analysis::spread_contacts(contacts, analysis::most_contacts), torque_scale(object)));
+      analysis::spread_contacts(contacts, analysis::max_contacts), torque_scale(object)));
   if (!resistance) return tl::unexpected(resistance.error());
   return analysis::Quality{std::move(*resistance)};
 }

@@ -2,15 +2,15 @@
 
 #include <Eigen/Core>
 #include <optional>
-#include <prehend/analysis/contact.hpp>
-#include <prehend/analysis/wrench_space.hpp>
-#include <prehend/base/error.hpp>
-#include <prehend/base/pose.hpp>
-#include <prehend/model/hand_model.hpp>
 #include <vector>
 
-#include "hold_test.hpp"
-#include "world.hpp"
+#include "common/analysis/contact.hpp"
+#include "common/analysis/wrench_space.hpp"
+#include "common/base/error.hpp"
+#include "common/base/pose.hpp"
+#include "common/grasping/hold_test.hpp"
+#include "common/grasping/world.hpp"
+#include "common/model/hand_model.hpp"
 
 namespace prehend::grasping {
 

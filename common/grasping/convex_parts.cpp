@@ -1,4 +1,4 @@
-#include "convex_parts.hpp"
+#include "common/grasping/convex_parts.hpp"
 
 #include <LinearMath/btConvexHullComputer.h>
 
@@ -16,8 +16,8 @@ using Eigen::AlignedBox3d;
 using Eigen::Vector3d;
 using Points = std::vector<Vector3d>;
 
-constexpr int columns = 64;            // of rays through the mesh along x and along y
-constexpr std::size_t most_cuts = 10;  // tried along each axis
+constexpr int columns = 64;           // of rays through the mesh along x and along y
+constexpr std::size_t max_cuts = 10;  // tried along each axis
 
 /// Corners of the convex hull, and its volume.
 struct Hull {
@@ -196,10 +196,10 @@ class Cutter {
                           [&](double a, double b) { return b - a < 0.1 * margin; }),
               all.end());
     if (all.empty()) return {0.5 * (low + high)};
-    if (all.size() <= most_cuts) return all;
+    if (all.size() <= max_cuts) return all;
     std::vector<double> some;
-    for (std::size_t i = 0; i < most_cuts; ++i)
-      some.push_back(all[(2 * i + 1) * all.size() / (2 * most_cuts)]);
+    for (std::size_t i = 0; i < max_cuts; ++i)
+      some.push_back(all[(2 * i + 1) * all.size() / (2 * max_cuts)]);
     return some;
   }
 
@@ -242,7 +242,7 @@ class Cutter {
 Expected<ConvexParts> convex_parts(const model::Mesh& mesh, const PartsOptions& options) {
   const auto solid = model::measure(mesh);
   if (!solid) return tl::unexpected(solid.error());
-  if (options.most_parts < 1 || !(options.most_excess > 0))
+  if (options.max_parts < 1 || !(options.max_excess > 0))
     return fail("parts must be at least 1, their excess positive", "convex parts");
   const Cutter cutter(mesh);
   std::vector<Piece> pieces{cutter.whole()};
@@ -254,7 +254,7 @@ Expected<ConvexParts> convex_parts(const model::Mesh& mesh, const PartsOptions& 
     for (const Piece& piece : pieces) volume += piece.hull.volume;
     return std::max(0.0, volume / solid->volume - 1);
   };
-  while (excess() > options.most_excess && static_cast<int>(pieces.size()) < options.most_parts) {
+  while (excess() > options.max_excess && static_cast<int>(pieces.size()) < options.max_parts) {
     Piece* worst = nullptr;
     for (Piece& piece : pieces)
       if (!piece.done && (!worst || piece.excess > worst->excess)) worst = &piece;

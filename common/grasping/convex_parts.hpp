@@ -1,17 +1,18 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <prehend/base/error.hpp>
-#include <prehend/model/mesh.hpp>
 #include <vector>
+
+#include "common/base/error.hpp"
+#include "common/model/mesh.hpp"
 
 namespace prehend::grasping {
 
 struct PartsOptions {
   /// Share of the solid's volume by which all parts together may exceed it. A mesh whose own hull
   /// exceeds it by less is taken as that hull.
-  double most_excess = 0.03;
-  int most_parts = 16;
+  double max_excess = 0.03;
+  int max_parts = 16;
 };
 
 /// A solid as a union of convex ones that covers it, which is what Bullet can collide.
@@ -25,7 +26,7 @@ struct ConvexParts {
 /// Cuts the box about the mesh by planes along the axes, always where that takes most off what the
 /// hulls of the pieces exceed the solid by, until little is left (greedy; in the spirit of Mamou's
 /// volumetric decomposition, but with exact pieces of the surface). Deterministic. Curved hollows
-/// need more parts than most_parts: `excess` says what is left. Fails when no hull can be made.
+/// need more parts than max_parts: `excess` says what is left. Fails when no hull can be made.
 Expected<ConvexParts> convex_parts(const model::Mesh& mesh, const PartsOptions& options = {});
 
 }  // namespace prehend::grasping

@@ -1,4 +1,4 @@
-#include "hand_body.hpp"
+#include "common/grasping/hand_body.hpp"
 
 #include <BulletDynamics/Featherstone/btMultiBodyDynamicsWorld.h>
 #include <btBulletCollisionCommon.h>
@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "bullet.hpp"
-#include "closest.hpp"
+#include "common/grasping/bullet.hpp"
+#include "common/grasping/closest.hpp"
 
 namespace prehend::grasping {
 namespace {
@@ -20,7 +20,7 @@ using Eigen::VectorXd;
 constexpr double base_mass = 1000;    // kg
 constexpr double base_inertia = 100;  // kg m²
 constexpr double drive_gain = 0.1;    // share of a joint's error that the drive removes each step
-constexpr double least_drive = 0.1;   // share of its torque that a drive may always use
+constexpr double min_drive = 0.1;     // share of its torque that a drive may always use
 constexpr double slips_after = 0.02;  // s, that a joint must be blocked before its clutch lets go
 // Shares of a DoF's squeeze: how far a finger that its clutch presses may still follow, how far it
 // must be opened until the whole torque holds it, and the speed (per s) below which it is blocked.
@@ -205,7 +205,7 @@ void HandBody::drive(const VectorXd& dof) {
       share = pressed + (1 - pressed) * std::clamp(opened / (yield * led.squeeze), 0.0, 1.0);
     }
     auto& motor = *motors_[static_cast<std::size_t>(i)];
-    motor.setMaxAppliedImpulse(joint.max_torque * std::clamp(share, least_drive, 1.0) * time_step_);
+    motor.setMaxAppliedImpulse(joint.max_torque * std::clamp(share, min_drive, 1.0) * time_step_);
     motor.setPositionTarget(wanted, drive_gain);
   }
 }

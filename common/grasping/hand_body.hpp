@@ -9,12 +9,12 @@
 #include <deque>
 #include <memory>
 #include <optional>
-#include <prehend/base/pose.hpp>
-#include <prehend/model/hand_model.hpp>
 #include <utility>
 #include <vector>
 
-#include "surface.hpp"
+#include "common/base/pose.hpp"
+#include "common/grasping/surface.hpp"
+#include "common/model/hand_model.hpp"
 
 class btMultiBodyDynamicsWorld;
 

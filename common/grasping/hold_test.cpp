@@ -1,4 +1,4 @@
-#include "hold_test.hpp"
+#include "common/grasping/hold_test.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -78,8 +78,8 @@ class Test {
       const Pose now = X_BO();
       result.slip = std::max(result.slip, (now.translation() - X_BO_start_.translation()).norm());
       result.turn = std::max(result.turn, angle_between(X_BO_start_.linear(), now.linear()));
-      if (!(result.slip < options_.most_slip)) return fail("slipped in the hand");
-      if (!(result.turn < options_.most_turn)) return fail("turned in the hand");
+      if (!(result.slip < options_.max_slip)) return fail("slipped in the hand");
+      if (!(result.turn < options_.max_turn)) return fail("turned in the hand");
       if (i == steps - window) before = now.translation();
     }
     drift_ =

@@ -3,17 +3,17 @@
 #include <optional>
 #include <string>
 
-#include "world.hpp"
+#include "common/grasping/world.hpp"
 
 namespace prehend::grasping {
 
 /// What is done with the object after it was lifted and held still.
 struct HoldOptions {
-  double lift = 0.10;                 // m
-  double lift_speed = 0.1;            // m/s
-  double hold = 3.0;                  // s
-  double most_slip = 0.020;           // m, relative to the palm
-  double most_turn = 0.261799387799;  // rad (15°)
+  double lift = 0.10;                // m
+  double lift_speed = 0.1;           // m/s
+  double hold = 3.0;                 // s
+  double max_slip = 0.020;           // m, relative to the palm
+  double max_turn = 0.261799387799;  // rad (15°)
   /// The long form: shaken along ±x, ±y, ±z of B, then turned upside down and held there.
   bool shake = false;
   double shake_acceleration = 0.5 * 9.81;  // m/s², at most the arm's

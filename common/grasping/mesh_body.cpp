@@ -1,4 +1,4 @@
-#include "mesh_body.hpp"
+#include "common/grasping/mesh_body.hpp"
 
 #include <algorithm>
 
@@ -15,7 +15,7 @@ Expected<Body> load_body(const std::string& name, const std::filesystem::path& f
   made.inertia_O = solid->inertia;
   made.surface = model::moved(*mesh, -solid->centre);
   auto parts = convex_parts(made.surface, options);
-  if (!parts) return fail(parts.error().what, file.string(), parts.error().mend);
+  if (!parts) return fail(parts.error().what, file.string(), parts.error().hint);
   made.parts = std::move(*parts);
   Eigen::Vector3d half = Eigen::Vector3d::Zero();
   for (const Eigen::Vector3d& vertex : made.surface.vertices) {

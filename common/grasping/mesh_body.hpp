@@ -1,11 +1,11 @@
 #pragma once
 
 #include <filesystem>
-#include <prehend/base/error.hpp>
 #include <string>
 
-#include "convex_parts.hpp"
-#include "world.hpp"
+#include "common/base/error.hpp"
+#include "common/grasping/convex_parts.hpp"
+#include "common/grasping/world.hpp"
 
 namespace prehend::grasping {
 

@@ -1,12 +1,12 @@
-#include "planner.hpp"
+#include "common/grasping/planner.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <memory>
 #include <utility>
 
-#include "candidates.hpp"
-#include "closing.hpp"
+#include "common/grasping/candidates.hpp"
+#include "common/grasping/closing.hpp"
 
 namespace prehend::grasping {
 namespace {
@@ -18,7 +18,7 @@ constexpr double margin = 0.004;      // m, between hand and object before the f
 constexpr double exact = 0.0005;      // m, in the search for that place
 constexpr double far = 0.4;           // m, from where the hand comes
 constexpr double lever = 0.3;         // m, longer than any finger: bounds how far a tip moves
-constexpr double least_turn = 0.01;   // rad, of a step of closing without physics
+constexpr double min_turn = 0.01;     // rad, of a step of closing without physics
 constexpr double ranking_time = 2.5;  // s, for closing in the first round
 constexpr double table_size = 2.0;    // m
 
@@ -82,7 +82,7 @@ class Fitting {
       if (room < exact) return dof;
       VectorXd next = dof;
       for (Eigen::Index i = 0; i < dof.size(); ++i)
-        next[i] += dofs[static_cast<std::size_t>(i)].closing * std::max(room / lever, least_turn) *
+        next[i] += dofs[static_cast<std::size_t>(i)].closing * std::max(room / lever, min_turn) *
                    radian_of(dofs[static_cast<std::size_t>(i)]);
       next = world_->hand().clamp(next);
       if (next == dof) return fail("the fingers close beside the object");
@@ -146,7 +146,7 @@ Expected<PlannedGrasp> test(const model::HandModel& hand, const Body& object,
                        grasp->X_BO.inverse(),
                        std::move(grasp->dof),
                        std::move(grasp->joints),
-                       analysis::spread_contacts(grasp->contacts, analysis::most_contacts),
+                       analysis::spread_contacts(grasp->contacts, analysis::max_contacts),
                        {},
                        std::move(grasp->quality),
                        std::move(*grasp->hold)};
@@ -184,7 +184,7 @@ Expected<void> check(const Body& object, const PlanOptions& options) {
     return fail("mass must be positive", object.name, "what is fixed cannot be lifted");
   if (options.candidates < 1 || options.candidates > 1'000'000)
     return fail("needs 1 to 1000000 candidates", "plan");
-  if (options.tested < 1 || options.most_tested < options.tested)
+  if (options.tested < 1 || options.max_tested < options.tested)
     return fail("at least one grasp must be tested", "plan");
   return {};
 }
@@ -213,7 +213,7 @@ Expected<Plan> plan_grasps(const model::HandModel& hand, const Body& object,
   std::stable_sort(ranked.begin(), ranked.end(),
                    [](const Closed* a, const Closed* b) { return a->epsilon > b->epsilon; });
 
-  const auto most = std::min(ranked.size(), static_cast<std::size_t>(options.most_tested));
+  const auto most = std::min(ranked.size(), static_cast<std::size_t>(options.max_tested));
   for (std::size_t begin = 0; begin < most && !plan.held();) {
     const std::size_t count = std::min(most - begin, static_cast<std::size_t>(options.tested));
     std::vector<Expected<PlannedGrasp>> tested(count, PlannedGrasp{});

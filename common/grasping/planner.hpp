@@ -5,16 +5,16 @@
 #include <functional>
 #include <map>
 #include <optional>
-#include <prehend/analysis/contact.hpp>
-#include <prehend/analysis/wrench_space.hpp>
-#include <prehend/base/error.hpp>
-#include <prehend/base/pose.hpp>
-#include <prehend/model/hand_model.hpp>
 #include <string>
 #include <vector>
 
-#include "hold_test.hpp"
-#include "world.hpp"
+#include "common/analysis/contact.hpp"
+#include "common/analysis/wrench_space.hpp"
+#include "common/base/error.hpp"
+#include "common/base/pose.hpp"
+#include "common/grasping/hold_test.hpp"
+#include "common/grasping/world.hpp"
+#include "common/model/hand_model.hpp"
 
 namespace prehend::grasping {
 
@@ -23,8 +23,8 @@ struct PlanOptions {
   std::uint64_t seed = 1;  // of the sampling
   /// The object stands on a table: candidates that reach through it are refused.
   bool table = false;
-  int tested = 10;       // grasps with the greatest epsilon that the hold test tries
-  int most_tested = 50;  // when none of these held, the next `tested` are tried, up to so many
+  int tested = 10;      // grasps with the greatest epsilon that the hold test tries
+  int max_tested = 50;  // when none of these held, the next `tested` are tried, up to so many
 };
 
 /// A grasp that was found, with all that is needed to repeat and to judge it. O: the object's frame

@@ -1,4 +1,4 @@
-#include "surface.hpp"
+#include "common/grasping/surface.hpp"
 
 #include <BulletCollision/CollisionDispatch/btCollisionObjectWrapper.h>
 #include <btBulletCollisionCommon.h>
@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "bullet.hpp"
+#include "common/grasping/bullet.hpp"
 
 namespace prehend::grasping {
 namespace {

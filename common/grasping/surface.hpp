@@ -4,9 +4,10 @@
 
 #include <memory>
 #include <optional>
-#include <prehend/analysis/materials.hpp>
-#include <prehend/model/shape.hpp>
 #include <vector>
+
+#include "common/analysis/materials.hpp"
+#include "common/model/shape.hpp"
 
 class btCollisionShape;
 

@@ -1,4 +1,4 @@
-#include "world.hpp"
+#include "common/grasping/world.hpp"
 
 #include <BulletDynamics/Featherstone/btMultiBodyConstraintSolver.h>
 #include <BulletDynamics/Featherstone/btMultiBodyDynamicsWorld.h>
@@ -9,19 +9,19 @@
 #include <algorithm>
 #include <cmath>
 #include <deque>
-#include <prehend/analysis/materials.hpp>
-#include <prehend/analysis/wrench_space.hpp>
 #include <utility>
 
-#include "bullet.hpp"
-#include "closest.hpp"
-#include "hand_body.hpp"
-#include "surface.hpp"
+#include "common/analysis/materials.hpp"
+#include "common/analysis/wrench_space.hpp"
+#include "common/grasping/bullet.hpp"
+#include "common/grasping/closest.hpp"
+#include "common/grasping/hand_body.hpp"
+#include "common/grasping/surface.hpp"
 
 namespace prehend::grasping {
 namespace {
 
-constexpr int most_bodies = 1000;
+constexpr int max_bodies = 1000;
 constexpr double beyond = 0.01;  // share of a DoF's range that rounding may leave its limits
 
 Expected<void> check(const model::HandModel& hand, const Pose& X_WB, const Eigen::VectorXd& dof) {
@@ -46,10 +46,6 @@ using Eigen::VectorXd;
 
 double torque_scale(const Body& body) {
   return body.mesh ? body.mesh->radius : analysis::torque_scale(body.shape);
-}
-
-double radian_of(const model::HandDof& dof) {
-  return dof.kind == model::JointKind::prismatic ? dof.squeeze / 0.15 : 1.0;
 }
 
 struct World::State {
@@ -219,8 +215,8 @@ Expected<int> World::add_body(const Body& body, const Pose& X_WO) {
   if (!model::is_valid(body.shape)) return fail("shape is not valid", body.name);
   if (body.mesh && (body.mesh->parts.parts.empty() || !body.mesh->inertia_O.allFinite()))
     return fail("mesh is not valid", body.name, "see load_body");
-  if (body_count() >= most_bodies)
-    return fail("too many bodies", body.name, "at most " + std::to_string(most_bodies));
+  if (body_count() >= max_bodies)
+    return fail("too many bodies", body.name, "at most " + std::to_string(max_bodies));
   if (!std::isfinite(body.mass) || body.mass < 0) return fail("mass must be 0 or more", body.name);
   if (!is_finite(X_WO)) return fail("pose must be finite", body.name);
   if (body.friction && !(*body.friction >= 0 && std::isfinite(*body.friction)))

@@ -3,17 +3,17 @@
 #include <Eigen/Core>
 #include <memory>
 #include <optional>
-#include <prehend/analysis/contact.hpp>
-#include <prehend/base/error.hpp>
-#include <prehend/base/pose.hpp>
-#include <prehend/model/hand_model.hpp>
-#include <prehend/model/mesh.hpp>
-#include <prehend/model/shape.hpp>
 #include <string>
 #include <vector>
 
-#include "arm.hpp"
-#include "convex_parts.hpp"
+#include "common/analysis/contact.hpp"
+#include "common/base/error.hpp"
+#include "common/base/pose.hpp"
+#include "common/grasping/arm.hpp"
+#include "common/grasping/convex_parts.hpp"
+#include "common/model/hand_model.hpp"
+#include "common/model/mesh.hpp"
+#include "common/model/shape.hpp"
 
 namespace prehend::grasping {
 
@@ -66,10 +66,6 @@ struct BodyMotion {
   Eigen::Vector3d velocity = Eigen::Vector3d::Zero();          // m/s
   Eigen::Vector3d angular_velocity = Eigen::Vector3d::Zero();  // rad/s, in W
 };
-
-/// What 1 rad of a finger is for this DoF where stillness or pressing is meant: 1, or the length
-/// that a jaw's slide makes of it.
-double radian_of(const model::HandDof& dof);
 
 /// A physical world with one hand, a table and objects, stepped by Bullet (double). The base of the
 /// hand follows its command within the arm's limits. Each joint is driven by a spring that reaches

@@ -1,4 +1,4 @@
-#include "certificate.hpp"
+#include "common/keys/certificate.hpp"
 
 #include <openssl/asn1.h>
 #include <openssl/bn.h>
@@ -8,7 +8,7 @@
 #include <openssl/rand.h>
 #include <openssl/x509v3.h>
 
-#include "openssl.hpp"
+#include "common/keys/openssl.hpp"
 
 namespace prehend::keys {
 

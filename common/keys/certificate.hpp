@@ -1,10 +1,11 @@
 #pragma once
 
-#include <prehend/base/error.hpp>
-#include <prehend/base/time.hpp>
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include "common/base/error.hpp"
+#include "common/base/time.hpp"
 
 /// Certificates, their revocation and signed texts: values in, values out, all in PEM and S/MIME as
 /// DDS Security has them. Elliptic curve P-256, SHA-256. Made with OpenSSL.

@@ -1,4 +1,4 @@
-#include "openssl.hpp"
+#include "common/keys/openssl.hpp"
 
 #include <openssl/err.h>
 #include <openssl/pem.h>
@@ -13,11 +13,11 @@ int no_password(char*, int, int, void*) {
 
 }  // namespace
 
-tl::unexpected<Error> failed(std::string what, std::string where, std::string mend) {
+tl::unexpected<Error> failed(std::string what, std::string where, std::string hint) {
   if (const unsigned long code = ERR_peek_last_error(); code != 0)
     if (const char* reason = ERR_reason_error_string(code)) what += std::string(": ") + reason;
   ERR_clear_error();
-  return fail(std::move(what), std::move(where), std::move(mend));
+  return fail(std::move(what), std::move(where), std::move(hint));
 }
 
 Bio reading(std::string_view text) {

@@ -6,9 +6,10 @@
 #include <openssl/x509_vfy.h>
 
 #include <memory>
-#include <prehend/base/error.hpp>
 #include <string>
 #include <string_view>
+
+#include "common/base/error.hpp"
 
 /// OpenSSL's objects as values that free themselves.
 namespace prehend::keys::openssl {
@@ -32,7 +33,7 @@ using Store = Owned<X509_STORE, X509_STORE_free>;
 using StoreContext = Owned<X509_STORE_CTX, X509_STORE_CTX_free>;
 
 /// The last error of OpenSSL, which is then forgotten, as a failure of ours.
-tl::unexpected<Error> failed(std::string what, std::string where = {}, std::string mend = {});
+tl::unexpected<Error> failed(std::string what, std::string where = {}, std::string hint = {});
 
 Bio reading(std::string_view text);
 Bio writing();

@@ -1,4 +1,4 @@
-#include "network.hpp"
+#include "common/learning/network.hpp"
 
 #include <fmt/format.h>
 

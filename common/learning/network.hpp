@@ -1,8 +1,9 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <prehend/base/error.hpp>
 #include <vector>
+
+#include "common/base/error.hpp"
 
 namespace prehend::learning {
 

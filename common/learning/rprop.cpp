@@ -1,4 +1,4 @@
-#include "rprop.hpp"
+#include "common/learning/rprop.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -12,32 +12,31 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 
 // As in FANN, whose results these must be; some of its numbers are floats.
-constexpr double steepness = 0.5;
-constexpr double first_step = 0.1f, least_step = 0.0001, most_step = 50;
+constexpr double rprop_steepness = 0.5;
+constexpr double first_step = 0.1f, min_step = 0.0001, max_step = 50;
 constexpr double faster = 1.2f, slower = 0.5;
-constexpr double most_weight = 1500;
+constexpr double max_weight = 1500;
 constexpr double flattest = 0.98f;  // of an answer: beyond, the sigmoid's slope counts as there
-constexpr double wrong = 0.9999999, most_wrong = 17;  // of a difference, and what it then counts
+constexpr double wrong = 0.9999999, max_wrong = 17;  // of a difference, and what it then counts
 
 ArrayXXd slope_of(const auto& answers) {
   const ArrayXXd y = answers.max(-flattest).min(flattest);
-  return steepness * (1 - y * y);
+  return rprop_steepness * (1 - y * y);
 }
 
 void step(Layer& weights, Layer& steps, Layer& before, const MatrixXd& slopes) {
   for (Eigen::Index i = 0; i < weights.size(); ++i) {
     double& size = steps.data()[i];
     double slope = slopes.data()[i];
-    size = std::max(size, least_step);
+    size = std::max(size, min_step);
     if (before.data()[i] * slope >= 0) {
-      size = std::min(size * faster, most_step);
+      size = std::min(size * faster, max_step);
     } else {
       size *= slower;
       slope = 0;
     }
     double& weight = weights.data()[i];
-    weight =
-        slope < 0 ? std::max(weight - size, -most_weight) : std::min(weight + size, most_weight);
+    weight = slope < 0 ? std::max(weight - size, -max_weight) : std::min(weight + size, max_weight);
     before.data()[i] = slope;
   }
 }
@@ -61,15 +60,14 @@ void Rprop::learn(Index begin, Index count) {
   ArrayXXd answers;
   for (std::size_t i = 0; i < layers_.size(); ++i) {
     const MatrixXd sums = layers_[i] * seen[i];
-    answers = 2.0 / (1.0 + (-2.0 * steepness * sums.array()).exp()) - 1.0;
+    answers = 2.0 / (1.0 + (-2.0 * rprop_steepness * sums.array()).exp()) - 1.0;
     if (i + 1 == layers_.size()) break;
     seen.push_back(MatrixXd::Ones(answers.rows() + 1, count));
     seen.back().topRows(answers.rows()) = answers.matrix();
   }
   // Half the difference, since answers span 2; its inverse hyperbolic tangent, twice.
   ArrayXXd error = (wanted_.middleCols(begin, count).array() - answers) / 2;
-  error =
-      (error.abs() < wrong).select(((1 + error) / (1 - error)).log(), error.sign() * most_wrong);
+  error = (error.abs() < wrong).select(((1 + error) / (1 - error)).log(), error.sign() * max_wrong);
   error *= slope_of(answers);
   for (std::size_t i = layers_.size(); i-- > 0;) {
     slopes_[i] += error.matrix() * seen[i].transpose();

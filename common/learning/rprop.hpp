@@ -2,8 +2,8 @@
 
 #include <vector>
 
-#include "network.hpp"
-#include "training.hpp"
+#include "common/learning/network.hpp"
+#include "common/learning/training.hpp"
 
 namespace prehend::learning {
 

@@ -1,7 +1,9 @@
-#include "scaling.hpp"
+#include "common/learning/scaling.hpp"
 
 #include <array>
 #include <utility>
+
+#include "common/base/named_values.hpp"
 
 namespace prehend::learning {
 
@@ -10,24 +12,18 @@ namespace {
 /// Ranges below this are no variation but rounding.
 constexpr double no_range = 1e-12;
 
-constexpr std::array<std::pair<ScalingKind, std::string_view>, 3> kind_names{{
-    {ScalingKind::each_feature, "each feature"},
-    {ScalingKind::whole_matrix, "whole matrix"},
-    {ScalingKind::as_printed, "as printed"},
-}};
+constexpr auto kind_names = named_values<ScalingKind>({{ScalingKind::each_feature, "each feature"},
+                                                       {ScalingKind::whole_matrix, "whole matrix"},
+                                                       {ScalingKind::as_printed, "as printed"}});
 
 }  // namespace
 
 std::string_view to_string(ScalingKind kind) {
-  for (const auto& [value, name] : kind_names)
-    if (value == kind) return name;
-  return "unknown";
+  return kind_names.name(kind);
 }
 
 std::optional<ScalingKind> scaling_from_string(std::string_view name) {
-  for (const auto& [value, text] : kind_names)
-    if (text == name) return value;
-  return std::nullopt;
+  return kind_names.value(name);
 }
 
 Scaling::Scaling(Eigen::VectorXd minimum, Eigen::VectorXd maximum, ScalingKind kind)

@@ -2,21 +2,23 @@
 
 #include <Eigen/Core>
 #include <optional>
-#include <prehend/base/error.hpp>
 #include <string_view>
+
+#include "common/base/error.hpp"
 
 namespace prehend::learning {
 
 enum class ScalingKind {
   each_feature,  // every row by its own range; rows of different units then count alike
-  whole_matrix,  // one range for all rows, as the thesis does it
-  as_printed     // the same with the thesis's equations to the letter, which are wrong: see Scaling
+  whole_matrix,  // one range for all rows, as in [Thesis, 4.2.5]
+  as_printed  // the same with the equations of [Thesis, 4.2.5] to the letter, which are wrong: see
+              // Scaling
 };
 
 std::string_view to_string(ScalingKind kind);
 std::optional<ScalingKind> scaling_from_string(std::string_view name);
 
-/// Scales numbers to [-1, 1] and back, after eq. 4.11 to 4.16 as they were meant:
+/// Scales numbers to [-1, 1] and back, after [Thesis, eq. 4.11 to 4.16] as they were meant:
 /// u = 1 − 2 (v − min) / (max − min). A feature that never varied becomes 0.
 ///
 /// As printed they read u = (m − (v + |min|)) / m with m = max + min (4.12 to 4.14), and for the

@@ -1,4 +1,4 @@
-#include "training.hpp"
+#include "common/learning/training.hpp"
 
 // The only place that knows FANN; its double variant.
 #include <doublefann.h>
@@ -12,21 +12,21 @@
 #include <mutex>
 #include <utility>
 
-#include "rprop.hpp"
+#include "common/base/named_values.hpp"
+#include "common/learning/rprop.hpp"
 
 namespace prehend::learning {
 
 namespace {
 
-constexpr std::array<std::pair<TrainingMethod, std::string_view>, training_methods.size()>
-    method_names{{
-        {TrainingMethod::incremental, "incremental"},
-        {TrainingMethod::batch, "batch"},
-        {TrainingMethod::rprop, "rprop"},
-        {TrainingMethod::quickprop, "quickprop"},
-        {TrainingMethod::sarprop, "sarprop"},
-        {TrainingMethod::cascade, "cascade"},
-    }};
+constexpr auto method_names =
+    named_values<TrainingMethod>({{TrainingMethod::incremental, "incremental"},
+                                  {TrainingMethod::batch, "batch"},
+                                  {TrainingMethod::rprop, "rprop"},
+                                  {TrainingMethod::quickprop, "quickprop"},
+                                  {TrainingMethod::sarprop, "sarprop"},
+                                  {TrainingMethod::cascade, "cascade"}});
+static_assert(method_names.size() == training_methods.size());
 
 fann_train_enum fann_method(TrainingMethod method) {
   switch (method) {
@@ -245,15 +245,11 @@ Expected<void> check(const Samples& samples, std::string_view which) {
 }  // namespace
 
 std::string_view to_string(TrainingMethod method) {
-  for (const auto& [value, name] : method_names)
-    if (value == method) return name;
-  return "unknown";
+  return method_names.name(method);
 }
 
 std::optional<TrainingMethod> method_from_string(std::string_view name) {
-  for (const auto& [value, text] : method_names)
-    if (text == name) return value;
-  return std::nullopt;
+  return method_names.value(name);
 }
 
 double squared_error(const Network& network, const Samples& samples) {

@@ -4,11 +4,11 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
-#include <prehend/base/error.hpp>
 #include <string_view>
 #include <vector>
 
-#include "network.hpp"
+#include "common/base/error.hpp"
+#include "common/learning/network.hpp"
 
 namespace prehend::learning {
 
@@ -39,7 +39,8 @@ struct TrainingOptions {
   bool curve = false;          // keep the errors of every look
 };
 
-/// Mean over samples of the sum over outputs of squared differences (eq. 5.1, scaled units).
+/// Mean over samples of the sum over outputs of squared differences [Thesis, eq. 5.1], in scaled
+/// units.
 double squared_error(const Network& network, const Samples& samples);
 
 /// Errors after so many epochs.

@@ -1,11 +1,12 @@
-#include "training_set.hpp"
+#include "common/learning/training_set.hpp"
 
 #include <fmt/format.h>
-#include <prehend/messages/training_set.pb.h>
 
-#include <prehend/proto/pose_numbers.hpp>
-#include <prehend/proto/sealed_file.hpp>
 #include <set>
+
+#include "common/proto/pose_numbers.hpp"
+#include "common/proto/sealed_file.hpp"
+#include "common/proto/training_set.pb.h"
 
 namespace prehend::learning {
 

@@ -2,10 +2,11 @@
 
 #include <Eigen/Core>
 #include <filesystem>
-#include <prehend/base/error.hpp>
-#include <prehend/base/pose.hpp>
 #include <string>
 #include <vector>
+
+#include "common/base/error.hpp"
+#include "common/base/pose.hpp"
 
 namespace prehend::learning {
 

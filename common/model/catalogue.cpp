@@ -1,4 +1,4 @@
-#include "catalogue.hpp"
+#include "common/model/catalogue.hpp"
 
 #include <toml++/toml.h>
 

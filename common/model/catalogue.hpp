@@ -1,12 +1,12 @@
 #pragma once
 
 #include <filesystem>
-#include <prehend/base/error.hpp>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "shape.hpp"
+#include "common/base/error.hpp"
+#include "common/model/shape.hpp"
 
 namespace prehend::model {
 

@@ -5,11 +5,11 @@
 #include <cmath>
 #include <fstream>
 #include <initializer_list>
-#include <prehend/base/paths.hpp>
 #include <sstream>
 
-#include "hand_model.hpp"
-#include "hand_urdf.hpp"
+#include "common/base/paths.hpp"
+#include "common/model/hand_model.hpp"
+#include "common/model/hand_urdf.hpp"
 
 namespace prehend::model {
 namespace {
@@ -17,11 +17,11 @@ namespace {
 using Eigen::Vector3d;
 using Eigen::VectorXd;
 
-constexpr std::size_t most_entries = 32;
+constexpr std::size_t max_entries = 32;
 constexpr double prismatic_squeeze =
-    0.005;                             // m, for the full effort unless hand.toml says otherwise
-constexpr double most_coupling = 1e4;  // rad/m of a gear rack of 0.1 mm
-constexpr double tolerance = 1e-3;     // rad or m, of limits and postures written by hand
+    0.005;                            // m, for the full effort unless hand.toml says otherwise
+constexpr double max_coupling = 1e4;  // rad/m of a gear rack of 0.1 mm
+constexpr double tolerance = 1e-3;    // rad or m, of limits and postures written by hand
 
 Expected<std::string> read_text(const std::filesystem::path& file) {
   std::ifstream stream(file, std::ios::binary);
@@ -83,7 +83,7 @@ Expected<VectorXd> numbers(const toml::node* node, std::size_t count, const std:
 /// The entries of [[key]], 1 to 32 tables.
 Expected<std::vector<const toml::table*>> entries(const toml::table& root, const std::string& key) {
   const toml::array* array = root[key].as_array();
-  if (!array || array->empty() || array->size() > most_entries ||
+  if (!array || array->empty() || array->size() > max_entries ||
       !array->is_homogeneous(toml::node_type::table))
     return fail("needs 1 to 32 [[" + key + "]] entries");
   std::vector<const toml::table*> tables;
@@ -223,8 +223,7 @@ class HandLoader {
         if (at < 0)
           return fail("mimics " + mimic->joint + ", which moves nothing in the URDF", joint.name);
       }
-      if (!(std::abs(joint.multiplier) < most_coupling) ||
-          !(std::abs(joint.offset) < most_coupling))
+      if (!(std::abs(joint.multiplier) < max_coupling) || !(std::abs(joint.offset) < max_coupling))
         return fail("coupling must be finite and of a size that a hand can have", joint.name);
       if (joint.multiplier == 0) return fail("coupling must not be zero", joint.name);
     }
@@ -416,6 +415,32 @@ Expected<HandModel> HandModel::parse(std::string_view urdf, std::string_view tom
 std::filesystem::path hand_directory(const std::string& hand) {
   if (hand.find('/') != std::string::npos) return hand;
   return share_directory() / "models" / "hands" / hand;
+}
+
+std::vector<std::string> hand_names() {
+  std::vector<std::string> names;
+  std::error_code none;
+  for (const auto& entry :
+       std::filesystem::directory_iterator(share_directory() / "models" / "hands", none))
+    if (std::filesystem::exists(entry.path() / "hand.toml", none))
+      names.push_back(entry.path().filename().string());
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+std::string lab_hand() {
+  try {
+    const toml::table lab = toml::parse_file((share_directory() / "lab.toml").string());
+    return lab["mapping"]["hand"].value_or(std::string());
+  } catch (const toml::parse_error&) {
+    return {};  // whoever needs a hand says that none is named
+  }
+}
+
+std::string hand_hint() {
+  std::string names;
+  for (const std::string& name : hand_names()) names += (names.empty() ? "" : ", ") + name;
+  return "choose one of " + names + ", or give the path of a folder";
 }
 
 Expected<HandModel> HandModel::load(const std::filesystem::path& directory) {

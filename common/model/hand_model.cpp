@@ -1,4 +1,4 @@
-#include "hand_model.hpp"
+#include "common/model/hand_model.hpp"
 
 #include <algorithm>
 
@@ -6,6 +6,10 @@ namespace prehend::model {
 
 using Eigen::Vector3d;
 using Eigen::VectorXd;
+
+double radian_of(const HandDof& dof) {
+  return dof.kind == JointKind::prismatic ? dof.squeeze / full_squeeze : 1.0;
+}
 
 Eigen::VectorXd HandModel::joint_angles(const Eigen::VectorXd& dof) const {
   VectorXd q(static_cast<Eigen::Index>(joints_.size()));

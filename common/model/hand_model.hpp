@@ -3,15 +3,15 @@
 #include <filesystem>
 #include <map>
 #include <optional>
-#include <prehend/base/error.hpp>
-#include <prehend/base/pose.hpp>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "human_hand.hpp"
-#include "placement.hpp"
-#include "shape.hpp"
+#include "common/base/error.hpp"
+#include "common/base/pose.hpp"
+#include "common/model/human_hand.hpp"
+#include "common/model/placement.hpp"
+#include "common/model/shape.hpp"
 
 namespace prehend::model {
 
@@ -53,6 +53,9 @@ struct HandJoint {
   std::optional<double> breakaway;
 };
 
+/// How far past the contact a finger must be commanded to grip with full effort, rad.
+inline constexpr double full_squeeze = 0.15;
+
 /// Values are those of the joint that leads it: rad and rad/s, or m and m/s.
 struct HandDof {
   std::string name;
@@ -63,8 +66,13 @@ struct HandDof {
   /// Which way closes the hand: +1, -1, or 0 (spread, abduction).
   int closing = 0;
   /// How far past the contact a command must be to ask for the full effort, rad or m.
-  double squeeze = 0.15;
+  double squeeze = full_squeeze;
 };
+
+/// What 1 rad of a finger is for this DoF wherever an angle says how far a hand closes, presses or
+/// keeps still: 1 for what turns. A slide has no angle; its squeeze in m asks for the same effort
+/// as full_squeeze does of a finger, so m of it per rad are squeeze / full_squeeze.
+double radian_of(const HandDof& dof);
 
 struct HandFingertip {
   std::string name;  // finger
@@ -76,6 +84,15 @@ struct HandFingertip {
 
 /// The folder of a hand: what has a slash is a path, anything else a name in models/hands.
 std::filesystem::path hand_directory(const std::string& hand);
+
+/// The hands that come with us, sorted: the folders in models/hands.
+std::vector<std::string> hand_names();
+
+/// The hand of the lab that comes with us (lab.toml), for tools that read no configuration.
+std::string lab_hand();
+
+/// «choose one of ...», for messages.
+std::string hand_hint();
 
 /// A robot hand as data: kinematics and collision shapes from hand.urdf, the rest from hand.toml.
 /// B: base frame (the root link). Values are checked when loaded, so users need not.

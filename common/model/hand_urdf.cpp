@@ -1,4 +1,4 @@
-#include "hand_urdf.hpp"
+#include "common/model/hand_urdf.hpp"
 
 #include <urdf_model/model.h>
 #include <urdf_parser/urdf_parser.h>
@@ -6,7 +6,7 @@
 #include <cmath>
 #include <exception>
 
-#include "xml.hpp"
+#include "common/model/xml.hpp"
 
 namespace prehend::model {
 namespace {
@@ -14,11 +14,11 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-constexpr std::size_t most_links = 256;
+constexpr std::size_t max_links = 256;
 // Beyond these, sums and squares may overflow.
-constexpr double most_metres = 100;
-constexpr double most_kilograms = 1000;
-constexpr double most_travel = 1000;  // rad or m
+constexpr double max_metres = 100;
+constexpr double max_kilograms = 1000;
+constexpr double max_travel = 1000;  // rad or m
 
 Vector3d vector_of(const urdf::Vector3& v) {
   return {v.x, v.y, v.z};
@@ -62,7 +62,7 @@ void add_mass(HandLink& link, double mass, const Vector3d& com, const Matrix3d& 
 
 /// Finite, and of a size that a hand can have.
 bool is_sane(const Pose& X) {
-  return is_finite(X) && X.translation().norm() < most_metres;
+  return is_finite(X) && X.translation().norm() < max_metres;
 }
 
 Expected<HandJoint> read_joint(const urdf::Joint& source) {
@@ -81,8 +81,8 @@ Expected<HandJoint> read_joint(const urdf::Joint& source) {
   joint.lower = source.limits->lower;
   joint.upper = source.limits->upper;
   joint.max_torque = source.limits->effort;
-  if (!(joint.lower < joint.upper) || !(std::abs(joint.lower) < most_travel) ||
-      !(std::abs(joint.upper) < most_travel) || !(joint.max_torque > 0) ||
+  if (!(joint.lower < joint.upper) || !(std::abs(joint.lower) < max_travel) ||
+      !(std::abs(joint.upper) < max_travel) || !(joint.max_torque > 0) ||
       !std::isfinite(joint.max_torque))
     return fail(
         "limits need lower < upper, both of a size that a hand can have, and a positive effort",
@@ -147,8 +147,8 @@ class TreeReader {
       const Pose X_LI = X_LF * pose_of(in.origin);
       Matrix3d inertia;
       inertia << in.ixx, in.ixy, in.ixz, in.ixy, in.iyy, in.iyz, in.ixz, in.iyz, in.izz;
-      if (!(in.mass > 0) || !(in.mass < most_kilograms) || !is_sane(X_LI) ||
-          !(inertia.norm() < most_kilograms * most_metres * most_metres) ||
+      if (!(in.mass > 0) || !(in.mass < max_kilograms) || !is_sane(X_LI) ||
+          !(inertia.norm() < max_kilograms * max_metres * max_metres) ||
           inertia.llt().info() != Eigen::Success)
         return fail("mass and inertia must be positive and of a size that a hand can have",
                     source.name);
@@ -159,7 +159,7 @@ class TreeReader {
       if (!collision || !collision->geometry)
         return fail("has an empty collision element", source.name);
       auto shape = shape_of(*collision->geometry);
-      if (!shape) return fail(shape.error().what, source.name, shape.error().mend);
+      if (!shape) return fail(shape.error().what, source.name, shape.error().hint);
       link.collision.push_back({*shape, X_LF * pose_of(collision->origin)});
       if (!is_sane(link.collision.back().X_LS))
         return fail("origin is not finite or far away", source.name);
@@ -183,8 +183,8 @@ Expected<HandTree> read_hand_urdf(const std::string& text) {
   }
   if (!source || !source->getRoot())
     return fail("is no robot description", {}, "`prehend hand check` says what is wrong with it");
-  if (source->links_.size() > most_links)
-    return fail("has more than " + std::to_string(most_links) + " links");
+  if (source->links_.size() > max_links)
+    return fail("has more than " + std::to_string(max_links) + " links");
 
   TreeReader reader(source->links_.size());
   const urdf::Link& root = *source->getRoot();

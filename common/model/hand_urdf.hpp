@@ -1,11 +1,11 @@
 #pragma once
 
 #include <optional>
-#include <prehend/base/error.hpp>
 #include <string>
 #include <vector>
 
-#include "hand_model.hpp"
+#include "common/base/error.hpp"
+#include "common/model/hand_model.hpp"
 
 namespace prehend::model {
 

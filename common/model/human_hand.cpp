@@ -1,9 +1,11 @@
-#include "human_hand.hpp"
+#include "common/model/human_hand.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <utility>
+
+#include "common/base/named_values.hpp"
 
 namespace prehend::model {
 namespace {
@@ -135,11 +137,7 @@ double clearance(const Capsule& capsule, const Shape& shape, const Pose& X_OH) {
 }  // namespace
 
 std::optional<Finger> finger_from_string(std::string_view name) {
-  constexpr std::array<std::string_view, finger_count> names{"thumb", "index", "middle", "ring",
-                                                             "little"};
-  const auto found = std::find(names.begin(), names.end(), name);
-  if (found == names.end()) return std::nullopt;
-  return static_cast<Finger>(found - names.begin());
+  return finger_names.value(name);
 }
 
 HumanHand::HumanHand(double scale, const std::array<double, finger_count>& fingers)

@@ -2,16 +2,22 @@
 
 #include <array>
 #include <optional>
-#include <prehend/base/pose.hpp>
 #include <string_view>
 #include <vector>
 
-#include "shape.hpp"
+#include "common/base/named_values.hpp"
+#include "common/base/pose.hpp"
+#include "common/model/shape.hpp"
 
 namespace prehend::model {
 
 enum class Finger { thumb, index, middle, ring, little };
 inline constexpr int finger_count = 5;
+inline constexpr auto finger_names = named_values<Finger>({{Finger::thumb, "thumb"},
+                                                           {Finger::index, "index"},
+                                                           {Finger::middle, "middle"},
+                                                           {Finger::ring, "ring"},
+                                                           {Finger::little, "little"}});
 std::optional<Finger> finger_from_string(std::string_view name);
 inline constexpr int human_dof_count = 20;
 

@@ -1,4 +1,4 @@
-#include "mesh.hpp"
+#include "common/model/mesh.hpp"
 
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
@@ -18,7 +18,7 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-constexpr std::size_t most_triangles = 200000;
+constexpr std::size_t max_triangles = 200000;
 
 /// Adds the triangles of a node and all below it, with equal vertices merged.
 class Collector {
@@ -96,7 +96,7 @@ Expected<Mesh> load_mesh(const std::filesystem::path& file, double scale) {
   collector.add(*scene, *scene->mRootNode, aiMatrix4x4());
   Mesh mesh = std::move(collector.mesh);
   if (mesh.triangles.empty()) return fail("has no triangles", file.string());
-  if (mesh.triangles.size() > most_triangles)
+  if (mesh.triangles.size() > max_triangles)
     return fail("has more than 200,000 triangles", file.string(), "simplify it");
   for (const Vector3d& vertex : mesh.vertices)
     if (!vertex.allFinite() || vertex.norm() > 10)
@@ -105,7 +105,7 @@ Expected<Mesh> load_mesh(const std::filesystem::path& file, double scale) {
   if (signed_volume(mesh) < 0)
     for (Eigen::Vector3i& triangle : mesh.triangles) std::swap(triangle[1], triangle[2]);
   if (const auto solid = measure(mesh); !solid)
-    return fail(solid.error().what, file.string(), solid.error().mend);
+    return fail(solid.error().what, file.string(), solid.error().hint);
   return mesh;
 }
 

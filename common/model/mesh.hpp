@@ -2,8 +2,9 @@
 
 #include <Eigen/Core>
 #include <filesystem>
-#include <prehend/base/error.hpp>
 #include <vector>
+
+#include "common/base/error.hpp"
 
 namespace prehend::model {
 

@@ -1,4 +1,4 @@
-#include "placement.hpp"
+#include "common/model/placement.hpp"
 
 #include <algorithm>
 #include <array>

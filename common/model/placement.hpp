@@ -1,9 +1,9 @@
 #pragma once
 
 #include <optional>
-#include <prehend/base/pose.hpp>
 
-#include "shape.hpp"
+#include "common/base/pose.hpp"
+#include "common/model/shape.hpp"
 
 namespace prehend::model {
 

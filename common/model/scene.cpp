@@ -1,4 +1,4 @@
-#include "scene.hpp"
+#include "common/model/scene.hpp"
 
 #include <fmt/format.h>
 #include <toml++/toml.h>
@@ -6,8 +6,9 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <prehend/base/random.hpp>
 #include <set>
+
+#include "common/base/random.hpp"
 
 namespace prehend::model {
 namespace {
@@ -127,6 +128,98 @@ std::string quoted(const std::string& text) {
   return result + "\"";
 }
 
+void read_scene(TableReader& reader, Scene& scene) {
+  reader.read("name", scene.name);
+  reader.read("table_colour", scene.table_colour);
+  reader.read_seed("texture_seed", scene.texture_seed);
+  reader.read("X_WH", scene.X_WH);
+  reader.read("recording_rate", scene.recording_rate);
+}
+
+void read_light(TableReader& reader, Light& light) {
+  reader.read("to_light_W", light.to_light_W);
+  reader.read("ambient", light.ambient);
+  reader.read("gain", light.gain);
+  reader.read("colour", light.colour);
+}
+
+void read_demonstrator(TableReader& reader, Demonstrator& person) {
+  reader.read("user", person.user);
+  reader.read("target", person.target);
+  reader.read("hand_scale", person.hand_scale);
+  reader.read("grasp_yaw", person.grasp_yaw);
+  reader.read("reach", person.reach);
+  reader.read("approach_offset", person.approach_offset);
+  reader.read("approach_turn", person.approach_turn);
+  reader.read("position_noise", person.position_noise);
+  reader.read("angle_noise", person.angle_noise);
+  reader.read("extreme_rate", person.extreme_rate);
+  reader.read_seed("seed", person.seed);
+}
+
+/// What makes no sense in a scene whose values can be read; empty: nothing.
+std::string contradiction(const Scene& scene) {
+  if (!(scene.recording_rate > 0)) return "recording_rate must be positive";
+  if (!(scene.light.to_light_W.norm() > 1e-6)) return "light has no direction";
+  if (!(scene.demonstrator.hand_scale >= 0.7 && scene.demonstrator.hand_scale <= 1.4))
+    return "hand_scale must lie in 0.7 to 1.4";
+  const std::string& target = scene.demonstrator.target;
+  if (!target.empty() &&
+      std::none_of(scene.objects.begin(), scene.objects.end(),
+                   [&](const PlacedObject& object) { return object.name == target; }))
+    return "the demonstrator's target '" + target + "' stands nowhere";
+  return {};
+}
+
+/// A light as the seed wants it.
+Light drawn_light(Random& random) {
+  Light light;
+  const double turn = random.uniform(0, 2 * pi), height = random.uniform(0.6, 1.3);
+  light.to_light_W = {std::cos(turn) * std::cos(height), std::sin(turn) * std::cos(height),
+                      std::sin(height)};
+  light.ambient = random.uniform(0.35, 0.6);
+  light.gain = random.uniform(0.85, 1.15);
+  for (double& channel : light.colour) channel = random.uniform(0.94, 1.06);
+  return light;
+}
+
+void place(Scene& scene, const CatalogueObject& object, double x, double y, double yaw) {
+  const double height = half_extents(object.shape).z();
+  scene.objects.push_back(
+      {object.name, make_pose(Vector3d(x, y, height),
+                              Eigen::Quaterniond(Eigen::AngleAxisd(yaw, Vector3d::UnitZ())))});
+}
+
+/// Others than the first object of the scene, where they neither hide it nor are in the way of the
+/// hands.
+void place_distractors(Scene& scene, const Catalogue& catalogue, int count, Random& random) {
+  const double x = scene.objects.front().X_WO.translation().x();
+  const double y = scene.objects.front().X_WO.translation().y();
+  std::set<std::string> used{scene.objects.front().name};
+  for (int tries = 0; tries < 500 && static_cast<int>(used.size()) <= count; ++tries) {
+    const CatalogueObject& other = catalogue.objects()[random.index(catalogue.objects().size())];
+    const double ox = random.uniform(-0.4, 0.4), oy = random.uniform(-0.2, 0.35);
+    const double yaw = random.uniform(-pi, pi);
+    if (used.contains(other.name)) continue;
+    const double radius = half_extents(other.shape).head<2>().norm();
+    const double towards = std::atan2(oy - y, ox - x);
+    const auto apart = [&](double azimuth) {
+      return std::abs(std::remainder(towards - azimuth, 2 * pi));
+    };
+    if (std::hypot(ox - x, oy - y) < 0.24 + radius) continue;
+    if (apart(scene.demonstrator.grasp_yaw) < 1.2 || apart(-pi / 2) < 1.0) continue;
+    const bool crowded = std::any_of(
+        scene.objects.begin() + 1, scene.objects.end(), [&](const PlacedObject& placed) {
+          const double taken = half_extents(catalogue.find(placed.name)->shape).head<2>().norm();
+          return std::hypot(placed.X_WO.translation().x() - ox,
+                            placed.X_WO.translation().y() - oy) < taken + radius + 0.03;
+        });
+    if (crowded) continue;
+    place(scene, other, ox, oy, yaw);
+    used.insert(other.name);
+  }
+}
+
 }  // namespace
 
 Expected<Scene> load_scene(const std::filesystem::path& file, const Catalogue& catalogue) {
@@ -148,33 +241,10 @@ Expected<Scene> load_scene(const std::filesystem::path& file, const Catalogue& c
     read(reader);
     if (problem.empty()) problem = reader.problem();
   };
-  read_table("scene", [&](TableReader& reader) {
-    reader.read("name", scene.name);
-    reader.read("table_colour", scene.table_colour);
-    reader.read_seed("texture_seed", scene.texture_seed);
-    reader.read("X_WH", scene.X_WH);
-    reader.read("recording_rate", scene.recording_rate);
-  });
-  read_table("light", [&](TableReader& reader) {
-    reader.read("to_light_W", scene.light.to_light_W);
-    reader.read("ambient", scene.light.ambient);
-    reader.read("gain", scene.light.gain);
-    reader.read("colour", scene.light.colour);
-  });
-  read_table("demonstrator", [&](TableReader& reader) {
-    Demonstrator& person = scene.demonstrator;
-    reader.read("user", person.user);
-    reader.read("target", person.target);
-    reader.read("hand_scale", person.hand_scale);
-    reader.read("grasp_yaw", person.grasp_yaw);
-    reader.read("reach", person.reach);
-    reader.read("approach_offset", person.approach_offset);
-    reader.read("approach_turn", person.approach_turn);
-    reader.read("position_noise", person.position_noise);
-    reader.read("angle_noise", person.angle_noise);
-    reader.read("extreme_rate", person.extreme_rate);
-    reader.read_seed("seed", person.seed);
-  });
+  read_table("scene", [&](TableReader& reader) { read_scene(reader, scene); });
+  read_table("light", [&](TableReader& reader) { read_light(reader, scene.light); });
+  read_table("demonstrator",
+             [&](TableReader& reader) { read_demonstrator(reader, scene.demonstrator); });
   if (root["object"] && !root["object"].as_array()) problem = "object must be [[object]]";
   if (const toml::array* entries = root["object"].as_array())
     for (const toml::node& entry : *entries) {
@@ -193,17 +263,7 @@ Expected<Scene> load_scene(const std::filesystem::path& file, const Catalogue& c
     if (key != "scene" && key != "light" && key != "demonstrator" && key != "object" &&
         problem.empty())
       problem = fmt::format("{} is not a table of a scene", key.str());
-  if (problem.empty() && !(scene.recording_rate > 0)) problem = "recording_rate must be positive";
-  if (problem.empty() && !(scene.light.to_light_W.norm() > 1e-6))
-    problem = "light has no direction";
-  if (problem.empty() &&
-      !(scene.demonstrator.hand_scale >= 0.7 && scene.demonstrator.hand_scale <= 1.4))
-    problem = "hand_scale must lie in 0.7 to 1.4";
-  const std::string& target = scene.demonstrator.target;
-  if (problem.empty() && !target.empty() &&
-      std::none_of(scene.objects.begin(), scene.objects.end(),
-                   [&](const PlacedObject& object) { return object.name == target; }))
-    problem = "the demonstrator's target '" + target + "' stands nowhere";
+  if (problem.empty()) problem = contradiction(scene);
   if (!problem.empty()) return fail(problem, file.string(), "see common/model/scene.hpp");
   scene.light.to_light_W.normalize();
   return scene;
@@ -243,12 +303,7 @@ Expected<Scene> make_scene(const Catalogue& catalogue, std::uint64_t seed,
   scene.name = fmt::format("seed-{}", seed);
   scene.texture_seed = random.bits() >> 1;
   for (double& channel : scene.table_colour) channel = random.uniform(0.35, 0.75);
-  const double light_turn = random.uniform(0, 2 * pi), light_height = random.uniform(0.6, 1.3);
-  scene.light.to_light_W = {std::cos(light_turn) * std::cos(light_height),
-                            std::sin(light_turn) * std::cos(light_height), std::sin(light_height)};
-  scene.light.ambient = random.uniform(0.35, 0.6);
-  scene.light.gain = random.uniform(0.85, 1.15);
-  for (double& channel : scene.light.colour) channel = random.uniform(0.94, 1.06);
+  scene.light = drawn_light(random);
 
   std::vector<std::string> names = options.graspable;
   if (names.empty())
@@ -260,14 +315,8 @@ Expected<Scene> make_scene(const Catalogue& catalogue, std::uint64_t seed,
                     "' is not in the catalogue",
                 "scene", "see prehend demo --help");
 
-  const auto place = [&](const CatalogueObject& object, double x, double y, double yaw) {
-    const double height = half_extents(object.shape).z();
-    scene.objects.push_back(
-        {object.name, make_pose(Vector3d(x, y, height),
-                                Eigen::Quaterniond(Eigen::AngleAxisd(yaw, Vector3d::UnitZ())))});
-  };
   const double x = random.uniform(-0.12, 0.12), y = random.uniform(-0.15, 0.05);
-  place(*target, x, y, random.uniform(-pi / 2, pi / 2));
+  place(scene, *target, x, y, random.uniform(-pi / 2, pi / 2));
 
   Demonstrator& person = scene.demonstrator;
   person.user = fmt::format("user{}", seed);
@@ -279,31 +328,7 @@ Expected<Scene> make_scene(const Catalogue& catalogue, std::uint64_t seed,
   person.approach_turn = axis * random.uniform(0, 10 * pi / 180);
   person.seed = random.bits() >> 1;
 
-  // Others stand where they neither hide the target nor are in the way of the hands.
-  std::set<std::string> used{target->name};
-  for (int tries = 0; tries < 500 && static_cast<int>(used.size()) <= options.distractors;
-       ++tries) {
-    const CatalogueObject& other = catalogue.objects()[random.index(catalogue.objects().size())];
-    const double ox = random.uniform(-0.4, 0.4), oy = random.uniform(-0.2, 0.35);
-    const double yaw = random.uniform(-pi, pi);
-    if (used.contains(other.name)) continue;
-    const double radius = half_extents(other.shape).head<2>().norm();
-    const double towards = std::atan2(oy - y, ox - x);
-    const auto apart = [&](double azimuth) {
-      return std::abs(std::remainder(towards - azimuth, 2 * pi));
-    };
-    if (std::hypot(ox - x, oy - y) < 0.24 + radius) continue;
-    if (apart(person.grasp_yaw) < 1.2 || apart(-pi / 2) < 1.0) continue;
-    const bool crowded = std::any_of(
-        scene.objects.begin() + 1, scene.objects.end(), [&](const PlacedObject& placed) {
-          const double taken = half_extents(catalogue.find(placed.name)->shape).head<2>().norm();
-          return std::hypot(placed.X_WO.translation().x() - ox,
-                            placed.X_WO.translation().y() - oy) < taken + radius + 0.03;
-        });
-    if (crowded) continue;
-    place(other, ox, oy, yaw);
-    used.insert(other.name);
-  }
+  place_distractors(scene, catalogue, options.distractors, random);
   return scene;
 }
 

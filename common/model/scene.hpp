@@ -3,12 +3,12 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
-#include <prehend/base/pose.hpp>
 #include <string>
 #include <vector>
 
-#include "catalogue.hpp"
-#include "placement.hpp"
+#include "common/base/pose.hpp"
+#include "common/model/catalogue.hpp"
+#include "common/model/placement.hpp"
 
 namespace prehend::model {
 

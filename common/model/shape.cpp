@@ -1,19 +1,20 @@
-#include "shape.hpp"
+#include "common/model/shape.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <utility>
+
+#include "common/base/named_values.hpp"
 
 namespace prehend::model {
 namespace {
 
-constexpr std::array<std::pair<ShapeKind, std::string_view>, 4> kind_names{{
-    {ShapeKind::unknown, "unknown"},
-    {ShapeKind::cylinder, "cylinder"},
-    {ShapeKind::box, "box"},
-    {ShapeKind::sphere, "sphere"},
-}};
+constexpr auto kind_names = named_values<ShapeKind>({{ShapeKind::unknown, "unknown"},
+                                                     {ShapeKind::cylinder, "cylinder"},
+                                                     {ShapeKind::box, "box"},
+                                                     {ShapeKind::sphere, "sphere"}});
 
 /// Distance of a point from an axis-aligned box around the origin, in any number of dimensions.
 template <class Vector>
@@ -25,15 +26,11 @@ double box_distance(const Vector& p, const Vector& half) {
 }  // namespace
 
 std::string_view to_string(ShapeKind kind) {
-  for (const auto& [known, name] : kind_names)
-    if (known == kind) return name;
-  return "unknown";
+  return kind_names.name(kind);
 }
 
 std::optional<ShapeKind> shape_from_string(std::string_view name) {
-  for (const auto& [kind, known] : kind_names)
-    if (known == name) return kind;
-  return std::nullopt;
+  return kind_names.value(name);
 }
 
 bool is_valid(const Shape& shape) {
@@ -72,6 +69,18 @@ double signed_distance(const Shape& shape, const Eigen::Vector3d& p_O) {
 
 double characteristic_size(const Shape& shape) {
   return shape.size.x();
+}
+
+double volume(const Shape& shape) {
+  const Eigen::Vector3d& s = shape.size;
+  switch (shape.kind) {
+    case ShapeKind::box:
+      return s.prod();
+    case ShapeKind::cylinder:
+      return std::numbers::pi * s.x() * s.x() * s.z();
+    default:
+      return 4.0 / 3 * std::numbers::pi * s.x() * s.x() * s.x();
+  }
 }
 
 }  // namespace prehend::model

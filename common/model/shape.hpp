@@ -27,10 +27,13 @@ bool is_valid(const Shape& shape);
 /// Half the edges of the box that bounds the shape along its own axes, m.
 Eigen::Vector3d half_extents(const Shape& shape);
 
+/// m³; of an unknown kind that of the sphere.
+double volume(const Shape& shape);
+
 /// Distance of p_O from the surface, m, negative inside. Exact outside and inside.
 double signed_distance(const Shape& shape, const Eigen::Vector3d& p_O);
 
-/// The one number that the thesis gives the intelligent mapping: radius, or a box's depth. m.
+/// The one number that [Thesis, 5.3] gives the intelligent mapping: radius, or a box's depth. m.
 double characteristic_size(const Shape& shape);
 
 }  // namespace prehend::model

@@ -1,4 +1,4 @@
-#include "xml.hpp"
+#include "common/model/xml.hpp"
 
 #include <tinyxml2.h>
 

@@ -1,8 +1,9 @@
 #pragma once
 
 #include <map>
-#include <prehend/base/error.hpp>
 #include <string>
+
+#include "common/base/error.hpp"
 
 namespace prehend::model {
 

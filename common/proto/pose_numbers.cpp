@@ -1,4 +1,4 @@
-#include "pose_numbers.hpp"
+#include "common/proto/pose_numbers.hpp"
 
 #include <Eigen/LU>
 

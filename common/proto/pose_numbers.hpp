@@ -1,8 +1,9 @@
 #pragma once
 
 #include <array>
-#include <prehend/base/pose.hpp>
 #include <vector>
+
+#include "common/base/pose.hpp"
 
 namespace prehend::proto {
 

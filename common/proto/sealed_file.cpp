@@ -1,4 +1,4 @@
-#include "sealed_file.hpp"
+#include "common/proto/sealed_file.hpp"
 
 #include <fmt/format.h>
 #include <openssl/sha.h>

@@ -1,9 +1,10 @@
 #pragma once
 
 #include <filesystem>
-#include <prehend/base/error.hpp>
 #include <string>
 #include <string_view>
+
+#include "common/base/error.hpp"
 
 namespace prehend::proto {
 

@@ -1,9 +1,8 @@
-#include "arguments.hpp"
+#include "common/service/arguments.hpp"
 
 #include <CLI/CLI.hpp>
-#include <iostream>
-#include <prehend/base/log.hpp>
-#include <prehend/base/paths.hpp>
+
+#include "common/base/paths.hpp"
 
 namespace prehend::service {
 
@@ -34,25 +33,6 @@ std::vector<std::string> LabArguments::for_service() const {
   std::vector<std::string> arguments{"--config", file()};
   for (const std::string& set : overrides()) arguments.insert(arguments.end(), {"--set", set});
   return arguments;
-}
-
-std::optional<int> parse(CLI::App& app, const std::vector<std::string>& arguments) {
-  // CLI11 wants them last first.
-  std::vector<std::string> reversed(arguments.rbegin(), arguments.rend());
-  try {
-    app.parse(reversed);
-  } catch (const CLI::CallForHelp&) {
-    std::cout << app.help();
-    return exit_done;
-  } catch (const CLI::ParseError& error) {
-    return complain({error.what(), app.get_name(), "see --help"}, exit_wrong_use);
-  }
-  return std::nullopt;
-}
-
-int complain(const Error& error, int exit_code) {
-  log::error("{}", error.message());
-  return exit_code;
 }
 
 }  // namespace prehend::service

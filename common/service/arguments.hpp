@@ -1,20 +1,14 @@
 #pragma once
 
 #include <optional>
-#include <prehend/base/error.hpp>
 #include <string>
 #include <vector>
 
-#include "config.hpp"
-
-namespace CLI {
-class App;
-}
+#include "common/base/error.hpp"
+#include "common/service/config.hpp"
+#include "common/tool/program.hpp"
 
 namespace prehend::service {
-
-/// Exit codes of every subcommand.
-enum ExitCode { exit_done = 0, exit_no = 1, exit_wrong_use = 2, exit_broken = 3 };
 
 /// Which lab is meant: options that many programs share.
 struct LabArguments {
@@ -31,10 +25,7 @@ struct LabArguments {
   std::vector<std::string> for_service() const;
 };
 
-/// Parses; on --help or wrong use it says what there is to say and returns the exit code.
-std::optional<int> parse(CLI::App& app, const std::vector<std::string>& arguments);
-
-/// Says what is wrong, on one line, and returns the exit code.
-int complain(const Error& error, int exit_code);
+using tool::complain;
+using tool::parse;
 
 }  // namespace prehend::service

@@ -1,4 +1,4 @@
-#include "conductor.hpp"
+#include "common/service/conductor.hpp"
 
 #include <algorithm>
 

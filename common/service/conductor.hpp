@@ -5,12 +5,13 @@
 #include <functional>
 #include <map>
 #include <optional>
-#include <prehend/base/time.hpp>
-#include <prehend/dds/participant.hpp>
 #include <set>
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include "common/base/time.hpp"
+#include "common/dds/participant.hpp"
 
 namespace prehend::service {
 

@@ -1,4 +1,4 @@
-#include "config.hpp"
+#include "common/service/config.hpp"
 
 #include <fmt/format.h>
 #include <toml++/toml.h>
@@ -7,7 +7,8 @@
 #include <cctype>
 #include <cstdlib>
 #include <optional>
-#include <prehend/base/paths.hpp>
+
+#include "common/base/paths.hpp"
 
 namespace prehend::service {
 namespace {

@@ -3,11 +3,12 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
-#include <prehend/base/error.hpp>
 #include <string>
 #include <string_view>
 #include <variant>
 #include <vector>
+
+#include "common/base/error.hpp"
 
 namespace prehend::service {
 

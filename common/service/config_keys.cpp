@@ -1,4 +1,4 @@
-#include "config.hpp"
+#include "common/service/config.hpp"
 
 namespace prehend::service {
 
@@ -33,13 +33,13 @@ const std::vector<ConfigKey>& config_keys() {
       {"tracker.X_WT", Numbers{0, 0, 0, 1, 0, 0, 0}, "tracker's frame on the table"},
 
       {"glove.name", Text("glove"), "key of this glove's topics"},
-      {"glove.device", Text("synthetic"),
-       "topic, nest_of_birds, joint_glove, landmarks, recording or synthetic"},
+      {"glove.device", Text(""),
+       "what measures the hand, see `prehend glove devices`; empty: the first of these"},
       {"glove.user", Text("anyone"), "who wears the glove"},
       {"glove.hand", Text("right"), "right, or left, which is mirrored into a right one"},
       {"glove.calibration", Text(""), "the user's file from prehend glove calibrate; empty: none"},
       {"glove.hand_scale", 1.0, "length of the user's hand, 1 = average adult"},
-      {"glove.port", Text(""), "serial port, or host:port where landmarks come"},
+      {"glove.port", Text(""), "serial port, or host:port where datagrams come"},
       {"glove.baud", std::int64_t{115200}, "bits per second on that port"},
       {"glove.sites", Names{"back_of_hand", "thumb", "index", "little"},
        "where the tracker's sensors sit, in the order of their addresses"},
@@ -61,7 +61,8 @@ const std::vector<ConfigKey>& config_keys() {
       {"camera.X_WC", Numbers{0, -0.75, 0.8, 0.36650123, -0.93041757, 0, 0},
        "camera in the table's frame; z looks into the scene, x right, y down"},
 
-      {"recognition.source", Text("synthetic"), "topic, device, video, folder or synthetic"},
+      {"recognition.source", Text(""),
+       "where pictures come from, see `prehend camera sources`; empty: the first of these"},
       {"recognition.path", Text(""), "device file, video file or stream, or folder of pictures"},
       {"recognition.rate", 10.0, "Hz, at which pictures are taken"},
       {"recognition.model", Text("share:trained/objects.model"), "trained object models"},
@@ -69,14 +70,15 @@ const std::vector<ConfigKey>& config_keys() {
        "jpeg that always shows the last picture and what is in it"},
       {"recognition.accept", 0.7, "least probability of a published detection"},
 
-      {"mapping.hand", Text("barrett"), "kind of robot hand"},
+      {"mapping.hand", Text(""), "kind of robot hand: a folder in models/hands, or a path"},
       {"mapping.hand_name", Text("hand"), "key of robot/command"},
-      {"mapping.model", Text("share:trained/barrett.mapping"), "trained mapping model"},
+      {"mapping.model", Text(""), "trained mapping model; empty: share:trained/HAND.mapping"},
       {"mapping.intelligent", true, "let detections improve the mapping"},
       {"mapping.placement", true, "let them correct the hand's placement as well"},
-      {"mapping.mode", Text("joints"), "fingers: joints, cartesian, combined or retargeting"},
+      {"mapping.mode", Text(""),
+       "how fingers are answered, see services/mapping; empty: by the trained network"},
 
-      {"simulation.hand", Text("barrett"), "kind of robot hand"},
+      {"simulation.hand", Text(""), "kind of robot hand: a folder in models/hands, or a path"},
       {"simulation.hand_name", Text("hand"), "key of robot/command"},
       {"simulation.rate", 500.0, "Hz, physics steps"},
       {"simulation.state_rate", 100.0, "Hz, robot/state and object/state"},

@@ -1,10 +1,11 @@
-#include "lab.hpp"
+#include "common/service/lab.hpp"
 
 #include <fmt/format.h>
 
 #include <csignal>
 #include <cstdlib>
-#include <prehend/base/paths.hpp>
+
+#include "common/base/paths.hpp"
 
 namespace prehend::service {
 

@@ -2,11 +2,11 @@
 
 #include <filesystem>
 #include <optional>
-#include <prehend/base/error.hpp>
 #include <string>
 #include <vector>
 
-#include "process.hpp"
+#include "common/base/error.hpp"
+#include "common/service/process.hpp"
 
 namespace prehend::service {
 

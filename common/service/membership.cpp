@@ -1,4 +1,4 @@
-#include "membership.hpp"
+#include "common/service/membership.hpp"
 
 namespace prehend::service {
 

@@ -1,9 +1,9 @@
 #pragma once
 
-#include <prehend/dds/participant.hpp>
 #include <string>
 
-#include "config.hpp"
+#include "common/dds/participant.hpp"
+#include "common/service/config.hpp"
 
 namespace prehend::service {
 

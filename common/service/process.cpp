@@ -1,4 +1,4 @@
-#include "process.hpp"
+#include "common/service/process.hpp"
 
 #include <fcntl.h>
 #include <sys/prctl.h>

@@ -5,10 +5,11 @@
 #include <filesystem>
 #include <map>
 #include <optional>
-#include <prehend/base/error.hpp>
-#include <prehend/base/time.hpp>
 #include <string>
 #include <vector>
+
+#include "common/base/error.hpp"
+#include "common/base/time.hpp"
 
 namespace prehend::service {
 

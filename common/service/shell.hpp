@@ -3,21 +3,23 @@
 #include <functional>
 #include <memory>
 #include <optional>
-#include <prehend/dds/participant.hpp>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "config.hpp"
-#include "status.hpp"
+#include "common/dds/participant.hpp"
+#include "common/service/clock_sync.hpp"
+#include "common/service/config.hpp"
+#include "common/service/inbox.hpp"
+#include "common/service/status.hpp"
 
 namespace prehend::service {
 
 /// The shell of every process: arguments, configuration, life cycle, input, time, status.
 ///
-/// Use: create(), then publish() and subscribe(), on_tick(), run(). Everything that is given to the
-/// shell is called between the start and the end of run(), one call at a time. Only post(),
-/// exclusively() and status() may be used from other threads.
+/// Use: run() of life_cycle.hpp, or create(), publish() and subscribe(), on_tick(), run().
+/// Everything that is given to the shell is called between the start and the end of run(), one call
+/// at a time. Only post(), exclusively() and status() may be used from other threads.
 ///
 /// Live, a sample is handed over in the thread that received it (a change of threads would cost as
 /// much as the whole hop), and the tick follows the system clock. In lockstep (lab.lockstep = true,
@@ -35,9 +37,11 @@ class Shell {
   };
 
   /// Parses the arguments (--config, --set, --lockstep, --verbose, --help) and joins the lab. On
-  /// --help or an error it prints what there is to say and returns nothing; exit_code tells.
-  static std::unique_ptr<Shell> create(int argc, char** argv, const Options& options,
-                                       int& exit_code);
+  /// --help it prints the help, and fails with an error that says nothing and exits with done.
+  static Expected<std::unique_ptr<Shell>> create(int argc, char** argv, const Options& options);
+  /// The same for a tool that has arguments of its own: `arguments` are those of a service.
+  static Expected<std::unique_ptr<Shell>> create(std::vector<std::string> arguments,
+                                                 const Options& options);
   ~Shell();
 
   const Config& config() const;
@@ -48,6 +52,7 @@ class Shell {
   Time now() const;
 
   /// A function that publishes a sample on the topic, and one that disposes an instance by its key.
+  /// A topic that cannot be joined makes run() fail, as it does for subscribe().
   template <class T>
   struct Output {
     std::function<void(const T&)> publish;
@@ -72,20 +77,13 @@ class Shell {
   /// it outside of run(). For devices whose frames must not wait for a change of threads.
   void exclusively(const std::function<void()>& task);
 
-  /// Ends run() with this exit code: 3 where the environment is broken.
-  void stop(int exit_code = 0);
+  /// Ends run() with this exit code.
+  void stop(Exit exit = exit_done);
 
-  /// Until SIGTERM, SIGINT or stop(). Returns the exit code.
-  int run();
+  /// Until SIGTERM, SIGINT or stop(). Fails at once where a topic could not be joined.
+  Expected<Exit> run();
 
  private:
-  /// A sample on its way: the stamp to order it among topics, and how to hand it over.
-  struct Arrival {
-    std::int64_t stamp_ns = 0;
-    std::function<void()> deliver;
-    std::uint64_t index = 0;  // lockstep: counts the topic's samples as they arrive
-  };
-  struct Input;
   template <class T>
   class Listener;
   struct State;
@@ -96,16 +94,15 @@ class Shell {
   /// Moves stamps from the writer's clock to ours.
   template <class T>
   void to_our_clock(dds::Sample<T>& sample) const;
-  struct Ahead {
-    Duration stamps{}, sent{};
-  };
-  Ahead ahead(const dds::SampleInfo& info) const;
-  void begin_beacons(const std::string& host);
-  void send_beacon();
+  ClockSync::Ahead ahead(const dds::SampleInfo& info) const;
   void keep(std::unique_ptr<eprosima::fastdds::dds::DataReaderListener> listener);
   /// Called by the thread that received samples.
   void arrive(Input& input, std::vector<Arrival> arrivals);
-  [[noreturn]] static void refuse(const Error& error);
+  /// Remembers the first topic that could not be joined.
+  void not_joined(const Error& error);
+  void run_live();
+  void run_in_lockstep();
+  Time beat(Time now);
   std::function<void()> count_output(std::string_view topic);
 
   std::unique_ptr<State> state_;
@@ -115,7 +112,10 @@ template <class P>
 Shell::Output<typename P::type> Shell::publish(const dds::Topic<P>& topic) {
   using T = typename P::type;
   auto made = participant().writer(topic);
-  if (!made) refuse(made.error());
+  if (!made) {
+    not_joined(made.error());
+    return {[](const T&) {}, [](const T&) {}};
+  }
   auto writer = std::make_shared<dds::Writer<T>>(std::move(*made));
   auto counted = count_output(topic.name);
   return {[this, writer, counted](const T& sample) {
@@ -160,7 +160,7 @@ class Shell::Listener : public eprosima::fastdds::dds::DataReaderListener {
 
 template <class T>
 void Shell::to_our_clock(dds::Sample<T>& sample) const {
-  const Ahead by = ahead(sample.info);
+  const ClockSync::Ahead by = ahead(sample.info);
   sample.info.sent -= by.sent;
   if (by.stamps == Duration::zero()) return;
   sample.data.stamp_ns(sample.data.stamp_ns() - by.stamps.count());
@@ -177,7 +177,7 @@ void Shell::subscribe(
   auto listener = std::make_unique<Listener<T>>(*this, add_input(topic.name), std::move(on_sample));
   auto* raw = listener.get();
   keep(std::move(listener));
-  if (auto made = participant().reader(topic, raw); !made) refuse(made.error());
+  if (auto made = participant().reader(topic, raw); !made) not_joined(made.error());
 }
 
 }  // namespace prehend::service

@@ -1,4 +1,4 @@
-#include "status.hpp"
+#include "common/service/status.hpp"
 
 #include <algorithm>
 #include <utility>

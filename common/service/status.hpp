@@ -1,17 +1,25 @@
 #pragma once
 
-#include <prehend/idl/Operation.h>
-
 #include <array>
 #include <cstdint>
 #include <map>
 #include <mutex>
-#include <prehend/base/time.hpp>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "common/base/named_values.hpp"
+#include "common/base/time.hpp"
+#include "idl/Operation.h"
+
 namespace prehend::service {
+
+/// What `prehend status` calls the state of a service.
+inline constexpr auto state_names =
+    named_values<v1::ServiceState>({{v1::STATE_STARTING, "starting"},
+                                    {v1::STATE_RUNNING, "running"},
+                                    {v1::STATE_DEGRADED, "degraded"},
+                                    {v1::STATE_STOPPING, "stopping"}});
 
 /// The last 1024 values of a latency.
 class LatencyWindow {

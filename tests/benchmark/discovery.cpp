@@ -23,14 +23,14 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
 #include <optional>
-#include <prehend/base/paths.hpp>
-#include <prehend/dds/participant.hpp>
-#include <prehend/service/lab.hpp>
-#include <prehend/service/process.hpp>
 #include <random>
 #include <thread>
 
-#include "hosts.hpp"
+#include "common/base/paths.hpp"
+#include "common/dds/participant.hpp"
+#include "common/service/lab.hpp"
+#include "common/service/process.hpp"
+#include "tests/integration/hosts.hpp"
 
 namespace prehend {
 namespace {

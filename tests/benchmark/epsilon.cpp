@@ -7,10 +7,11 @@
 #include <cmath>
 #include <map>
 #include <numbers>
-#include <prehend/analysis/wrench_space.hpp>
-#include <prehend/base/random.hpp>
 #include <string>
 #include <vector>
+
+#include "common/analysis/wrench_space.hpp"
+#include "common/base/random.hpp"
 
 namespace {
 

@@ -18,14 +18,15 @@
 #include <fstream>
 #include <iostream>
 #include <nlohmann/json.hpp>
-#include <prehend/base/clock.hpp>
-#include <prehend/base/paths.hpp>
-#include <prehend/dds/participant.hpp>
-#include <prehend/glove_devices/device.hpp>
-#include <prehend/glove_devices/pseudo_terminal.hpp>
-#include <prehend/service/process.hpp>
 #include <random>
 #include <thread>
+
+#include "common/base/clock.hpp"
+#include "common/base/paths.hpp"
+#include "common/dds/participant.hpp"
+#include "common/service/process.hpp"
+#include "services/glove/devices/device.hpp"
+#include "services/glove/devices/pseudo_terminal.hpp"
 
 namespace prehend {
 namespace {

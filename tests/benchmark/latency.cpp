@@ -23,15 +23,15 @@
 #include <iostream>
 #include <mutex>
 #include <nlohmann/json.hpp>
-#include <prehend/base/paths.hpp>
-#include <prehend/dds/participant.hpp>
-#include <prehend/service/lab.hpp>
-#include <prehend/service/process.hpp>
-#include <prehend/service/status.hpp>
 #include <random>
 #include <thread>
 
-#include "hosts.hpp"
+#include "common/base/paths.hpp"
+#include "common/dds/participant.hpp"
+#include "common/service/lab.hpp"
+#include "common/service/process.hpp"
+#include "common/service/status.hpp"
+#include "tests/integration/hosts.hpp"
 
 namespace prehend {
 namespace {
@@ -76,7 +76,7 @@ class Relay : public fdds::DataReaderListener {
   void on_data_available(fdds::DataReader* reader) override {
     T sample;
     fdds::SampleInfo info;
-    while (reader->take_next_sample(&sample, &info) == ReturnCode_t::RETCODE_OK)
+    while (dds::succeeded(reader->take_next_sample(&sample, &info)))
       if (info.valid_data) handle_(sample);
   }
 

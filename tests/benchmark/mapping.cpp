@@ -1,17 +1,19 @@
 // One frame through the mapping: latency of each as p50 and p99. Networks of random weights take as
 // long as trained ones. Aims: p99 below 10 µs without an object, below 30 µs with nine in sight;
 // vector retargeting, today's baseline, runs beside them.
+#include "services/mapping/core/mapping.hpp"
+
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
 #include <chrono>
 #include <map>
-#include <prehend/mapping/mapping.hpp>
-#include <prehend/model/placement.hpp>
-#include <prehend/test_models/random_model.hpp>
-#include <prehend/test_support/hands.hpp>
 #include <stdexcept>
 #include <vector>
+
+#include "common/model/placement.hpp"
+#include "tests/support/hands.hpp"
+#include "tests/support/models/random_model.hpp"
 
 namespace {
 
@@ -24,8 +26,8 @@ void frames(benchmark::State& state, const std::string& name, FingerMode fingers
   const model::HandModel& model = test::hand(name);
   constexpr int hidden = 16;  // as trained ones have
   const MappingModel networks = test::random_model(model, 1, hidden);
-  Mapping mapping = *Mapping::create(
-      model, networks, {.fingers = fingers, .intelligent = intelligent, .place = intelligent});
+  Mapping mapping =
+      *Mapping::create(model, networks, {.modes = {fingers, intelligent, intelligent}});
   const model::Shape thin{model::ShapeKind::cylinder, {0.015, 0.015, 0.145}};
   const Pose X_WO = make_pose({0, 0, 0.0725});
   Eigen::Matrix3d from_the_side;

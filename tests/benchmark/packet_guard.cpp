@@ -8,9 +8,10 @@
 #include <unistd.h>
 
 #include <cstdlib>
-#include <prehend/base/clock.hpp>
-#include <prehend/dds/guarded_transport.hpp>
-#include <prehend/test_packets/packets.hpp>
+
+#include "common/base/clock.hpp"
+#include "common/dds/guarded_transport.hpp"
+#include "tests/support/packets/packets.hpp"
 
 using namespace prehend;
 using test::Message;
@@ -56,12 +57,12 @@ void guard(benchmark::State& state) {
   for (int n = 0; n < state.range(1); ++n) {
     auto prefix = test::participant(1);
     prefix[4] = static_cast<std::uint8_t>(n);
-    judge.lets_pass(Message(prefix).announcement(prefix, {somewhere}).bytes(), somewhere);
+    judge.accepts(Message(prefix).announcement(prefix, {somewhere}).bytes(), somewhere);
   }
-  judge.lets_pass(packet(0).bytes(), somewhere);
+  judge.accepts(packet(0).bytes(), somewhere);
   const test::Bytes bytes = packet(state.range(0));
   for (auto _ : state)
-    if (!judge.lets_pass(bytes, somewhere)) std::abort();
+    if (!judge.accepts(bytes, somewhere)) std::abort();
 }
 
 BENCHMARK(plain_transport)->ArgName("bytes")->Arg(0)->Arg(500)->Arg(60'000);

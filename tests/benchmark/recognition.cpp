@@ -14,12 +14,13 @@
 #include <filesystem>
 #include <fstream>
 #include <map>
-#include <prehend/recognition/watcher.hpp>
-#include <prehend/recognition_picture/picture_file.hpp>
-#include <prehend/recognition_rendering/renderer.hpp>
-#include <prehend/recognition_rendering/training_views.hpp>
-#include <prehend/recognition_scan/scan.hpp>
 #include <string>
+
+#include "services/recognition/core/detection/watcher.hpp"
+#include "services/recognition/core/rendering/renderer.hpp"
+#include "services/recognition/core/rendering/training_views.hpp"
+#include "services/recognition/core/scan/scan.hpp"
+#include "services/recognition/files/picture_file.hpp"
 
 namespace {
 
@@ -283,7 +284,7 @@ Loss loss(const ScanOptions& options) {
         if (truth(i, c) >= truth.row(i).maxCoeff() && (best < 0 || truth(i, c) > truth(best, c)))
           best = i;
       // What is barely worth a vote may get none.
-      if (best < 0 || truth(best, c) < options.least_score + 0.05) continue;
+      if (best < 0 || truth(best, c) < options.min_score + 0.05) continue;
       const Match& chosen = votes.best[static_cast<std::size_t>(c)];
       const auto window = chosen.top / step * across + chosen.left / step;
       ++made.compared;

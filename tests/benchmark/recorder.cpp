@@ -18,14 +18,15 @@
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
-#include <prehend/base/paths.hpp>
-#include <prehend/base/random.hpp>
-#include <prehend/dds/raw.hpp>
-#include <prehend/mcap/reader.hpp>
-#include <prehend/mcap/writer.hpp>
-#include <prehend/service/process.hpp>
 #include <random>
 #include <thread>
+
+#include "common/base/paths.hpp"
+#include "common/base/random.hpp"
+#include "common/dds/raw.hpp"
+#include "common/recording/mcap/reader.hpp"
+#include "common/recording/mcap/writer.hpp"
+#include "common/service/process.hpp"
 
 namespace prehend {
 namespace {
@@ -205,7 +206,7 @@ class Bench {
     // What is only in a ring is in no file that could be counted.
     if (answer["files"].empty()) run.recorded = run.sent - run.said_lost;
     for (const std::string path : answer["files"])
-      run.recorded += must(must(mcap::Reader::open(path)).statistics()).message_count;
+      run.recorded += must(must(recording::mcap::Reader::open(path)).statistics()).message_count;
     for (const std::string path : answer["files"]) std::filesystem::remove(path);
     return run;
   }
@@ -219,10 +220,10 @@ class Bench {
     pin_to(recorders_core);
     const double processor_before = processor_time(RUSAGE_SELF);
     const auto start = Clock::now();
-    auto file = must(mcap::File::create(folder_ / "plain"));
-    mcap::Bytes block;
+    auto file = must(recording::mcap::File::create(folder_ / "plain"));
+    recording::mcap::Bytes block;
     for (std::size_t i = 0; file.size() + block.size() < bytes; ++i) {
-      mcap::append(block, mcap::View(encoded[i % encoded.size()]));
+      recording::mcap::append(block, recording::mcap::View(encoded[i % encoded.size()]));
       if (block.size() < 1 << 20) continue;
       if (!file.write(block)) give_up("the disk is full");
       block.clear();
@@ -255,14 +256,15 @@ class Bench {
   Info time_info() {
     const std::filesystem::path file = folder_ / "large.mcap";
     auto messages = postures();
-    auto writer = std::make_unique<mcap::Writer>(must(mcap::Writer::create(file)));
+    auto writer =
+        std::make_unique<recording::mcap::Writer>(must(recording::mcap::Writer::create(file)));
     // As a rig has them: a dozen topics with some instances each.
     std::vector<std::uint16_t> channels;
     for (int i = 0; i < 40; ++i)
       channels.push_back(must(writer->add_channel(0, fmt::format("topic/{}", i % 14), "cdr")));
     for (std::uint32_t i = 0; writer->size() < 1'000'000'000; ++i) {
       const auto payload = dds::encode(dds::hand_posture, messages[i % messages.size()]);
-      if (!writer->write(mcap::Message{channels[i % 40], i, i * 50'000ull, i, payload}))
+      if (!writer->write(recording::mcap::Message{channels[i % 40], i, i * 50'000ull, i, payload}))
         give_up("the disk is full");
     }
     if (!writer->close()) give_up("the disk is full");
@@ -359,10 +361,10 @@ int run(bool json, double seconds, const std::filesystem::path& folder) {
   const Run ring = bench.record(dds::camera_image, large, 100, seconds,
                                 {"--snapshot", "1000", "--snapshot-size", "100"});
   report.add("1 MB into a ring of 100 MB", ring, large_plain(ring));
-  const Run most_small = bench.highest(dds::hand_posture, small, 25'000);
-  report.add("500 B, highest rate without loss", most_small, small_plain(most_small));
-  const Run most_large = bench.highest(dds::camera_image, large, 125);
-  report.add("1 MB, highest rate without loss", most_large, large_plain(most_large));
+  const Run rate_small = bench.highest(dds::hand_posture, small, 25'000);
+  report.add("500 B, highest rate without loss", rate_small, small_plain(rate_small));
+  const Run rate_large = bench.highest(dds::camera_image, large, 125);
+  report.add("1 MB, highest rate without loss", rate_large, large_plain(rate_large));
 
   const auto info = bench.time_info();
   if (json)

@@ -5,9 +5,10 @@
 
 #include <cstdlib>
 #include <filesystem>
-#include <prehend/base/random.hpp>
-#include <prehend/mcap/reader.hpp>
-#include <prehend/mcap/writer.hpp>
+
+#include "common/base/random.hpp"
+#include "common/recording/mcap/reader.hpp"
+#include "common/recording/mcap/writer.hpp"
 
 using namespace prehend;
 
@@ -18,32 +19,32 @@ std::filesystem::path scratch_file() {
 }
 
 /// As joint angles and pictures are: the one compressible, the other not.
-mcap::Bytes payload(std::size_t size, bool picture) {
+recording::mcap::Bytes payload(std::size_t size, bool picture) {
   Random random(1);
-  mcap::Bytes bytes(size);
+  recording::mcap::Bytes bytes(size);
   for (std::size_t i = 0; i < size; ++i)
     bytes[i] = picture || i % 8 < 3 ? static_cast<std::uint8_t>(random.bits()) : 0x3f;
   return bytes;
 }
 
-void write_recording(const std::filesystem::path& path, const mcap::Bytes& data, std::size_t count,
-                     mcap::Compression compression) {
-  auto writer = mcap::Writer::create(path, {.compression = compression}).value();
+void write_recording(const std::filesystem::path& path, const recording::mcap::Bytes& data,
+                     std::size_t count, recording::mcap::Compression compression) {
+  auto writer = recording::mcap::Writer::create(path, {.compression = compression}).value();
   const auto channel = writer.add_channel(0, "t", "cdr").value();
   for (std::uint32_t i = 0; i < count; ++i)
-    if (!writer.write(mcap::Message{channel, i, i * 50'000ull, i, data})) std::abort();
+    if (!writer.write(recording::mcap::Message{channel, i, i * 50'000ull, i, data})) std::abort();
   if (!writer.close()) std::abort();
 }
 
 void plain(benchmark::State& state) {
   const auto size = static_cast<std::size_t>(state.range(0));
   const std::size_t count = static_cast<std::size_t>(state.range(1));
-  const mcap::Bytes data = payload(size, size > 100'000);
+  const recording::mcap::Bytes data = payload(size, size > 100'000);
   for (auto _ : state) {
-    auto file = mcap::File::create(scratch_file()).value();
-    mcap::Bytes block;
+    auto file = recording::mcap::File::create(scratch_file()).value();
+    recording::mcap::Bytes block;
     for (std::size_t i = 0; i < count; ++i) {
-      mcap::append(block, mcap::View(data));
+      recording::mcap::append(block, recording::mcap::View(data));
       if (block.size() >= 1024 * 1024 || i + 1 == count) {
         if (!file.write(block)) std::abort();
         block.clear();
@@ -55,10 +56,10 @@ void plain(benchmark::State& state) {
   std::filesystem::remove(scratch_file());
 }
 
-void recording(benchmark::State& state, mcap::Compression compression) {
+void recording(benchmark::State& state, recording::mcap::Compression compression) {
   const auto size = static_cast<std::size_t>(state.range(0));
   const std::size_t count = static_cast<std::size_t>(state.range(1));
-  const mcap::Bytes data = payload(size, size > 100'000);
+  const recording::mcap::Bytes data = payload(size, size > 100'000);
   for (auto _ : state) write_recording(scratch_file(), data, count, compression);
   state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(count));
   state.SetBytesProcessed(state.iterations() * static_cast<std::int64_t>(count * size));
@@ -67,9 +68,10 @@ void recording(benchmark::State& state, mcap::Compression compression) {
 
 void info(benchmark::State& state) {
   const std::size_t count = std::getenv("PREHEND_LONG") ? 1000 : 100;
-  write_recording(scratch_file(), payload(1'000'000, true), count, mcap::Compression::none);
+  write_recording(scratch_file(), payload(1'000'000, true), count,
+                  recording::mcap::Compression::none);
   for (auto _ : state) {
-    auto reader = mcap::Reader::open(scratch_file()).value();
+    auto reader = recording::mcap::Reader::open(scratch_file()).value();
     if (reader.statistics()->message_count != count) std::abort();
   }
   std::filesystem::remove(scratch_file());
@@ -80,9 +82,9 @@ void sizes(benchmark::internal::Benchmark* each) {
 }
 
 BENCHMARK(plain)->Apply(sizes);
-BENCHMARK_CAPTURE(recording, none, mcap::Compression::none)->Apply(sizes);
-BENCHMARK_CAPTURE(recording, lz4, mcap::Compression::lz4)->Apply(sizes);
-BENCHMARK_CAPTURE(recording, zstd, mcap::Compression::zstd)->Apply(sizes);
+BENCHMARK_CAPTURE(recording, none, recording::mcap::Compression::none)->Apply(sizes);
+BENCHMARK_CAPTURE(recording, lz4, recording::mcap::Compression::lz4)->Apply(sizes);
+BENCHMARK_CAPTURE(recording, zstd, recording::mcap::Compression::zstd)->Apply(sizes);
 BENCHMARK(info)->Unit(benchmark::kMillisecond);
 
 }  // namespace

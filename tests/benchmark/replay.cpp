@@ -16,14 +16,15 @@
 #include <iostream>
 #include <mutex>
 #include <nlohmann/json.hpp>
-#include <prehend/base/paths.hpp>
-#include <prehend/base/random.hpp>
-#include <prehend/dds/raw.hpp>
-#include <prehend/recorder/recording_file.hpp>
-#include <prehend/recorder/tape.hpp>
-#include <prehend/service/process.hpp>
 #include <random>
 #include <thread>
+
+#include "common/base/paths.hpp"
+#include "common/base/random.hpp"
+#include "common/dds/raw.hpp"
+#include "common/service/process.hpp"
+#include "services/recorder/service/recording_file.hpp"
+#include "services/recorder/service/tape.hpp"
 
 namespace prehend {
 namespace {
@@ -61,9 +62,9 @@ recorder::Tape open(const std::filesystem::path& file) {
 /// Postures of a glove at the rate, each up to a quarter of a period off its beat.
 void write_recording(const std::filesystem::path& path, double duration_s) {
   const recorder::Heading heading{{}, "", [](const std::string&) { return std::nullopt; }};
-  auto file = need(recorder::RecordingFile::create(path, heading, mcap::Compression::zstd));
-  const recorder::Source source{
-      {"hand/posture", "prehend::v1::HandPosture", true, *dds::find_topic("hand/posture")}, "lab"};
+  auto file =
+      need(recorder::RecordingFile::create(path, heading, recording::mcap::Compression::zstd));
+  const recorder::Source source{dds::raw_topic(dds::hand_posture), "lab"};
   Random random(1);
   v1::HandPosture posture;
   posture.glove("glove");

@@ -1,14 +1,16 @@
 // How fast the world steps while each hand grips an object, as a multiple of real time at 500 Hz,
 // and what contacts and bodies cost. A step is deterministic, so the figures differ by the machine
 // alone; floors: Barrett 10, DLR 5, Robonaut 3 times real time on one core.
+#include "common/grasping/world.hpp"
+
 #include <benchmark/benchmark.h>
 #include <malloc.h>
 
 #include <algorithm>
 #include <filesystem>
 #include <map>
-#include <prehend/grasping/world.hpp>
-#include <prehend/test_support/hands.hpp>
+
+#include "tests/support/hands.hpp"
 
 namespace {
 

@@ -1,8 +1,8 @@
 // Damaged captures of serial conversations: refused with a reason, or finite records.
-#include <prehend/glove_devices/bird_capture.hpp>
+#include "services/glove/devices/bird_capture.hpp"
 
-#include "fuzz.hpp"
-#include "mutation.hpp"
+#include "tests/fuzz/fuzz.hpp"
+#include "tests/fuzz/mutation.hpp"
 
 using namespace prehend;
 using namespace prehend::glove::bird;
@@ -50,7 +50,7 @@ std::string conversation() {
 int main(int argc, char** argv) {
   fuzz::Fuzzer fuzzer;
   fuzzer.seeds = {conversation()};
-  fuzzer.least_long = 1'000'000;
+  fuzzer.long_round = 1'000'000;
   fuzzer.mutate = [](Random& random, std::string text) {
     return fuzz::mutate_text(random, std::move(text), fuzz::mutate_lines);
   };

@@ -2,10 +2,10 @@
 // the sensor's range and orthonormal, every byte is accounted for, and the second whole record
 // after any damage is read as it is.
 #include <numbers>
-#include <prehend/glove_devices/bird_protocol.hpp>
 
-#include "fuzz.hpp"
-#include "mutation.hpp"
+#include "services/glove/devices/bird_protocol.hpp"
+#include "tests/fuzz/fuzz.hpp"
+#include "tests/fuzz/mutation.hpp"
 
 using namespace prehend;
 using namespace prehend::glove::bird;
@@ -54,7 +54,7 @@ int main(int argc, char** argv) {
           encode(random.normal3(0.4), some_rotation(random), layout_of(byte), n % 4 + 1, n % 2);
     fuzzer.seeds.push_back(stream);
   }
-  fuzzer.least_long = 1'000'000;
+  fuzzer.long_round = 1'000'000;
   fuzzer.mutate = [](Random& r, std::string stream) {
     const std::string records = fuzz::mutate_bytes(r, stream.substr(1));
     return stream[0] + records;

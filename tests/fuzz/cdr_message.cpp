@@ -2,38 +2,38 @@
 // it was encoded and decoded again. Its time stamps are found, or it is left as it was. The first
 // byte of an input says which type.
 #include <nlohmann/json.hpp>
-#include <prehend/recording_tool/table.hpp>
-#include <prehend/types/stamps.hpp>
-#include <prehend/types/value.hpp>
 
-#include "fuzz.hpp"
-#include "mutation.hpp"
-#include "random_message.hpp"
-#include "type_texts.hpp"
+#include "common/recording/types/stamps.hpp"
+#include "common/recording/types/value.hpp"
+#include "services/recorder/tools/recording/table.hpp"
+#include "tests/fuzz/fuzz.hpp"
+#include "tests/fuzz/mutation.hpp"
+#include "tests/fuzz/type_texts.hpp"
+#include "tests/unit/recording/random_message.hpp"
 
 using namespace prehend;
 
 namespace {
 
-std::string text_of(const types::Value& value) {
-  return types::to_json(value).dump(-1, ' ', false,
-                                    nlohmann::ordered_json::error_handler_t::replace);
+std::string text_of(const recording::types::Value& value) {
+  return recording::types::to_json(value).dump(-1, ' ', false,
+                                               nlohmann::ordered_json::error_handler_t::replace);
 }
 
-bool read(const types::Structure& type, std::vector<std::uint8_t> message) {
-  const auto value = types::decode(type, message);
+bool read(const recording::types::Structure& type, std::vector<std::uint8_t> message) {
+  const auto value = recording::types::decode(type, message);
   fuzz::require(value || !value.error().where.empty(), "refused without a place");
   if (value) {
-    const auto again = types::decode(type, testing::encode(type, *value));
+    const auto again = recording::types::decode(type, testing::encode(type, *value));
     fuzz::require(again && text_of(*again) == text_of(*value), "encoded and decoded it differs");
     const auto names = recorder::columns(type), row = recorder::cells(type, *value);
     fuzz::require(names.size() == row.size(), "a row that does not fit its table");
   }
   const auto before = message;
-  const bool moved = types::move_stamps(
+  const bool moved = recording::types::move_stamps(
       type, [](std::int64_t stamp) { return stamp ^ 1; }, message);
   fuzz::require(moved || message == before, "changed what it does not understand");
-  fuzz::require(!moved || types::move_stamps(
+  fuzz::require(!moved || recording::types::move_stamps(
                               type, [](std::int64_t stamp) { return stamp ^ 1; }, message),
                 "its own work is not understood");
   return value.has_value();
@@ -43,8 +43,8 @@ bool read(const types::Structure& type, std::vector<std::uint8_t> message) {
 
 int main(int argc, char** argv) {
   fuzz::Fuzzer fuzzer;
-  const types::Library contract = fuzz::contract();
-  std::vector<const types::Structure*> all;
+  const recording::types::Library contract = fuzz::contract();
+  std::vector<const recording::types::Structure*> all;
   Random seed(1);
   for (const auto& [name, type] : contract.structures()) {
     all.push_back(type.get());

@@ -1,4 +1,4 @@
-#include "fuzz.hpp"
+#include "tests/fuzz/fuzz.hpp"
 
 #include <sys/mman.h>
 #include <sys/wait.h>
@@ -26,8 +26,8 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr std::size_t most_bytes = 1 << 20;   // of an input
-constexpr unsigned longest_try = 20;          // s
+constexpr std::size_t max_bytes = 1 << 20;    // of an input
+constexpr unsigned max_try = 20;              // s
 constexpr std::uint64_t enough_tries = 1000;  // to see one accepted and one refused
 constexpr int failure = 9;                    // exit code of a child that saw one
 
@@ -37,14 +37,14 @@ struct Shared {
   std::uint64_t number;
   std::uint64_t tried, accepted;
   std::size_t size;
-  char bytes[most_bytes];
+  char bytes[max_bytes];
 };
 
 void attempt(const Fuzzer& fuzzer, Shared& shared, std::string input) {
-  input.resize(std::min(input.size(), most_bytes));
+  input.resize(std::min(input.size(), max_bytes));
   shared.size = input.size();
   std::memcpy(shared.bytes, input.data(), input.size());
-  alarm(longest_try);  // nobody catches it: an endless loop ends the child
+  alarm(max_try);  // nobody catches it: an endless loop ends the child
   shared.accepted += fuzzer.target(input);
   ++shared.tried;
   alarm(0);
@@ -58,7 +58,7 @@ void search(const Fuzzer& fuzzer, Shared& shared, Clock::time_point end, std::ui
                                     shared.tried < enough_tries);
   };
   for (; Clock::now() < end || too_few(); ++shared.number) {
-    alarm(longest_try);
+    alarm(max_try);
     Random random(shared.number);
     const std::string& seed = fuzzer.seeds[random.index(fuzzer.seeds.size())];
     attempt(fuzzer, shared, fuzzer.mutate(random, seed));
@@ -134,7 +134,7 @@ int run(const Fuzzer& fuzzer, int argc, char** argv) {
     }
     shared.tried = shared.accepted = 0;
     search(fuzzer, shared, Clock::now() + std::chrono::seconds(seconds),
-           std::getenv("PREHEND_LONG") ? fuzzer.least_long : 0);
+           std::getenv("PREHEND_LONG") ? fuzzer.long_round : 0);
     require(shared.accepted > 0, "no mutated input was accepted");
     require(shared.accepted < shared.tried, "no mutated input was refused");
   });

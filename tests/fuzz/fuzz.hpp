@@ -1,9 +1,10 @@
 #pragma once
 
 #include <functional>
-#include <prehend/base/random.hpp>
 #include <string>
 #include <vector>
+
+#include "common/base/random.hpp"
 
 namespace prehend::fuzz {
 
@@ -15,7 +16,7 @@ struct Fuzzer {
   /// Reads the input and throws std::logic_error when what came out must not be. True: accepted.
   std::function<bool(const std::string&)> target;
   /// So many inputs are tried in the long round, however long that takes.
-  std::uint64_t least_long = 0;
+  std::uint64_t long_round = 0;
 };
 
 /// main() of a fuzzer: try k is made from Random(k), so that every run tries the same inputs, for

@@ -1,10 +1,10 @@
-#include "hand_files.hpp"
+#include "tests/fuzz/hand_files.hpp"
 
 #include <algorithm>
 #include <filesystem>
-#include <prehend/base/random.hpp>
 
-#include "fuzz.hpp"
+#include "common/base/random.hpp"
+#include "tests/fuzz/fuzz.hpp"
 
 namespace prehend::fuzz {
 

@@ -1,8 +1,9 @@
 #pragma once
 
-#include <prehend/model/hand_model.hpp>
 #include <string>
 #include <vector>
+
+#include "common/model/hand_model.hpp"
 
 namespace prehend::fuzz {
 

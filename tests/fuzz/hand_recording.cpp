@@ -1,10 +1,10 @@
 // Damaged recordings of bare hands, Leap and 21 landmarks: refused with a reason, or frames with
 // finite sensors and increasing stamps.
-#include <prehend/glove/bare_hand.hpp>
-#include <prehend/glove/recording.hpp>
+#include "services/glove/files/hand_recording.hpp"
 
-#include "fuzz.hpp"
-#include "mutation.hpp"
+#include "services/glove/core/bare_hand.hpp"
+#include "tests/fuzz/fuzz.hpp"
+#include "tests/fuzz/mutation.hpp"
 
 using namespace prehend;
 using namespace prehend::glove;
@@ -56,7 +56,7 @@ std::string leap() {
 int main(int argc, char** argv) {
   fuzz::Fuzzer fuzzer;
   fuzzer.seeds = {landmarks(), leap()};
-  fuzzer.least_long = 1'000'000;
+  fuzzer.long_round = 1'000'000;
   fuzzer.mutate = [](Random& random, std::string text) {
     return fuzz::mutate_text(random, std::move(text), fuzz::mutate_lines);
   };

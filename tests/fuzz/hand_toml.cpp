@@ -1,7 +1,7 @@
 // A damaged hand.toml beside the URDF that belonged to it: refused with a reason, or a sound hand.
-#include "fuzz.hpp"
-#include "hand_files.hpp"
-#include "mutation.hpp"
+#include "tests/fuzz/fuzz.hpp"
+#include "tests/fuzz/hand_files.hpp"
+#include "tests/fuzz/mutation.hpp"
 
 using namespace prehend;
 

@@ -3,35 +3,35 @@
 #include <console_bridge/console.h>
 
 #include <numeric>
-#include <prehend/hands/make_hand.hpp>
 
-#include "fuzz.hpp"
-#include "hand_files.hpp"
-#include "mutation.hpp"
+#include "services/simulation/tools/hand_import/make_hand.hpp"
+#include "tests/fuzz/fuzz.hpp"
+#include "tests/fuzz/hand_files.hpp"
+#include "tests/fuzz/mutation.hpp"
 
 using namespace prehend;
 
 namespace {
 
-std::size_t solids_of(const hands::Robot& robot) {
+std::size_t solids_of(const simulation::Robot& robot) {
   return std::accumulate(
       robot.links.begin(), robot.links.end(), std::size_t{0},
       [](std::size_t sum, const auto& link) { return sum + link.collision.size(); });
 }
 
 bool make(const std::string& urdf) {
-  const auto robot = hands::read_robot(urdf);
+  const auto robot = simulation::read_robot(urdf);
   if (!robot) {
     fuzz::require(!robot.error().what.empty(), "refused without a reason");
     return false;
   }
-  const auto block = [](const hands::Solid&) -> Expected<std::vector<Eigen::Vector3d>> {
+  const auto block = [](const simulation::Solid&) -> Expected<std::vector<Eigen::Vector3d>> {
     return std::vector<Eigen::Vector3d>{{0, 0, 0}, {0.02, 0.03, 0.04}};
   };
-  for (const hands::Finding& finding : hands::check(*robot, block))
-    fuzz::require(!finding.what.empty() && !finding.mend.empty() && !finding.element.empty(),
+  for (const simulation::UrdfFinding& finding : simulation::check(*robot, block))
+    fuzz::require(!finding.what.empty() && !finding.repair.empty() && !finding.element.empty(),
                   "a finding that does not say what, where and the mend");
-  const auto hand = hands::make_hand(*robot, "fuzzed", block);
+  const auto hand = simulation::make_hand(*robot, "fuzzed", block);
   if (!hand) return false;
   fuzz::require_sound(hand->model);
   std::size_t made = 0;

@@ -1,9 +1,9 @@
 // Damaged URDF beside the hand.toml that belonged to it: refused with a reason, or a sound hand.
 #include <console_bridge/console.h>
 
-#include "fuzz.hpp"
-#include "hand_files.hpp"
-#include "mutation.hpp"
+#include "tests/fuzz/fuzz.hpp"
+#include "tests/fuzz/hand_files.hpp"
+#include "tests/fuzz/mutation.hpp"
 
 using namespace prehend;
 

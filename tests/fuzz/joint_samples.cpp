@@ -1,10 +1,9 @@
 // Damaged streams of a joint-angle glove: counts from 1 to 255 whose angles a hand can reach, every
 // byte accounted for, and the second whole sample after any damage read as it is.
-#include <prehend/glove/joint_sensors.hpp>
-#include <prehend/glove_devices/joint_protocol.hpp>
-
-#include "fuzz.hpp"
-#include "mutation.hpp"
+#include "services/glove/core/joint_sensors.hpp"
+#include "services/glove/devices/joint_protocol.hpp"
+#include "tests/fuzz/fuzz.hpp"
+#include "tests/fuzz/mutation.hpp"
 
 using namespace prehend;
 using namespace prehend::glove;
@@ -12,7 +11,7 @@ using namespace prehend::glove;
 int main(int argc, char** argv) {
   fuzz::Fuzzer fuzzer;
   Random random(1);
-  for (const std::size_t sensors : {least_joint_sensors, most_joint_sensors}) {
+  for (const std::size_t sensors : {min_joint_sensors, max_joint_sensors}) {
     std::string stream(1, static_cast<char>(sensors));
     for (int n = 0; n < 8; ++n) {
       joint::Counts counts(sensors);
@@ -21,14 +20,14 @@ int main(int argc, char** argv) {
     }
     fuzzer.seeds.push_back(stream);
   }
-  fuzzer.least_long = 1'000'000;
+  fuzzer.long_round = 1'000'000;
   fuzzer.mutate = [](Random& r, std::string stream) {
     const std::string samples = fuzz::mutate_bytes(r, stream.substr(1));
     return stream[0] + samples;
   };
   fuzzer.target = [](const std::string& input) {
     if (input.empty()) return false;
-    const std::size_t sensors = input[0] == 22 ? most_joint_sensors : least_joint_sensors;
+    const std::size_t sensors = input[0] == 22 ? max_joint_sensors : min_joint_sensors;
     const std::string_view stream = std::string_view(input).substr(1);
     const JointGains gains = *typical_gains(sensors);
     joint::RecordParser parser(sensors);

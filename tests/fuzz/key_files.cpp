@@ -1,10 +1,9 @@
 // Damaged files of a key: certificates, revocation lists, signed texts, permissions. Nothing that
 // was altered may count as signed by the authority, and permissions say what is read from them.
-#include <prehend/dds/permissions.hpp>
-#include <prehend/keys/certificate.hpp>
-
-#include "fuzz.hpp"
-#include "mutation.hpp"
+#include "common/dds/permissions.hpp"
+#include "common/keys/certificate.hpp"
+#include "tests/fuzz/fuzz.hpp"
+#include "tests/fuzz/mutation.hpp"
 
 using namespace prehend;
 
@@ -24,7 +23,7 @@ int main(int argc, char** argv) {
   const keys::Identity glove = *keys::issue(authority, "glove", valid);
   const std::string serial = keys::facts(glove.certificate)->serial;
   const std::string list = *keys::revocation_list(authority, {{serial, now}}, valid);
-  dds::Permissions permissions = dds::least_permissions(dds::Role::glove);
+  dds::Permissions permissions = dds::min_permissions(dds::Role::glove);
   permissions.subject = "CN=glove";
   permissions.from = permissions.until = "2027-01-01T00:00:00";
   const std::string text = dds::text(permissions);

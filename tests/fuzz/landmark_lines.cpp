@@ -1,9 +1,8 @@
 // Damaged lines of a hand tracking program: a reason, or 21 finite points within reach, whose
 // sensors are sound.
-#include <prehend/glove_devices/landmark_line.hpp>
-
-#include "fuzz.hpp"
-#include "mutation.hpp"
+#include "services/glove/devices/landmark_line.hpp"
+#include "tests/fuzz/fuzz.hpp"
+#include "tests/fuzz/mutation.hpp"
 
 using namespace prehend;
 using namespace prehend::glove;
@@ -17,7 +16,7 @@ int main(int argc, char** argv) {
       if (left) line.stamp = 1732200000.125;
       fuzzer.seeds.push_back(to_line(line, webxr));
     }
-  fuzzer.least_long = 1'000'000;
+  fuzzer.long_round = 1'000'000;
   fuzzer.mutate = [](Random& random, std::string line) {
     return random.index(3) == 0 ? fuzz::mutate_bytes(random, std::move(line))
                                 : fuzz::mutate_number(random, std::move(line));

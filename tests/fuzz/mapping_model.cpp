@@ -5,10 +5,11 @@
 
 #include <filesystem>
 #include <fstream>
-#include <prehend/test_models/random_model.hpp>
-#include <prehend/test_support/hands.hpp>
 
-#include "sealed.hpp"
+#include "services/mapping/files/mapping_model_file.hpp"
+#include "tests/fuzz/sealed.hpp"
+#include "tests/support/hands.hpp"
+#include "tests/support/models/random_model.hpp"
 
 using namespace prehend;
 
@@ -17,7 +18,7 @@ namespace {
 constexpr std::string_view kind = "mapping-model";
 
 void require_sound(const mapping::MappingModel& model, const model::HandModel& hand) {
-  const auto good = [&](const mapping::Answer& answer) {
+  const auto good = [&](const mapping::NetworkAnswer& answer) {
     fuzz::require(answer.dof.size() == static_cast<Eigen::Index>(hand.dofs().size()) &&
                       answer.dof.allFinite() && hand.clamp(answer.dof).isApprox(answer.dof, 1e-9),
                   "an answer that the hand cannot take");
@@ -39,9 +40,10 @@ int main(int argc, char** argv) {
                     ("fuzz-mapping-" + std::to_string(::getpid()) + ".mapping");
   google::protobuf::SetLogHandler(nullptr);  // it would report every broken name
   fuzz::Fuzzer fuzzer;
-  fuzzer.least_long = 10000;
+  fuzzer.long_round = 10000;
   for (const std::string& name : test::hand_names()) {
-    const auto saved = test::random_model(test::hand(name), 1).save(path, test::hand(name));
+    const auto saved = mapping::save_mapping_model(path, test::random_model(test::hand(name), 1),
+                                                   test::hand(name));
     fuzz::require(saved.has_value(), "no seed");
     fuzzer.seeds.push_back(fuzz::read_file(path.string()));
   }
@@ -52,7 +54,7 @@ int main(int argc, char** argv) {
     std::ofstream(path, std::ios::binary) << bytes;
     bool accepted = false;
     for (const std::string& name : test::hand_names()) {
-      const auto model = mapping::MappingModel::load(path, test::hand(name));
+      const auto model = mapping::load_mapping_model(path, test::hand(name));
       fuzz::require(model || !model.error().what.empty(), "refused without a reason");
       if (!model) continue;
       fuzz::require(!accepted, "accepted for two hands");

@@ -1,4 +1,4 @@
-#include "mutation.hpp"
+#include "tests/fuzz/mutation.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,8 +1,9 @@
 #pragma once
 
 #include <functional>
-#include <prehend/base/random.hpp>
 #include <string>
+
+#include "common/base/random.hpp"
 
 namespace prehend::fuzz {
 

@@ -6,10 +6,10 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
-#include <prehend/recognition_learning/model_file.hpp>
-#include <prehend/recognition_learning/training.hpp>
 
-#include "sealed.hpp"
+#include "services/recognition/core/learning/training.hpp"
+#include "services/recognition/files/model_file.hpp"
+#include "tests/fuzz/sealed.hpp"
 
 using namespace prehend;
 using namespace prehend::recognition;
@@ -45,7 +45,7 @@ int main(int argc, char** argv) {
                     ("fuzz-objects-" + std::to_string(::getpid()) + ".model");
   google::protobuf::SetLogHandler(nullptr);  // it would report every broken name
   fuzz::Fuzzer fuzzer;
-  fuzzer.least_long = 10000;
+  fuzzer.long_round = 10000;
   Random random(1);
   std::vector<TrainingClass> classes;
   for (int c = 0; c < 3; ++c) {

@@ -6,44 +6,47 @@
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
-#include <prehend/compare/comparison.hpp>
-#include <prehend/compare/recorded_topic.hpp>
-#include <prehend/mcap/writer.hpp>
-#include <prehend/recording_layout/layout.hpp>
-#include <prehend/recording_tool/copy.hpp>
-#include <prehend/recording_tool/records_json.hpp>
-#include <prehend/recording_tool/summary.hpp>
-#include <prehend/recording_tool/verify.hpp>
-#include <prehend/types/schema_text.hpp>
 #include <sstream>
 
-#include "fuzz.hpp"
-#include "mutation.hpp"
-#include "random_message.hpp"
-#include "type_texts.hpp"
+#include "common/recording/compare/comparison.hpp"
+#include "common/recording/compare/recorded_topic.hpp"
+#include "common/recording/layout/layout.hpp"
+#include "common/recording/mcap/writer.hpp"
+#include "common/recording/types/schema_text.hpp"
+#include "services/recorder/tools/recording/copy.hpp"
+#include "services/recorder/tools/recording/records_json.hpp"
+#include "services/recorder/tools/recording/summary.hpp"
+#include "services/recorder/tools/recording/verify.hpp"
+#include "tests/fuzz/fuzz.hpp"
+#include "tests/fuzz/mutation.hpp"
+#include "tests/fuzz/type_texts.hpp"
+#include "tests/unit/recording/random_message.hpp"
 
 using namespace prehend;
 
 namespace {
 
 /// Three topics with several instances, ends, losses, IDL and scene.
-std::string record(const types::Library& contract, const std::string& path,
-                   mcap::WriterOptions options) {
+std::string record(const recording::types::Library& contract, const std::string& path,
+                   recording::mcap::WriterOptions options) {
   {
     Random random(1);
-    auto writer = mcap::Writer::create(path, std::move(options)).value();
-    (void)writer.write(mcap::Attachment{1, 2, "scene.toml", "text/plain", mcap::view("a = 1\n")});
-    mcap::Metadata idl{"idl", {}};
+    auto writer = recording::mcap::Writer::create(path, std::move(options)).value();
+    (void)writer.write(recording::mcap::Attachment{1, 2, "scene.toml", "text/plain",
+                                                   recording::mcap::view("a = 1\n")});
+    recording::mcap::Metadata idl{"idl", {}};
     std::uint64_t time = 1'000'000'000;
     for (const auto& [topic, name] : {std::pair("object/detection", "prehend::v1::ObjectDetection"),
                                       std::pair("robot/command", "prehend::v1::HandCommand"),
                                       std::pair("lab/clock", "prehend::v1::LabClock")}) {
-      const types::Structure& type = *contract.find(name);
-      idl.metadata.emplace_back(name, types::omgidl(type));
-      const auto schema =
-          writer.add_schema(types::ros2_name(name), "ros2msg", types::ros2msg(type)).value();
+      const recording::types::Structure& type = *contract.find(name);
+      idl.metadata.emplace_back(name, recording::types::omgidl(type));
+      const auto schema = writer
+                              .add_schema(recording::types::ros2_name(name), "ros2msg",
+                                          recording::types::ros2msg(type))
+                              .value();
       recording::Stream stream{
-          {topic, name, true, *prehend::dds::find_topic(topic)}, {1}, {}, "lab"};
+          {topic, name, true, prehend::dds::find_topic(topic)->qos}, {1}, {}, "lab"};
       for (std::uint8_t instance = 1; instance < 4; ++instance) {
         stream.instance[15] = instance;
         stream.kind = prehend::dds::RawSample::Kind::data;
@@ -52,17 +55,18 @@ std::string record(const types::Library& contract, const std::string& path,
             writer.add_channel(schema, data.topic, data.message_encoding, data.metadata).value();
         for (std::uint32_t i = 0; i < 4; ++i) {
           const auto bytes = testing::encode(type, testing::random_value(type, random));
-          (void)writer.write(mcap::Message{channel, i, time += 1'000'000, time, bytes});
+          (void)writer.write(recording::mcap::Message{channel, i, time += 1'000'000, time, bytes});
         }
         stream.kind = prehend::dds::RawSample::Kind::disposed;
         const auto end = recording::to_channel(stream);
         const auto ends =
             writer.add_channel(0, end.topic, end.message_encoding, end.metadata).value();
-        if (instance == 2) (void)writer.write(mcap::Message{ends, 5, time += 1'000'000, time, {}});
+        if (instance == 2)
+          (void)writer.write(recording::mcap::Message{ends, 5, time += 1'000'000, time, {}});
       }
     }
     (void)writer.write(idl);
-    (void)writer.write(mcap::Metadata{"losses", {{"lab/clock", "1"}}});
+    (void)writer.write(recording::mcap::Metadata{"losses", {{"lab/clock", "1"}}});
   }
   return fuzz::read_file(path);
 }
@@ -74,7 +78,7 @@ void require_sound(const std::string& path) {
 }
 
 /// Everything that `diff` and `export` do with the messages.
-void compare(mcap::Reader& reader, const recording::ToleranceTable& tolerances) {
+void compare(recording::mcap::Reader& reader, const recording::ToleranceTable& tolerances) {
   recording::RecordedTypes types(reader);  // outlives the comparison
   recording::Comparison comparison(tolerances);
   for (const auto side : {recording::Side::expected, recording::Side::actual}) {
@@ -85,9 +89,10 @@ void compare(mcap::Reader& reader, const recording::ToleranceTable& tolerances) 
       if (!*next) break;
       const auto& [channel, message] = **next;
       const auto topic = recording::recorded_topic(*channel, reader.contents());
-      const types::Structure* type = types.of(*channel);
+      const recording::types::Structure* type = types.of(*channel);
       if (type)
-        if (const auto value = types::decode(*type, message.data)) (void)types::to_json(*value);
+        if (const auto value = recording::types::decode(*type, message.data))
+          (void)recording::types::to_json(*value);
       comparison.add(side, {topic.name, type, message.data, topic.end});
     }
   }
@@ -102,13 +107,13 @@ bool use(const std::string& path, const recording::ToleranceTable& tolerances) {
   fuzz::require(findings || !findings.error().what.empty(), "refused without a reason");
   std::ostringstream records;
   (void)recorder::print_records(path, records);
-  auto reader = mcap::Reader::open(path);
+  auto reader = recording::mcap::Reader::open(path);
   fuzz::require(reader.has_value() == findings.has_value(), "opened or not, but not for all");
   if (!reader) return false;
   const auto about = recorder::summary(*reader);
   fuzz::require(about || !about.error().what.empty(), "not described, without a reason");
   compare(*reader, tolerances);
-  std::vector<mcap::Reader> sources;
+  std::vector<recording::mcap::Reader> sources;
   sources.push_back(std::move(*reader));
   for (const std::uint64_t start : {0ull, 1'010'000'000ull}) {
     recorder::CopyOptions options;
@@ -129,7 +134,7 @@ int main(int argc, char** argv) {
       ((memory ? std::filesystem::path("/dev/shm") : std::filesystem::temp_directory_path()) /
        ("fuzz-" + std::to_string(::getpid())))
           .string();
-  const types::Library contract = fuzz::contract();
+  const recording::types::Library contract = fuzz::contract();
   const auto tolerances =
       recording::ToleranceTable::load(PREHEND_SOURCE "/common/recording/compare/tolerances.toml")
           .value();
@@ -137,12 +142,12 @@ int main(int argc, char** argv) {
   // Without CRCs damage gets past the first gate, with them it must be seen there.
   for (const bool crcs : {true, false}) {
     fuzzer.seeds.push_back(record(contract, path, {.chunk_bytes = 1500, .crcs = crcs}));
-    fuzzer.seeds.push_back(
-        record(contract, path,
-               {.compression = mcap::Compression::none, .chunk_bytes = 1500, .crcs = crcs}));
+    fuzzer.seeds.push_back(record(
+        contract, path,
+        {.compression = recording::mcap::Compression::none, .chunk_bytes = 1500, .crcs = crcs}));
   }
   fuzzer.seeds.push_back(record(contract, path, {.chunks = false, .crcs = false}));
-  fuzzer.least_long = 10'000;
+  fuzzer.long_round = 10'000;
   fuzzer.mutate = [](Random& random, std::string bytes) {
     switch (random.index(20)) {
       case 0:

@@ -1,29 +1,32 @@
 // A damaged document of records, as the MCAP conformance tests have them: refused with a reason, or
 // a file that is sound to its last byte and prints as records again.
+#include "services/recorder/tools/recording/records_json.hpp"
+
 #include <unistd.h>
 
 #include <filesystem>
-#include <prehend/mcap/writer.hpp>
-#include <prehend/recording_tool/records_json.hpp>
-#include <prehend/recording_tool/verify.hpp>
 #include <sstream>
 
-#include "fuzz.hpp"
-#include "mutation.hpp"
+#include "common/recording/mcap/writer.hpp"
+#include "services/recorder/tools/recording/verify.hpp"
+#include "tests/fuzz/fuzz.hpp"
+#include "tests/fuzz/mutation.hpp"
 
 using namespace prehend;
 
 namespace {
 
-std::string document(const std::string& path, const mcap::WriterOptions& options) {
+std::string document(const std::string& path, const recording::mcap::WriterOptions& options) {
   {
-    auto writer = mcap::Writer::create(path, options).value();
+    auto writer = recording::mcap::Writer::create(path, options).value();
     const auto schema = writer.add_schema("a/msg/B", "ros2msg", "uint8 x\n").value();
     const auto channel = writer.add_channel(schema, "t", "cdr", {{"k", "v"}}).value();
-    (void)writer.write(mcap::Attachment{1, 2, "note", "text/plain", mcap::view("hi")});
+    (void)writer.write(
+        recording::mcap::Attachment{1, 2, "note", "text/plain", recording::mcap::view("hi")});
     for (std::uint32_t i = 0; i < 3; ++i)
-      (void)writer.write(mcap::Message{channel, i, 100 + i, i, mcap::view("012")});
-    (void)writer.write(mcap::Metadata{"losses", {{"t", "1"}}});
+      (void)writer.write(
+          recording::mcap::Message{channel, i, 100 + i, i, recording::mcap::view("012")});
+    (void)writer.write(recording::mcap::Metadata{"losses", {{"t", "1"}}});
   }
   std::ostringstream text;
   (void)recorder::print_records(path, text);
@@ -48,7 +51,7 @@ int main(int argc, char** argv) {
   const std::string path =
       (std::filesystem::temp_directory_path() / ("fuzz-" + std::to_string(::getpid()))).string();
   fuzz::Fuzzer fuzzer;
-  const std::string plain = document(path, {.compression = mcap::Compression::none});
+  const std::string plain = document(path, {.compression = recording::mcap::Compression::none});
   fuzzer.seeds.push_back(plain);
   for (const char* features :
        {"\"ch\",\"mx\",\"st\",\"rsh\",\"rch\",\"ax\",\"mdx\",\"chx\",\"sum\"", "\"pad\",\"st\"",

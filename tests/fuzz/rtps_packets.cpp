@@ -1,14 +1,13 @@
 // Damaged RTPS messages on their way to a lab of two: sent from a stranger's address none of them
 // speaks for a participant of the lab, and what the lab itself sends afterwards passes as before.
 // What passes is its sender's own announcement, or comes from one that was announced there.
-#include <prehend/dds/address_book.hpp>
-#include <prehend/test_packets/packets.hpp>
-
-#include "fuzz.hpp"
-#include "mutation.hpp"
+#include "common/dds/address_book.hpp"
+#include "tests/fuzz/fuzz.hpp"
+#include "tests/fuzz/mutation.hpp"
+#include "tests/support/packets/packets.hpp"
 
 using namespace prehend;
-using dds::Verdict;
+using dds::PacketVerdict;
 using test::Message;
 
 namespace {
@@ -38,7 +37,7 @@ int main(int argc, char** argv) {
                 .part(0x06, test::Bytes(24))
                 .part(0x80, test::Bytes(56))})
         fuzzer.seeds.push_back(text(message));
-  fuzzer.least_long = 1'000'000;
+  fuzzer.long_round = 1'000'000;
   fuzzer.mutate = [](Random& random, std::string bytes) {
     return fuzz::mutate_bytes(random, std::move(bytes));
   };
@@ -51,13 +50,14 @@ int main(int argc, char** argv) {
     judge(Message(mapping).announcement(mapping, {}), at_mapping);
     const test::Bytes bytes(input.begin(), input.end());
     const auto packet = dds::read_packet(bytes);
-    if (book.judge(bytes, at_stranger, start) == Verdict::pass)
+    if (book.judge(bytes, at_stranger, start) == PacketVerdict::pass)
       fuzz::require(packet && !packet->for_others && packet->sender != glove &&
                         packet->sender != mapping && !packet->announcements.empty(),
                     "a stranger speaks in another's name");
     for (const auto& [who, where] : {std::pair(glove, at_glove), std::pair(mapping, at_mapping)}) {
-      fuzz::require(judge(Message(who).sample(), where) == Verdict::pass, "a member is not heard");
-      fuzz::require(judge(Message(who).sample(), at_stranger) == Verdict::elsewhere,
+      fuzz::require(judge(Message(who).sample(), where) == PacketVerdict::pass,
+                    "a member is not heard");
+      fuzz::require(judge(Message(who).sample(), at_stranger) == PacketVerdict::elsewhere,
                     "a stranger is heard as a member");
     }
     return packet.has_value();

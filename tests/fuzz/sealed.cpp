@@ -1,8 +1,7 @@
-#include "sealed.hpp"
+#include "tests/fuzz/sealed.hpp"
 
-#include <prehend/proto/sealed_file.hpp>
-
-#include "mutation.hpp"
+#include "common/proto/sealed_file.hpp"
+#include "tests/fuzz/mutation.hpp"
 
 namespace prehend::fuzz {
 

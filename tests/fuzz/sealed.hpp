@@ -1,6 +1,6 @@
 #pragma once
 
-#include "fuzz.hpp"
+#include "tests/fuzz/fuzz.hpp"
 
 namespace prehend::fuzz {
 

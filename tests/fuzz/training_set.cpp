@@ -1,13 +1,14 @@
 // Damaged training sets: a broken seal is never accepted, and what a good seal holds is refused
 // with a reason or is a set that training can rely on and that comes back from its own file.
+#include "common/learning/training_set.hpp"
+
 #include <google/protobuf/stubs/logging.h>
 #include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
-#include <prehend/learning/training_set.hpp>
 
-#include "sealed.hpp"
+#include "tests/fuzz/sealed.hpp"
 
 using namespace prehend;
 
@@ -40,7 +41,7 @@ int main(int argc, char** argv) {
                     ("fuzz-training-" + std::to_string(::getpid()) + ".set");
   google::protobuf::SetLogHandler(nullptr);  // it would report every broken name
   fuzz::Fuzzer fuzzer;
-  fuzzer.least_long = 10000;
+  fuzzer.long_round = 10000;
   for (const int pairs : {2, 12, 60}) {
     fuzz::require(learning::save(path, some_set(1, pairs)).has_value(), "no seed");
     fuzzer.seeds.push_back(fuzz::read_file(path.string()));

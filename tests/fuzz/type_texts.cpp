@@ -1,16 +1,16 @@
-#include "type_texts.hpp"
+#include "tests/fuzz/type_texts.hpp"
 
 #include <nlohmann/json.hpp>
-#include <prehend/types/idl.hpp>
-#include <prehend/types/value.hpp>
 
-#include "fuzz.hpp"
-#include "mutation.hpp"
+#include "common/recording/types/idl.hpp"
+#include "common/recording/types/value.hpp"
+#include "tests/fuzz/fuzz.hpp"
+#include "tests/fuzz/mutation.hpp"
 
 namespace prehend::fuzz {
 
-types::Library contract() {
-  return types::load_idl(std::string(PREHEND_SOURCE) + "/idl").value();
+recording::types::Library contract() {
+  return recording::types::load_idl(std::string(PREHEND_SOURCE) + "/idl").value();
 }
 
 std::string mutate_type_text(Random& random, std::string text,
@@ -26,17 +26,17 @@ std::string mutate_type_text(Random& random, std::string text,
   });
 }
 
-void decode_some(const types::Structure& type) {
+void decode_some(const recording::types::Structure& type) {
   for (const std::size_t length : {4, 5, 40, 2000})
     for (const std::uint8_t byte : {0, 1}) {
       std::vector<std::uint8_t> message(length, byte);
       message[0] = 0;
-      const auto value = types::decode(type, message);
+      const auto value = recording::types::decode(type, message);
       require(value || !value.error().what.empty(), "refused without a reason");
       if (!value) continue;
-      for (const types::Field& field : type.fields)
+      for (const recording::types::Field& field : type.fields)
         require(value->find(field.name), "a field is missing");
-      (void)types::to_json(*value);
+      (void)recording::types::to_json(*value);
     }
 }
 

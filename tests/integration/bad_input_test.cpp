@@ -3,7 +3,7 @@
 #include <csignal>
 #include <fstream>
 
-#include "rig.hpp"
+#include "tests/integration/rig.hpp"
 
 namespace prehend::integration {
 namespace {

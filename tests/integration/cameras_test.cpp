@@ -5,21 +5,21 @@
 #include <cmath>
 #include <fstream>
 #include <iterator>
-#include <prehend/dds/topics.hpp>
-#include <prehend/model/scene.hpp>
-#include <prehend/recognition_geometry/silhouette.hpp>
-#include <prehend/recognition_picture/picture_file.hpp>
-#include <prehend/recognition_rendering/renderer.hpp>
 
-#include "rig.hpp"
-#include "stream_camera.hpp"
+#include "common/dds/topics.hpp"
+#include "common/model/scene.hpp"
+#include "services/recognition/core/geometry/silhouette.hpp"
+#include "services/recognition/core/rendering/renderer.hpp"
+#include "services/recognition/files/picture_file.hpp"
+#include "tests/integration/rig.hpp"
+#include "tests/integration/stream_camera.hpp"
 
 namespace prehend::integration {
 namespace {
 
 using recognition::CameraModel;
 using recognition::Picture;
-using recognition::Standing;
+using recognition::TablePose;
 
 /// As the configuration has it.
 CameraModel lab_camera() {
@@ -45,7 +45,7 @@ class Cameras : public Rig {
     renderer_.emplace(world_);
   }
 
-  Picture table(const std::string& name = "", const Standing& at = {},
+  Picture table(const std::string& name = "", const TablePose& at = {},
                 const CameraModel& camera = lab_camera()) const {
     model::Scene scene;
     if (!name.empty())

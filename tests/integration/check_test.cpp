@@ -1,16 +1,17 @@
 // `prehend check`: services as real processes on recorded inputs. The same recording must give the
 // same answers, to the byte, however often it is asked; what has changed must be seen, shown,
 // written as JUnit XML and, on request, taken over.
+#include "services/recorder/tools/check/check.hpp"
+
 #include <tinyxml2.h>
 
 #include <algorithm>
 #include <fstream>
 #include <nlohmann/json.hpp>
-#include <prehend/mcap/writer.hpp>
-#include <prehend/recorder/check.hpp>
-#include <prehend/types/idl.hpp>
 
-#include "rig.hpp"
+#include "common/recording/mcap/writer.hpp"
+#include "common/recording/types/idl.hpp"
+#include "tests/integration/rig.hpp"
 
 namespace prehend::integration {
 namespace {
@@ -63,7 +64,7 @@ class Check : public Rig {
 
 TEST_F(Check, SamplesAreAnsweredAsRecordedTimeAndAgain) {
   const int runs = std::getenv("PREHEND_LONG") ? 20 : 3;
-  const auto types = types::load_contract().value();
+  const auto types = recording::types::load_contract().value();
   const auto tolerances = recording::ToleranceTable::load_defaults().value();
   std::uintmax_t bytes = 0;
   for (const auto& sample : all_samples()) {
@@ -225,10 +226,11 @@ TEST_F(Check, WhatCannotBeFoundOutIsNoVerdict) {
                 "no answer of these services");
   // A message of 1970 among those of today used to be waited for in steps of 10 ms.
   {
-    auto writer = mcap::Writer::create(file("long.mcap")).value();
+    auto writer = recording::mcap::Writer::create(file("long.mcap")).value();
     const auto channel = writer.add_channel(0, "hand/posture", "cdr").value();
     for (const std::uint64_t time : {1ull, 1'700'000'000'000'000'000ull})
-      ASSERT_TRUE(writer.write(mcap::Message{channel, 1, time, time, mcap::view("0123")}));
+      ASSERT_TRUE(writer.write(
+          recording::mcap::Message{channel, 1, time, time, recording::mcap::view("0123")}));
   }
   expect_broken(check(file("long.mcap")), "too long");
   // The verdict is there, but not where it was wanted.

@@ -3,7 +3,8 @@
 #include <nlohmann/json.hpp>
 #include <span>
 
-#include "rig.hpp"
+#include "tests/integration/rig.hpp"
+#include "tests/support/shared_data.hpp"
 
 namespace prehend::integration {
 namespace {
@@ -16,10 +17,6 @@ class Demo : public Rig {
   Answer demo(Strings arguments) {
     arguments.insert(arguments.begin(), {"demo", "--json", "--domain", std::to_string(domain_)});
     return run("prehend", arguments, 55);
-  }
-  static std::string shared(const std::string& file) {
-    const char* given = std::getenv("PREHEND_SHARED");
-    return std::string(given ? given : PREHEND_SHARED_DATA) + "/" + file;
   }
 };
 
@@ -102,7 +99,7 @@ TEST_F(Demo, PlaysRecordingsToTheirEnds) {
       {"leap_hand_recordings/brian.csv", 400}};
   const std::size_t count = std::getenv("PREHEND_LONG") ? std::size(recordings) : 2;
   for (const auto& [name, frames] : std::span(recordings).first(count)) {
-    const std::string file = shared(name);
+    const std::string file = (shared_data() / name).string();
     if (!std::filesystem::exists(file)) GTEST_SKIP() << file << " is not here";
     SCOPED_TRACE(file);
     const Answer answer = demo({"--glove", "recording:" + file});

@@ -5,10 +5,10 @@
 
 #include <fstream>
 #include <nlohmann/json.hpp>
-#include <prehend/cli_keys/keystore.hpp>
-#include <prehend/dds/raw.hpp>
 
-#include "rig.hpp"
+#include "common/dds/raw.hpp"
+#include "services/cli/tools/keys/keystore.hpp"
+#include "tests/integration/rig.hpp"
 
 namespace prehend::integration {
 namespace {
@@ -229,8 +229,8 @@ TEST_F(Doctor, NamesAHostWhoseClockIsWrong) {
       status.service("mapping@elsewhere/1");
       status.host("elsewhere");
       status.name("mapping");
-      eprosima::fastrtps::rtps::WriteParams parameters;
-      eprosima::fastrtps::rtps::Time_t stamp;
+      dds::rtps::WriteParams parameters;
+      dds::rtps::Time_t stamp;
       stamp.from_ns(now_ns() - 3'600'000'000'000);
       parameters.source_timestamp(stamp);
       statuses.raw().write(&status, parameters);

@@ -1,4 +1,4 @@
-#include "fault_rig.hpp"
+#include "tests/integration/fault_rig.hpp"
 
 #include <fmt/format.h>
 
@@ -148,7 +148,7 @@ bool FaultRig::operate(double limit_s, const std::function<bool()>& condition) {
   });
 }
 
-double FaultRig::longest_pause(double limit_s, const std::function<bool()>& condition) {
+double FaultRig::max_pause(double limit_s, const std::function<bool()>& condition) {
   std::int64_t last = now_ns(), moved = moved_by_;
   double longest = 0;
   operate(limit_s, [&] {

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "hosts.hpp"
-#include "rig.hpp"
+#include "tests/integration/hosts.hpp"
+#include "tests/integration/rig.hpp"
 
 namespace prehend::integration {
 
@@ -50,7 +50,7 @@ class FaultRig : public OnHosts, public Rig {
   bool operate(
       double limit_s, const std::function<bool()>& condition = [] { return false; });
   /// The longest time without a new frame that moved the hand, s, until the condition holds.
-  double longest_pause(
+  double max_pause(
       double limit_s, const std::function<bool()>& condition = [] { return false; });
   /// Until a frame that was taken after `time` moved the hand; s since then. -1: never.
   double recovery(std::int64_t time, double limit_s = 15);

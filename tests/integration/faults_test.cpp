@@ -12,7 +12,7 @@
 #include <iterator>
 #include <nlohmann/json.hpp>
 
-#include "fault_rig.hpp"
+#include "tests/integration/fault_rig.hpp"
 
 namespace prehend::integration {
 namespace {
@@ -145,7 +145,7 @@ void Faults::five_percent_lost() {
   FaultRow row = begin("5 % of packets lost");
   for (const char* host : {"hand", "eye", "robot", "operator"}) hosts_->lose(host, 0.05);
   // Meanwhile the hand goes on: a frame at least every 200 ms.
-  const double longest = longest_pause(rounds(3, 60));
+  const double longest = max_pause(rounds(3, 60));
   for (const char* host : {"hand", "eye", "robot", "operator"}) hosts_->lose(host, 0);
   EXPECT_LT(longest, 1.0) << "s without a frame";
   row.rounds = 1;
@@ -317,7 +317,7 @@ void Faults::clocks_an_hour_apart() {
   ASSERT_GT(recovery(now_ns()), 0);
   operate(2);
   write_clock(file, "+3600s");
-  const double longest = longest_pause(6, [&] {
+  const double longest = max_pause(6, [&] {
     return statuses_["glove"].message().to_string().find("clock was set") != std::string::npos;
   });
   EXPECT_NE(statuses_["glove"].message().to_string().find("clock was set"), std::string::npos)

@@ -15,12 +15,12 @@
 #include <random>
 #include <thread>
 
-#include "fault_rig.hpp"
+#include "tests/integration/fault_rig.hpp"
 
 namespace prehend::integration {
 namespace {
 
-constexpr double healed = 1.0;  // s, from the last packet
+constexpr double flood_healed = 1.0;  // s, from the last packet
 
 using Bytes = std::vector<std::uint8_t>;
 
@@ -167,7 +167,7 @@ void Flood::flood(const std::string& fault) {
     EXPECT_LT(row.recoveries.back(), 2);
   }
   ::close(out);
-  expect_recovery(row, healed);  // otherwise a damaged packet was believed
+  expect_recovery(row, flood_healed);  // otherwise a damaged packet was believed
   std::cout << row.rounds << " packets to " << targets.size() << " ports each, " << crashes
             << " crashes\n";
   EXPECT_EQ(crashes, 0);

@@ -7,17 +7,17 @@
 #include <fstream>
 #include <iterator>
 #include <nlohmann/json.hpp>
-#include <prehend/dds/convert.hpp>
-#include <prehend/dds/topics.hpp>
-#include <prehend/glove_calibration/hand_fit.hpp>
-#include <prehend/glove_calibration/user_file.hpp>
-#include <prehend/glove_devices/device.hpp>
-#include <prehend/glove_devices/emulation.hpp>
-#include <prehend/service/config.hpp>
 #include <set>
 
-#include "rig.hpp"
-#include "terminal.hpp"
+#include "common/convert/convert.hpp"
+#include "common/dds/topics.hpp"
+#include "common/service/config.hpp"
+#include "services/glove/core/calibration/hand_fit.hpp"
+#include "services/glove/devices/device.hpp"
+#include "services/glove/devices/emulation.hpp"
+#include "services/glove/files/user_file.hpp"
+#include "tests/integration/rig.hpp"
+#include "tests/integration/terminal.hpp"
 
 namespace prehend::integration {
 namespace {
@@ -42,7 +42,7 @@ class GloveUse : public Rig {
       v1::SensorReading reading;
       reading.site(site);
       reading.valid(true);
-      reading.X_TS(dds::to_message(X_TS));
+      reading.X_TS(convert::to_message(X_TS));
       message.sensors().push_back(reading);
     };
     add(v1::SITE_BACK_OF_HAND, X_TH);
@@ -69,7 +69,8 @@ TEST_F(GloveUse, WhatIsWrongIsCountedByReason) {
   const std::vector<std::pair<std::string, std::function<void(v1::GloveFrame&)>>> faults{
       {"not finite", [](auto& f) { f.sensors()[0].X_TS().position().x(NAN); }},
       {"zero norm", [](auto& f) { f.sensors()[1].X_TS().orientation() = {}; }},
-      {"identity pose", [](auto& f) { f.sensors()[2].X_TS(dds::to_message(Pose::Identity())); }},
+      {"identity pose",
+       [](auto& f) { f.sensors()[2].X_TS(convert::to_message(Pose::Identity())); }},
       {"not valid", [](auto& f) { f.sensors()[3].valid(false); }},
       {"extreme point", [](auto& f) { f.sensors()[1].X_TS().position().z(0.6); }},
       {"second hand", [](auto& f) { f.sensors().push_back(f.sensors()[0]); }},
@@ -97,7 +98,8 @@ TEST_F(GloveUse, WhatIsWrongIsCountedByReason) {
     for (const auto& sample : postures.take()) {
       if (sample.info.gone || !sample.data.fingertips()[1].valid()) continue;
       ++heard;
-      worst = std::max(worst, (dds::from_message(sample.data.fingertips()[1].p_HF()) - tip).norm());
+      worst =
+          std::max(worst, (convert::from_message(sample.data.fingertips()[1].p_HF()) - tip).norm());
     }
     for (const auto& sample : statuses.take())
       for (const v1::Drop& drop : sample.data.drops()) missing.erase(drop.reason().to_string());

@@ -1,4 +1,4 @@
-#include "hosts.hpp"
+#include "tests/integration/hosts.hpp"
 
 #include <fcntl.h>
 #include <fmt/format.h>

@@ -3,9 +3,10 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
-#include <prehend/service/process.hpp>
 #include <string>
 #include <vector>
+
+#include "common/service/process.hpp"
 
 namespace prehend::integration {
 

@@ -4,11 +4,11 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
-#include <prehend/dds/topics.hpp>
-#include <prehend/test_support/hands.hpp>
 
-#include "rig.hpp"
-#include "shown_hand.hpp"
+#include "common/dds/topics.hpp"
+#include "tests/integration/rig.hpp"
+#include "tests/integration/shown_hand.hpp"
+#include "tests/support/hands.hpp"
 
 namespace prehend::integration {
 namespace {

@@ -5,15 +5,15 @@
 
 #include <cstring>
 #include <mutex>
-#include <prehend/dds/raw.hpp>
 #include <thread>
 
-#include "fault_rig.hpp"
+#include "common/dds/raw.hpp"
+#include "tests/integration/fault_rig.hpp"
 
 namespace prehend::integration {
 namespace {
 
-constexpr double healed = 1.0;  // s
+constexpr double newest_healed = 1.0;  // s
 constexpr std::uint8_t instances = 5;
 
 /// Both participants are in this process: without this they would not use the network.
@@ -25,7 +25,7 @@ void deliver_within_process(eprosima::fastrtps::IntraprocessDeliveryType how) {
 
 /// Both ends of a topic; the samples of an instance are numbered from 1.
 struct Line {
-  const dds::TopicQos& qos;
+  const dds::TopicInfo& topic;
   std::optional<dds::RawWriter> writer;
   std::unique_ptr<dds::RawReader> reader;
   std::mutex mutex;
@@ -50,7 +50,7 @@ struct Line {
   bool has_all(std::uint64_t number) {
     const std::scoped_lock lock(mutex);
     for (std::uint8_t i = 0; i < instances; ++i)
-      if (newest[i] < number || (qos.writer_depth == 0 && count[i] < number)) return false;
+      if (newest[i] < number || (topic.qos.writer_depth == 0 && count[i] < number)) return false;
     return true;
   }
 };
@@ -84,11 +84,11 @@ class Newest : public testing::Test {
 };
 
 TEST_F(Newest, SampleOfEachInstanceArrivesWhenTheCableIsBack) {
-  for (const dds::TopicQos& topic : dds::topic_table) {
-    if (!topic.reliable) continue;
+  for (const dds::TopicInfo& topic : dds::topic_table) {
+    if (!topic.qos.reliable) continue;
     auto line = std::make_unique<Line>(topic);
     Line* raw = line.get();
-    const dds::RawTopic there{std::string(topic.name), "numbered", true, topic};
+    const dds::RawTopic there{std::string(topic.name), "numbered", true, topic.qos};
     auto reader =
         dds::RawReader::create(*ends_[1], there, [raw](dds::RawSample&& s) { raw->hear(s); });
     auto writer = dds::RawWriter::create(*ends_[0], there);
@@ -103,7 +103,7 @@ TEST_F(Newest, SampleOfEachInstanceArrivesWhenTheCableIsBack) {
       eprosima::fastdds::dds::PublicationMatchedStatus matched;
       line->writer->raw().get_publication_matched_status(matched);
       return matched.current_count > 0 && line->reader->writers() > 0;
-    })) << line->qos.name;
+    })) << line->topic.name;
   FaultRow row;
   row.fault = "cable pulled, every reliable topic";
   std::uint64_t number = 0;
@@ -128,11 +128,11 @@ TEST_F(Newest, SampleOfEachInstanceArrivesWhenTheCableIsBack) {
       return std::all_of(lines_.begin(), lines_.end(),
                          [&](const auto& line) { return line->has_all(due); });
     }));
-    for (const auto& line : lines_) EXPECT_TRUE(line->has_all(due)) << line->qos.name;
-    EXPECT_LT(row.recoveries.back(), healed);
+    for (const auto& line : lines_) EXPECT_TRUE(line->has_all(due)) << line->topic.name;
+    EXPECT_LT(row.recoveries.back(), newest_healed);
   }
   for (const auto& line : lines_)
-    if (line->qos.writer_depth == 0) row.lost += line->reader->lost();
+    if (line->topic.qos.writer_depth == 0) row.lost += line->reader->lost();
   EXPECT_EQ(row.lost, 0u);
   report(row);
 }

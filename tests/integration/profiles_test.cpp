@@ -5,11 +5,11 @@
 
 #include <fstream>
 #include <iterator>
-#include <prehend/base/paths.hpp>
 #include <random>
 #include <regex>
 
-#include "rig.hpp"
+#include "common/base/paths.hpp"
+#include "tests/integration/rig.hpp"
 
 namespace prehend::integration {
 namespace {

@@ -1,4 +1,4 @@
-#include "recorder_rig.hpp"
+#include "tests/integration/recorder_rig.hpp"
 
 namespace prehend::integration {
 

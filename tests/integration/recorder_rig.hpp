@@ -1,10 +1,10 @@
 #pragma once
 
 #include <csignal>
-#include <prehend/dds/raw.hpp>
-#include <prehend/recorder/tape.hpp>
 
-#include "rig.hpp"
+#include "common/dds/raw.hpp"
+#include "services/recorder/service/tape.hpp"
+#include "tests/integration/rig.hpp"
 
 namespace prehend::integration {
 

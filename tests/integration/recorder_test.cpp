@@ -5,7 +5,7 @@
 #include <fstream>
 #include <map>
 
-#include "recorder_rig.hpp"
+#include "tests/integration/recorder_rig.hpp"
 
 namespace prehend::integration {
 namespace {
@@ -87,7 +87,7 @@ TEST_F(Recorder, APlayerIsPausedSteppedSoughtAndStoppedByTopic) {
   const auto recorded = content(file("tape.mcap"));
   ASSERT_EQ(recorded.size(), 50u);
 
-  auto heard = participant_->reader(dds::Topic<v1::GraspReportPubSubType>{"grasp/report"});
+  auto heard = participant_->reader(dds::grasp_report);
   ASSERT_TRUE(heard);
   heard->raw().wait_for_unread_message({2, 0});
   while (!heard->take().empty()) {  // our own, kept for late readers

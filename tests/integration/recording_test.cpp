@@ -10,12 +10,12 @@
 #include <fstream>
 #include <map>
 #include <nlohmann/json.hpp>
-#include <prehend/mcap/reader.hpp>
 #include <random>
 #include <set>
 
-#include "recorder_rig.hpp"
-#include "terminal.hpp"
+#include "common/recording/mcap/reader.hpp"
+#include "tests/integration/recorder_rig.hpp"
+#include "tests/integration/terminal.hpp"
 
 namespace prehend::integration {
 namespace {
@@ -45,7 +45,7 @@ class Recording : public RecorderRig {
   }
   /// How many samples of a topic have been written out to a file that is still being written.
   static std::uint64_t written(const std::string& path, const std::string& topic) {
-    auto reader = mcap::Reader::open(path);
+    auto reader = recording::mcap::Reader::open(path);
     if (!reader) return 0;
     const auto statistics = reader->statistics();
     std::uint64_t sum = 0;
@@ -252,7 +252,7 @@ TEST_F(Recording, SignalsEndTheFileProperly) {
     v1::GraspReport report;
     report.hand("hand");
     for (int i = 0; i < 20; ++i) ASSERT_TRUE(reports.write(report));
-    ASSERT_EQ(reports.raw().wait_for_acknowledgments({5, 0}), ReturnCode_t::RETCODE_OK);
+    ASSERT_TRUE(dds::succeeded(reports.raw().wait_for_acknowledgments({5, 0})));
     EXPECT_EQ(end(process, signal), 0);
     const auto document = info(file(name));
     EXPECT_TRUE(document["closed"]);
@@ -272,7 +272,7 @@ TEST_F(Recording, KeysOnATerminalPauseWriteASnapshotAndQuit) {
   v1::GraspReport report;
   report.hand("hand");
   ASSERT_TRUE(reports.write(report));
-  ASSERT_EQ(reports.raw().wait_for_acknowledgments({5, 0}), ReturnCode_t::RETCODE_OK);
+  ASSERT_TRUE(dds::succeeded(reports.raw().wait_for_acknowledgments({5, 0})));
   terminal.press(" ");
   EXPECT_TRUE(terminal.shows("paused ")) << terminal.shown();
   terminal.press(" ");
@@ -302,7 +302,7 @@ TEST_F(Recording, TypesAreDescribedAsAskedFor) {
       return order("recorder", "resume").done() && std::filesystem::file_size(file(path)) > 3000;
     }));
     ASSERT_EQ(end(process), 0);
-    const auto reader = mcap::Reader::open(file(path));
+    const auto reader = recording::mcap::Reader::open(file(path));
     ASSERT_TRUE(reader);
     const auto& contents = reader->contents();
     ASSERT_EQ(contents.channels.size(), 1u);
@@ -333,7 +333,7 @@ TEST_F(Recording, WhatIsChosenIsRecordedAlsoWhenItComesLate) {
     ASSERT_TRUE(states.write(state));
     ASSERT_TRUE(reports.write(report));
   }
-  ASSERT_EQ(reports.raw().wait_for_acknowledgments({5, 0}), ReturnCode_t::RETCODE_OK);
+  ASSERT_TRUE(dds::succeeded(reports.raw().wait_for_acknowledgments({5, 0})));
   EXPECT_TRUE(eventually(20, [&] { return written(file("some.mcap"), "glove/frame") == 5; }));
   ASSERT_EQ(end(process), 0);
   EXPECT_EQ(counts(file("some.mcap")),
@@ -349,7 +349,7 @@ TEST_F(Recording, StartsPausesAndGoesOnByOrder) {
   const auto send = [&](std::uint64_t number) {
     posture.sequence_number(number);
     ASSERT_TRUE(postures.write(posture));
-    ASSERT_EQ(postures.raw().wait_for_acknowledgments({5, 0}), ReturnCode_t::RETCODE_OK);
+    ASSERT_TRUE(dds::succeeded(postures.raw().wait_for_acknowledgments({5, 0})));
   };
   const auto ordered = [&](const char* argument) {
     EXPECT_TRUE(order("recorder", argument).done()) << argument;
@@ -409,10 +409,9 @@ TEST_F(Recording, WhatWasLostIsCountedInTheFile) {
 
 TEST_F(Recording, EndsOfInstancesAreKeptAsTheyWere) {
   auto process = record("ends.mcap", {"some/topic"});
-  auto made = dds::RawWriter::create(*participant_, {.name = "some/topic",
-                                                     .type = "some::Type",
-                                                     .keyed = true,
-                                                     .qos = {.name = "", .writer_depth = 0}});
+  auto made = dds::RawWriter::create(
+      *participant_,
+      {.name = "some/topic", .type = "some::Type", .keyed = true, .qos = {.writer_depth = 0}});
   ASSERT_TRUE(made);
   ASSERT_TRUE(eventually(10, [&] {
     eprosima::fastdds::dds::PublicationMatchedStatus status;
@@ -429,7 +428,7 @@ TEST_F(Recording, EndsOfInstancesAreKeptAsTheyWere) {
     if (sample.kind == Kind::data) sample.payload = {0, 1, 0, 0, sample.instance[0], 2, 3, 4};
     ASSERT_TRUE(made->write(sample, from_ns(now_ns())));
   }
-  ASSERT_EQ(made->raw().wait_for_acknowledgments({5, 0}), ReturnCode_t::RETCODE_OK);
+  ASSERT_TRUE(dds::succeeded(made->raw().wait_for_acknowledgments({5, 0})));
   ASSERT_EQ(end(process), 0);
   std::vector<std::pair<int, Kind>> kept;
   for (const Played& one : content(file("ends.mcap"), "some/topic"))

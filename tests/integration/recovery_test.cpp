@@ -2,7 +2,7 @@
 // within 2 s of its restart, without anybody else being touched.
 #include <csignal>
 
-#include "rig.hpp"
+#include "tests/integration/rig.hpp"
 
 namespace prehend::integration {
 namespace {

@@ -7,14 +7,14 @@
 #include <cstdlib>
 #include <mutex>
 #include <nlohmann/json.hpp>
-#include <prehend/base/paths.hpp>
-#include <prehend/dds/convert.hpp>
-#include <prehend/dds/raw.hpp>
-#include <prehend/model/hand_model.hpp>
-#include <prehend/recorder/recording_file.hpp>
 
-#include "rig.hpp"
-#include "terminal.hpp"
+#include "common/base/paths.hpp"
+#include "common/convert/convert.hpp"
+#include "common/dds/raw.hpp"
+#include "common/model/hand_model.hpp"
+#include "services/recorder/service/recording_file.hpp"
+#include "tests/integration/rig.hpp"
+#include "tests/integration/terminal.hpp"
 
 namespace prehend::integration {
 namespace {
@@ -39,14 +39,13 @@ class Replay : public Rig {
     ASSERT_TRUE(file.write(source, sample, sample.received));
   }
   recorder::RecordingFile create(const std::string& name) {
-    return recorder::RecordingFile::create(file(name), heading_, mcap::Compression::lz4).value();
+    return recorder::RecordingFile::create(file(name), heading_, recording::mcap::Compression::lz4)
+        .value();
   }
   /// Reports with these numbers; their topic keeps all, so a late reader misses none.
   std::string reports(const std::string& name, const std::vector<int>& numbers, Duration step) {
     auto recording = create(name);
-    const recorder::Source source{
-        {"grasp/report", "prehend::v1::GraspReport", true, *dds::find_topic("grasp/report")},
-        name_};
+    const recorder::Source source{dds::raw_topic(dds::grasp_report), name_};
     for (const int number : numbers) {
       v1::GraspReport report;
       report.hand("hand");
@@ -170,7 +169,7 @@ TEST_F(Replay, OldOrdersAreHeardButNotObeyedAndOldStatusesAreNot) {
   {
     auto recording = create("old.mcap");
     const auto source = [&](std::string_view topic, const char* type) {
-      return recorder::Source{{std::string(topic), type, true, *dds::find_topic(topic)}, name_};
+      return recorder::Source{{std::string(topic), type, true, dds::find_topic(topic)->qos}, name_};
     };
     v1::OperatorCommand order;
     order.id("then");
@@ -239,18 +238,16 @@ TEST_F(Replay, EasesTheHandToWhereTheRecordingBegins) {
   goal.dof(dof);
   Pose X_WB = Pose::Identity();
   X_WB.translation() = Eigen::Vector3d(0.1, 0.2, 0.6);
-  goal.X_WB(dds::to_message(X_WB));
+  goal.X_WB(convert::to_message(X_WB));
   {
     auto recording = create("goal.mcap");
-    const recorder::Source source{
-        {"robot/command", "prehend::v1::HandCommand", true, *dds::find_topic("robot/command")},
-        name_};
+    const recorder::Source source{dds::raw_topic(dds::robot_command), name_};
     for (int i = 0; i < 3; ++i)
       write(recording, source, dds::robot_command, goal, milliseconds(20 * i));
     ASSERT_TRUE(recording.close());
   }
   auto states = reader(dds::robot_state);
-  auto commands = reader(dds::Topic<v1::HandCommandPubSubType>{"robot/command"});
+  auto commands = reader(dds::robot_command);
   auto simulation = start("simulation", {"simulation.hand=barrett"});
   const auto begin = hear<v1::HandState>(states, 30, [](const v1::HandState&) { return true; });
   ASSERT_TRUE(begin);

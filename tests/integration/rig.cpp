@@ -1,4 +1,4 @@
-#include "rig.hpp"
+#include "tests/integration/rig.hpp"
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -6,12 +6,13 @@
 #include <atomic>
 #include <fstream>
 #include <iterator>
-#include <prehend/base/time.hpp>
+
+#include "common/base/time.hpp"
 
 namespace prehend::integration {
 namespace {
 
-std::string text_of(const std::filesystem::path& file) {
+std::string file_text(const std::filesystem::path& file) {
   std::ifstream stream(file, std::ios::binary);
   return {std::istreambuf_iterator<char>(stream), {}};
 }
@@ -108,7 +109,7 @@ Answer Rig::run(const std::string& name, const Strings& arguments, double limit_
   if (!process) throw std::runtime_error(process.error().message());
   const auto exit = process->wait(seconds(limit_s));
   process->stop(seconds(5));
-  return {exit ? exit->code : -1, text_of(options.output), text_of(options.log)};
+  return {exit ? exit->code : -1, file_text(options.output), file_text(options.log)};
 }
 
 std::string Rig::scene(int seed) {
@@ -124,7 +125,7 @@ std::vector<pid_t> processes_with(const std::string& text) {
   for (const auto& entry : std::filesystem::directory_iterator("/proc")) {
     const std::string name = entry.path().filename();
     if (name.find_first_not_of("0123456789") != std::string::npos) continue;
-    if (text_of(entry.path() / "cmdline").find(text) != std::string::npos)
+    if (file_text(entry.path() / "cmdline").find(text) != std::string::npos)
       found.push_back(std::stoi(name));
   }
   return found;

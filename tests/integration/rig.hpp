@@ -5,11 +5,12 @@
 #include <filesystem>
 #include <functional>
 #include <optional>
-#include <prehend/dds/participant.hpp>
-#include <prehend/service/process.hpp>
 #include <string>
 #include <thread>
 #include <vector>
+
+#include "common/dds/participant.hpp"
+#include "common/service/process.hpp"
 
 namespace prehend::integration {
 

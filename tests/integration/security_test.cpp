@@ -10,12 +10,12 @@
 #include <fastdds/dds/publisher/Publisher.hpp>
 #include <fastdds/dds/subscriber/Subscriber.hpp>
 #include <fstream>
-#include <prehend/cli_keys/keystore.hpp>
-#include <prehend/dds/raw.hpp>
-#include <prehend/keys/certificate.hpp>
 #include <thread>
 
-#include "rig.hpp"
+#include "common/dds/raw.hpp"
+#include "common/keys/certificate.hpp"
+#include "services/cli/tools/keys/keystore.hpp"
+#include "tests/integration/rig.hpp"
 
 namespace prehend::integration {
 namespace {
@@ -214,11 +214,11 @@ TEST_F(Security, PermissionsAreTheTableOfTopics) {
   for (const auto& [role, name] : dds::role_names) {
     auto participant = member(std::string(name), store_.folder());
     ASSERT_TRUE(participant.keys());
-    dds::Permissions due = dds::least_permissions(role);
+    dds::Permissions due = dds::min_permissions(role);
     EXPECT_EQ(participant.keys()->permissions.writes, due.writes) << name;
     EXPECT_EQ(participant.keys()->permissions.reads, due.reads) << name;
-    for (const dds::TopicQos& topic : dds::topic_table) {
-      const dds::RawTopic raw{std::string(topic.name), "any", true, topic};
+    for (const dds::TopicInfo& topic : dds::topic_table) {
+      const dds::RawTopic raw{std::string(topic.name), "any", true, topic.qos};
       EXPECT_EQ(dds::RawWriter::create(participant, raw).has_value(), dds::may_write(role, topic))
           << name << " writes " << topic.name;
       EXPECT_EQ(dds::RawReader::create(participant, raw, [](dds::RawSample&&) {}).has_value(),

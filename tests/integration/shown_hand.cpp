@@ -1,8 +1,7 @@
-#include "shown_hand.hpp"
+#include "tests/integration/shown_hand.hpp"
 
-#include <prehend/dds/convert.hpp>
-
-#include "rig.hpp"
+#include "common/convert/convert.hpp"
+#include "tests/integration/rig.hpp"
 
 namespace prehend::integration {
 
@@ -14,11 +13,11 @@ v1::HandPosture shown_hand(const Closure& closure, std::uint64_t frame) {
   message.origin_ns(message.stamp_ns());
   message.hand_scale(1);
   message.quality(1);
-  message.X_WH(dds::to_message(make_pose({0, 0, 0.4})));
+  message.X_WH(convert::to_message(make_pose({0, 0, 0.4})));
   const auto tips = model::HumanHand(1).fingertip_poses(model::HumanHand::posture(closure));
   for (std::size_t f = 0; f < tips.size(); ++f) {
     message.fingertips()[f].valid(true);
-    message.fingertips()[f].p_HF(dds::to_message(Eigen::Vector3d(tips[f].translation())));
+    message.fingertips()[f].p_HF(convert::to_message(Eigen::Vector3d(tips[f].translation())));
   }
   return message;
 }

@@ -1,9 +1,9 @@
 #pragma once
 
-#include <prehend/idl/Glove.h>
-
 #include <array>
-#include <prehend/model/human_hand.hpp>
+
+#include "common/model/human_hand.hpp"
+#include "idl/Glove.h"
 
 namespace prehend::integration {
 

@@ -1,10 +1,9 @@
 // The simulation alone over real DDS: commands at 30 Hz reach for an object that was only seen,
 // close and lift; the report comes while the world goes on, and commands that cannot be followed
 // are counted.
-#include <prehend/dds/convert.hpp>
-#include <prehend/test_support/hands.hpp>
-
-#include "rig.hpp"
+#include "common/convert/convert.hpp"
+#include "tests/integration/rig.hpp"
+#include "tests/support/hands.hpp"
 
 namespace prehend::integration {
 namespace {
@@ -23,7 +22,7 @@ v1::HandCommand command(const Vector3d& p_WG, double closure) {
   message.stamp_ns(now_ns());
   message.origin_ns(now_ns());
   message.dof({0, closure, closure, closure});
-  message.X_WB(dds::to_message(make_pose(p_WG, R) * test::hand("barrett").X_BG().inverse()));
+  message.X_WB(convert::to_message(make_pose(p_WG, R) * test::hand("barrett").X_BG().inverse()));
   message.mode(v1::MODE_DIRECT);
   return message;
 }
@@ -43,8 +42,8 @@ TEST_F(Simulation, GraspsWhatWasSeenAndReportsIt) {
   v1::ObjectDetection detection;
   detection.name("Talc");
   detection.shape(v1::SHAPE_CYLINDER);
-  detection.size(dds::to_message(Vector3d(0.024, 0.024, 0.105)));
-  detection.X_WO(dds::to_message(make_pose(Vector3d(0, 0, 0.05))));
+  detection.size(convert::to_message(Vector3d(0.024, 0.024, 0.105)));
+  detection.X_WO(convert::to_message(make_pose(Vector3d(0, 0, 0.05))));
   detection.stamp_ns(now_ns());
   ASSERT_TRUE(detections.write(detection));
   ASSERT_TRUE(hear<v1::ObjectState>(objects, 20, [](auto&) { return true; }));

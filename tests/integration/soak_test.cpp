@@ -8,9 +8,9 @@
 #include <algorithm>
 #include <cstdlib>
 #include <map>
-#include <prehend/dds/raw.hpp>
 
-#include "rig.hpp"
+#include "common/dds/raw.hpp"
+#include "tests/integration/rig.hpp"
 
 namespace prehend::integration {
 namespace {
@@ -24,19 +24,15 @@ double median(std::vector<double> values) {
 class Soak : public Rig {
  protected:
   struct Watched {
-    const dds::TopicQos* qos;
+    dds::TopicInfo topic;
     std::unique_ptr<dds::RawReader> reader;
   };
   template <class P>
   void watch(const dds::Topic<P>& topic) {
-    const dds::TopicQos* qos = dds::find_topic(topic.name);
-    ASSERT_TRUE(qos);
-    P type;
-    auto made = dds::RawReader::create(
-        *participant_, {std::string(topic.name), type.getName(), type.m_isGetKeyDefined, *qos},
-        [](dds::RawSample&&) {});
+    auto made =
+        dds::RawReader::create(*participant_, dds::raw_topic(topic), [](dds::RawSample&&) {});
     ASSERT_TRUE(made) << made.error().message();
-    watched_.push_back({qos, std::move(*made)});
+    watched_.push_back({topic, std::move(*made)});
   }
   /// Memory of each service over some seconds, as it says it itself.
   std::map<std::string, double> memory(double length_s) {
@@ -59,7 +55,7 @@ class Soak : public Rig {
 TEST_F(Soak, NothingIsLostAndNothingGrows) {
   const bool all = std::getenv("PREHEND_LONG") != nullptr;
   // Bytes. Half a minute after its start recognition still takes its last buffers, 0.9 MB.
-  const double most_growth = all ? 1e6 : 3e6;
+  const double max_growth = all ? 1e6 : 3e6;
   const double warm_up = all ? 60 : 3, length = all ? 1200 : 10, window = all ? 10 : 4;
   watch(dds::glove_frame);
   watch(dds::hand_posture);
@@ -75,13 +71,13 @@ TEST_F(Soak, NothingIsLostAndNothingGrows) {
     processes.emplace(name, start(name, sets));
   ASSERT_TRUE(eventually(40, [&] {
     return std::all_of(watched_.begin(), watched_.end(), [](const Watched& one) {
-      return one.reader->received() > 0 || one.qos->writer_depth == 0;
+      return one.reader->received() > 0 || one.topic.qos.writer_depth == 0;
     });
   })) << "the lab does not start";
   // The first grasps take what a judge needs.
   const auto reports = [&] {
     return std::find_if(watched_.begin(), watched_.end(),
-                        [](const Watched& one) { return one.qos->name == dds::grasp_report.name; })
+                        [](const Watched& one) { return one.topic.name == dds::grasp_report.name; })
         ->reader->received();
   };
   ASSERT_TRUE(eventually(90, [&] { return reports() >= 2; })) << "nothing is grasped";
@@ -92,10 +88,11 @@ TEST_F(Soak, NothingIsLostAndNothingGrows) {
 
   fmt::print("\n| topic, {:.0f} s | samples | lost |\n|---|---|---|\n", warm_up + length + window);
   for (const Watched& one : watched_) {
-    fmt::print("| {}{} | {} | {} |\n", one.qos->name, one.qos->reliable ? "" : " (best effort)",
-               one.reader->received(), one.reader->lost());
-    if (one.qos->reliable) {
-      EXPECT_EQ(one.reader->lost(), 0u) << one.qos->name;
+    fmt::print("| {}{} | {} | {} |\n", one.topic.name,
+               one.topic.qos.reliable ? "" : " (best effort)", one.reader->received(),
+               one.reader->lost());
+    if (one.topic.qos.reliable) {
+      EXPECT_EQ(one.reader->lost(), 0u) << one.topic.name;
     }
   }
   fmt::print("\n| process | MB | {:.0f} s later | growth |\n|---|---|---|---|\n", length);
@@ -105,7 +102,7 @@ TEST_F(Soak, NothingIsLostAndNothingGrows) {
     const double growth = after.at(name) - before.at(name);
     fmt::print("| {} | {:.2f} | {:.2f} | {:+.2f} |\n", name, before.at(name) / 1e6,
                after.at(name) / 1e6, growth / 1e6);
-    EXPECT_LT(growth, most_growth) << "bytes, " << name;
+    EXPECT_LT(growth, max_growth) << "bytes, " << name;
   }
 }
 

@@ -1,4 +1,4 @@
-#include "stream_camera.hpp"
+#include "tests/integration/stream_camera.hpp"
 
 #include <arpa/inet.h>
 #include <poll.h>
@@ -6,9 +6,10 @@
 #include <unistd.h>
 
 #include <chrono>
-#include <prehend/recognition_picture/picture_file.hpp>
-#include <prehend/recognition_rendering/renderer.hpp>
 #include <stdexcept>
+
+#include "services/recognition/core/rendering/renderer.hpp"
+#include "services/recognition/files/picture_file.hpp"
 
 namespace prehend::integration {
 namespace {

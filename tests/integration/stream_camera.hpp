@@ -1,9 +1,10 @@
 #pragma once
 
 #include <mutex>
-#include <prehend/recognition_picture/picture.hpp>
 #include <string>
 #include <thread>
+
+#include "services/recognition/core/picture/picture.hpp"
 
 namespace prehend::integration {
 

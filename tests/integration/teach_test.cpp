@@ -4,12 +4,12 @@
 #include <gmock/gmock.h>
 
 #include <nlohmann/json.hpp>
-#include <prehend/dds/topics.hpp>
-#include <prehend/learning/training_set.hpp>
 #include <set>
 
-#include "rig.hpp"
-#include "shown_hand.hpp"
+#include "common/dds/topics.hpp"
+#include "common/learning/training_set.hpp"
+#include "tests/integration/rig.hpp"
+#include "tests/integration/shown_hand.hpp"
 
 namespace prehend::integration {
 namespace {

@@ -1,4 +1,4 @@
-#include "terminal.hpp"
+#include "tests/integration/terminal.hpp"
 
 #include <poll.h>
 #include <pty.h>

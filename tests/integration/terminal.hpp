@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "rig.hpp"
+#include "tests/integration/rig.hpp"
 
 namespace prehend::integration {
 

@@ -1,4 +1,4 @@
-#include "hands.hpp"
+#include "tests/support/hands.hpp"
 
 #include <algorithm>
 #include <filesystem>
@@ -17,6 +17,14 @@ std::vector<std::string> hand_names() {
   for (const auto& entry : std::filesystem::directory_iterator(folder))
     if (entry.is_directory()) names.push_back(entry.path().filename());
   std::sort(names.begin(), names.end());
+  return names;
+}
+
+std::vector<std::string> mappable_hands() {
+  std::vector<std::string> names = hand_names();
+  std::erase_if(names, [](const std::string& name) {
+    return !std::filesystem::exists(PREHEND_SOURCE "/services/mapping/schemes/" + name + ".toml");
+  });
   return names;
 }
 

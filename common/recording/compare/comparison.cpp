@@ -1,4 +1,4 @@
-#include "comparison.hpp"
+#include "common/recording/compare/comparison.hpp"
 
 #include <fmt/format.h>
 
@@ -11,7 +11,7 @@
 namespace prehend::recording {
 namespace {
 
-using types::Value;
+using recording::types::Value;
 
 /// What decides who is whose partner.
 struct Key {
@@ -99,8 +99,8 @@ class FieldComparison {
       return near(*x, std::get<std::int64_t>(b.content), tolerance);
     if (const auto* x = std::get_if<std::uint64_t>(&a.content))
       return near(*x, std::get<std::uint64_t>(b.content), tolerance);
-    if (const auto* x = std::get_if<types::Enumerator>(&a.content))
-      return x->value == std::get<types::Enumerator>(b.content).value;
+    if (const auto* x = std::get_if<recording::types::Enumerator>(&a.content))
+      return x->value == std::get<recording::types::Enumerator>(b.content).value;
     if (const auto* x = std::get_if<Value::Bytes>(&a.content))
       return *x == std::get<Value::Bytes>(b.content);
     if (const auto* x = std::get_if<std::string>(&a.content))
@@ -139,7 +139,7 @@ std::string_view unscoped(std::string_view name) {
 }
 
 // Of one sample not more differences are kept, so that others have room.
-constexpr std::size_t most_of_a_sample = 4;
+constexpr std::size_t max_of_a_sample = 4;
 
 }  // namespace
 
@@ -170,7 +170,7 @@ Key Comparison::Topic::key_of(std::size_t side, const ComparedSample& sample,
   if (!sample.end.empty()) return {sample.end, "end", 0};
   if (!value) return {"", "place", own_place};
   Key key;
-  for (const types::Field& field : sample.type->fields)
+  for (const recording::types::Field& field : sample.type->fields)
     if (field.key)
       key.keys +=
           (key.keys.empty() ? "" : ", ") + field.name + " " + text_of(*value->find(field.name));
@@ -203,7 +203,7 @@ void Comparison::Topic::compare(const Key& key, const Waiting& expected, const W
   }
   if (found.empty()) return;
   ++report.different;
-  if (found.size() > most_of_a_sample) found.resize(most_of_a_sample);
+  if (found.size() > max_of_a_sample) found.resize(max_of_a_sample);
   keep_first(std::move(found));
 }
 
@@ -234,7 +234,8 @@ void Comparison::add(Side from, const ComparedSample& sample) {
   Topic::Waiting fresh;
   if (sample.type && sample.end.empty()) {
     fresh.type = sample.type->name;
-    if (auto value = types::decode(*sample.type, sample.payload)) fresh.value = std::move(*value);
+    if (auto value = recording::types::decode(*sample.type, sample.payload))
+      fresh.value = std::move(*value);
   }
   if (!fresh.value) fresh.bytes.assign(sample.payload.begin(), sample.payload.end());
 

@@ -4,14 +4,14 @@
 #include <map>
 #include <memory>
 #include <optional>
-#include <prehend/base/error.hpp>
-#include <prehend/types/value.hpp>
 #include <set>
 #include <span>
 #include <string>
 #include <vector>
 
-#include "tolerance.hpp"
+#include "common/base/error.hpp"
+#include "common/recording/compare/tolerance.hpp"
+#include "common/recording/types/value.hpp"
 
 namespace prehend::recording {
 
@@ -22,7 +22,7 @@ enum class Side { expected, actual };
 struct ComparedSample {
   std::string topic;
   /// By which it is decoded; without one the bytes are compared. Must outlive the comparison.
-  const types::Structure* type = nullptr;
+  const recording::types::Structure* type = nullptr;
   /// From the encapsulation on; empty for the end of an instance.
   std::span<const std::uint8_t> payload;
   /// «disposed» or «unregistered» with the instance, empty for data.

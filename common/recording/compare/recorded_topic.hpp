@@ -1,9 +1,10 @@
 #pragma once
 
 #include <map>
-#include <prehend/mcap/reader.hpp>
-#include <prehend/types/type.hpp>
 #include <string>
+
+#include "common/recording/mcap/reader.hpp"
+#include "common/recording/types/type.hpp"
 
 namespace prehend::recording {
 
@@ -16,27 +17,28 @@ struct RecordedTopic {
   std::string end;
 };
 
-RecordedTopic recorded_topic(const mcap::Channel& channel, const mcap::Contents& contents);
+RecordedTopic recorded_topic(const recording::mcap::Channel& channel,
+                             const recording::mcap::Contents& contents);
 
 /// The type trees of a recording's channels, made from what the recording itself says: the IDL that
 /// was kept beside, else a ros2msg or omgidl schema.
 class RecordedTypes {
  public:
   /// The reader must outlive it.
-  explicit RecordedTypes(const mcap::Reader& reader);
+  explicit RecordedTypes(const recording::mcap::Reader& reader);
 
   /// Nothing for ends of instances, for messages that are not CDR and for what is not described in
   /// a way that we read. Lives as long as this.
-  const types::Structure* of(const mcap::Channel& channel);
+  const recording::types::Structure* of(const recording::mcap::Channel& channel);
 
  private:
-  const types::Structure* find(const mcap::Channel& channel);
+  const recording::types::Structure* find(const recording::mcap::Channel& channel);
 
-  const mcap::Reader& reader_;
+  const recording::mcap::Reader& reader_;
   std::map<std::string, std::string> idl_;  // by type
   // Each type has a library of its own: what it needs may be there in several versions.
-  std::map<std::string, types::Library> libraries_;
-  std::map<std::uint16_t, const types::Structure*> known_;
+  std::map<std::string, recording::types::Library> libraries_;
+  std::map<std::uint16_t, const recording::types::Structure*> known_;
 };
 
 }  // namespace prehend::recording

@@ -1,10 +1,11 @@
-#include "tolerance.hpp"
+#include "common/recording/compare/tolerance.hpp"
 
 #include <toml++/toml.h>
 
 #include <fstream>
-#include <prehend/base/paths.hpp>
 #include <sstream>
+
+#include "common/base/paths.hpp"
 
 namespace prehend::recording {
 namespace {
@@ -85,6 +86,12 @@ Tolerance ToleranceTable::of(std::string_view type, std::string_view path) const
         return entry->second;
   }
   return {};
+}
+
+std::vector<std::string> ToleranceTable::types() const {
+  std::vector<std::string> names;
+  for (const auto& [type, fields] : types_) names.push_back(type);
+  return names;
 }
 
 std::vector<std::string> ToleranceTable::fields(std::string_view type) const {

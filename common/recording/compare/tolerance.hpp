@@ -2,10 +2,11 @@
 
 #include <filesystem>
 #include <map>
-#include <prehend/base/error.hpp>
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include "common/base/error.hpp"
 
 namespace prehend::recording {
 
@@ -30,6 +31,8 @@ class ToleranceTable {
 
   /// `type` without scope, `path` with dots and without indices, as X_WH.position.x.
   Tolerance of(std::string_view type, std::string_view path) const;
+  /// The types that have a table, with «any».
+  std::vector<std::string> types() const;
   /// The paths that the table names for a type.
   std::vector<std::string> fields(std::string_view type) const;
 

@@ -1,4 +1,4 @@
-#include "layout.hpp"
+#include "common/recording/layout/layout.hpp"
 
 #include <fmt/format.h>
 
@@ -40,7 +40,7 @@ std::string to_text(const dds::TopicQos& qos) {
   text += qos.writer_depth == 0 ? " keep_all" : fmt::format(" keep_last={}", qos.writer_depth);
   if (qos.deadline.count() > 0) text += fmt::format(" deadline_ms={}", qos.deadline.count());
   if (qos.lifespan.count() > 0) text += fmt::format(" lifespan_ms={}", qos.lifespan.count());
-  if (qos.exclusive) text += " exclusive";
+  if (qos.exclusive_ownership) text += " exclusive";
   return text;
 }
 
@@ -70,15 +70,15 @@ Expected<dds::TopicQos> qos_of(std::string_view text, const dds::TopicQos& other
     else if (name == "lifespan_ms")
       qos.lifespan = std::chrono::milliseconds(number);
     else if (name == "exclusive" || name == "shared")
-      qos.exclusive = name == "exclusive";
+      qos.exclusive_ownership = name == "exclusive";
     else
       return fail("is not known", "qos " + word, "was it recorded by a later version?");
   }
   return qos;
 }
 
-mcap::Channel to_channel(const Stream& stream) {
-  mcap::Channel channel;
+recording::mcap::Channel to_channel(const Stream& stream) {
+  recording::mcap::Channel channel;
   channel.topic = stream.topic.name;
   channel.message_encoding = cdr_encoding;
   channel.metadata = {{"type", stream.topic.type},
@@ -96,10 +96,12 @@ mcap::Channel to_channel(const Stream& stream) {
   return channel;
 }
 
-Expected<Stream> to_stream(const mcap::Channel& channel, std::string_view schema) {
-  const auto value = [&](std::string_view key) { return mcap::find(channel.metadata, key); };
+Expected<Stream> to_stream(const recording::mcap::Channel& channel, std::string_view schema) {
+  const auto value = [&](std::string_view key) {
+    return recording::mcap::find(channel.metadata, key);
+  };
   const auto wrong = [&](const Error& error) {
-    return fail(error.what, "channel " + channel.topic + ": " + error.where, error.mend);
+    return fail(error.what, "channel " + channel.topic + ": " + error.where, error.hint);
   };
   Stream stream;
   const std::string_view change = value("change");
@@ -112,9 +114,9 @@ Expected<Stream> to_stream(const mcap::Channel& channel, std::string_view schema
   }
   stream.topic.name = stream.kind == Kind::data ? channel.topic : std::string(value("of"));
   stream.topic.type = value("type").empty() ? schema : value("type");
-  const dds::TopicQos* known = dds::find_topic(stream.topic.name);
+  const dds::TopicInfo* known = dds::find_topic(stream.topic.name);
   if (value("qos").empty()) {
-    stream.topic.qos = known ? *known : dds::TopicQos{.name = {}, .writer_depth = 64};
+    stream.topic.qos = known ? known->qos : dds::TopicQos{.writer_depth = 64};
     stream.topic.keyed = false;
   } else {
     auto qos = qos_of(value("qos"));

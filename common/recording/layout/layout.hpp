@@ -1,10 +1,11 @@
 #pragma once
 
-#include <prehend/base/error.hpp>
-#include <prehend/dds/raw.hpp>
-#include <prehend/mcap/record.hpp>
 #include <string>
 #include <string_view>
+
+#include "common/base/error.hpp"
+#include "common/dds/raw.hpp"
+#include "common/recording/mcap/record.hpp"
 
 /// How DDS lies in an MCAP file. A channel carries one kind of change of one instance by one
 /// writer, so that a message needs nothing beside what MCAP gives it:
@@ -27,19 +28,19 @@ struct Stream {
 };
 
 /// The channel for a stream; ids of channel and schema are the caller's.
-mcap::Channel to_channel(const Stream& stream);
+recording::mcap::Channel to_channel(const Stream& stream);
 
 /// The stream of a channel. Channels that others wrote have no such metadata: they get the QoS of
 /// topic_table where it knows the topic, else reliable without keys, and `schema`, its name, as
 /// type. Fails on metadata that cannot be and on messages that are not CDR.
-Expected<Stream> to_stream(const mcap::Channel& channel, std::string_view schema);
+Expected<Stream> to_stream(const recording::mcap::Channel& channel, std::string_view schema);
 
 /// «reliable transient_local keep_last=1 deadline_ms=100 lifespan_ms=200 exclusive»
 std::string to_text(const dds::TopicQos& qos);
 /// What the text does not say is as in `otherwise`. «shared» undoes «exclusive», and a deadline or
 /// lifespan of 0 an other one.
 Expected<dds::TopicQos> qos_of(std::string_view text,
-                               const dds::TopicQos& otherwise = {.name = {}, .writer_depth = 0});
+                               const dds::TopicQos& otherwise = {.writer_depth = 0});
 
 std::string to_hex(const dds::Guid& guid);
 

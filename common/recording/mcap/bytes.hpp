@@ -9,7 +9,7 @@
 #include <type_traits>
 #include <vector>
 
-namespace prehend::mcap {
+namespace prehend::recording::mcap {
 
 using Bytes = std::vector<std::uint8_t>;
 using View = std::span<const std::uint8_t>;
@@ -76,4 +76,4 @@ class Cursor {
   bool good_ = true;
 };
 
-}  // namespace prehend::mcap
+}  // namespace prehend::recording::mcap

@@ -1,4 +1,4 @@
-#include "compression.hpp"
+#include "common/recording/mcap/compression.hpp"
 
 #include <lz4frame.h>
 #include <zstd.h>
@@ -7,11 +7,13 @@
 #include <memory>
 #include <string>
 
-namespace prehend::mcap {
+#include "common/base/named_values.hpp"
+
+namespace prehend::recording::mcap {
 namespace {
 
 // No chunk of a sane file is larger; a claim beyond it is damage.
-constexpr std::uint64_t largest_chunk = std::uint64_t{1} << 31;
+constexpr std::uint64_t max_chunk = std::uint64_t{1} << 31;
 constexpr int zstd_level = 1;
 
 /// Room for the next piece of output, between what is there and the claimed size.
@@ -73,23 +75,18 @@ Expected<Bytes> decompress_lz4(View bytes, std::uint64_t size) {
   return out;
 }
 
+/// As in the file, where none is an empty text.
+constexpr auto compression_names = named_values<Compression>(
+    {{Compression::none, ""}, {Compression::lz4, "lz4"}, {Compression::zstd, "zstd"}});
+
 }  // namespace
 
 std::string_view name(Compression compression) {
-  switch (compression) {
-    case Compression::lz4:
-      return "lz4";
-    case Compression::zstd:
-      return "zstd";
-    case Compression::none:
-      break;
-  }
-  return "";
+  return compression_names.name(compression);
 }
 
 Expected<Compression> compression_named(std::string_view wanted) {
-  for (const Compression each : {Compression::none, Compression::lz4, Compression::zstd})
-    if (name(each) == wanted) return each;
+  if (const auto known = compression_names.value(wanted)) return *known;
   return fail("compression «" + std::string(wanted) + "» is not known", {}, "none, lz4 or zstd");
 }
 
@@ -120,7 +117,7 @@ Expected<void> compress(Compression compression, View bytes, Bytes& out) {
 }
 
 Expected<Bytes> decompress(Compression compression, View bytes, std::uint64_t size) {
-  if (size > largest_chunk) return damaged("it says that it is larger than 2 GiB");
+  if (size > max_chunk) return damaged("it says that it is larger than 2 GiB");
   switch (compression) {
     case Compression::zstd:
       return decompress_zstd(bytes, size);
@@ -133,4 +130,4 @@ Expected<Bytes> decompress(Compression compression, View bytes, std::uint64_t si
   return Bytes(bytes.begin(), bytes.end());
 }
 
-}  // namespace prehend::mcap
+}  // namespace prehend::recording::mcap

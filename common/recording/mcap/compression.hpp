@@ -1,12 +1,12 @@
 #pragma once
 
 #include <cstdint>
-#include <prehend/base/error.hpp>
 #include <string_view>
 
-#include "bytes.hpp"
+#include "common/base/error.hpp"
+#include "common/recording/mcap/bytes.hpp"
 
-namespace prehend::mcap {
+namespace prehend::recording::mcap {
 
 enum class Compression { none, lz4, zstd };
 
@@ -22,4 +22,4 @@ Expected<void> compress(Compression compression, View bytes, Bytes& out);
 /// out, so a size that lies costs nothing.
 Expected<Bytes> decompress(Compression compression, View bytes, std::uint64_t size);
 
-}  // namespace prehend::mcap
+}  // namespace prehend::recording::mcap

@@ -1,4 +1,4 @@
-#include "file.hpp"
+#include "common/recording/mcap/file.hpp"
 
 #include <fcntl.h>
 #include <sys/stat.h>
@@ -8,7 +8,7 @@
 #include <cstring>
 #include <utility>
 
-namespace prehend::mcap {
+namespace prehend::recording::mcap {
 namespace {
 
 std::string reason() {
@@ -103,4 +103,4 @@ Expected<void> File::sync() const {
   return {};
 }
 
-}  // namespace prehend::mcap
+}  // namespace prehend::recording::mcap

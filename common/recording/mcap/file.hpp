@@ -2,12 +2,12 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <prehend/base/error.hpp>
 #include <string>
 
-#include "bytes.hpp"
+#include "common/base/error.hpp"
+#include "common/recording/mcap/bytes.hpp"
 
-namespace prehend::mcap {
+namespace prehend::recording::mcap {
 
 /// Owner of an open file.
 class File {
@@ -44,4 +44,4 @@ class File {
   std::string name_;
 };
 
-}  // namespace prehend::mcap
+}  // namespace prehend::recording::mcap

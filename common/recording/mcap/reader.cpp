@@ -1,14 +1,14 @@
-#include "reader.hpp"
+#include "common/recording/mcap/reader.hpp"
 
 #include <algorithm>
 #include <list>
 #include <queue>
 #include <set>
 
-#include "record_stream.hpp"
-#include "survey.hpp"
+#include "common/recording/mcap/record_stream.hpp"
+#include "common/recording/mcap/survey.hpp"
 
-namespace prehend::mcap {
+namespace prehend::recording::mcap {
 
 Reader::Reader(File file)
     : file_(std::make_unique<File>(std::move(file))), contents_(std::make_unique<Contents>()) {}
@@ -205,4 +205,4 @@ Expected<std::optional<ReadMessage>> MessageCursor::next() {
   return ReadMessage{&s.contents.channels.at(message->channel_id), *message};
 }
 
-}  // namespace prehend::mcap
+}  // namespace prehend::recording::mcap

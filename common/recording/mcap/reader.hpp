@@ -7,14 +7,14 @@
 #include <map>
 #include <memory>
 #include <optional>
-#include <prehend/base/error.hpp>
 #include <string>
 #include <vector>
 
-#include "file.hpp"
-#include "record.hpp"
+#include "common/base/error.hpp"
+#include "common/recording/mcap/file.hpp"
+#include "common/recording/mcap/record.hpp"
 
-namespace prehend::mcap {
+namespace prehend::recording::mcap {
 
 /// Records of a file from `begin` to `end` among which messages lie outside chunks.
 struct Stretch {
@@ -105,4 +105,4 @@ class MessageCursor {
   std::unique_ptr<State> state_;
 };
 
-}  // namespace prehend::mcap
+}  // namespace prehend::recording::mcap

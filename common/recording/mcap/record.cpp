@@ -1,10 +1,10 @@
-#include "record.hpp"
+#include "common/recording/mcap/record.hpp"
 
 #include <libdeflate.h>
 
 #include <algorithm>
 
-namespace prehend::mcap {
+namespace prehend::recording::mcap {
 namespace {
 
 // Each record lists its fields once, in the order of the specification; reading and writing both
@@ -227,4 +227,4 @@ template void append_record(Bytes&, const MetadataIndex&, View);
 template void append_record(Bytes&, const SummaryOffset&, View);
 template void append_record(Bytes&, const DataEnd&, View);
 
-}  // namespace prehend::mcap
+}  // namespace prehend::recording::mcap

@@ -2,18 +2,18 @@
 
 #include <array>
 #include <cstdint>
-#include <prehend/base/error.hpp>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <variant>
 #include <vector>
 
-#include "bytes.hpp"
+#include "common/base/error.hpp"
+#include "common/recording/mcap/bytes.hpp"
 
 /// Records of an MCAP file, as https://mcap.dev/spec defines them. Times are nanoseconds since the
 /// epoch, offsets count from the start of the file.
-namespace prehend::mcap {
+namespace prehend::recording::mcap {
 
 inline constexpr std::array<std::uint8_t, 8> magic{0x89, 'M', 'C', 'A', 'P', '0', '\r', '\n'};
 /// Bytes before the content of a record: its opcode and its length.
@@ -195,4 +195,4 @@ void append_record(Bytes& out, const Type& record, View padding = {});
 /// CRC-32 as in zlib; `before` is that of the bytes in front.
 std::uint32_t crc32(View bytes, std::uint32_t before = 0);
 
-}  // namespace prehend::mcap
+}  // namespace prehend::recording::mcap

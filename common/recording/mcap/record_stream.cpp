@@ -1,10 +1,10 @@
-#include "record_stream.hpp"
+#include "common/recording/mcap/record_stream.hpp"
 
 #include <algorithm>
 
-#include "compression.hpp"
+#include "common/recording/mcap/compression.hpp"
 
-namespace prehend::mcap {
+namespace prehend::recording::mcap {
 namespace {
 
 constexpr std::uint64_t block = 256 * 1024;
@@ -83,4 +83,4 @@ Expected<Bytes> expand(const Chunk& chunk) {
   return records;
 }
 
-}  // namespace prehend::mcap
+}  // namespace prehend::recording::mcap

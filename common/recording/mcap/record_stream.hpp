@@ -2,13 +2,13 @@
 
 #include <cstdint>
 #include <optional>
-#include <prehend/base/error.hpp>
 #include <string>
 
-#include "file.hpp"
-#include "record.hpp"
+#include "common/base/error.hpp"
+#include "common/recording/mcap/file.hpp"
+#include "common/recording/mcap/record.hpp"
 
-namespace prehend::mcap {
+namespace prehend::recording::mcap {
 
 /// The records of a part of a file, one after the other, as they lie there. Needs no summary and
 /// no footer. The file must outlive it.
@@ -58,4 +58,4 @@ class ChunkRecords {
 /// Decompresses a chunk and checks its CRC.
 Expected<Bytes> expand(const Chunk& chunk);
 
-}  // namespace prehend::mcap
+}  // namespace prehend::recording::mcap

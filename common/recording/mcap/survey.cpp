@@ -1,17 +1,17 @@
-#include "survey.hpp"
+#include "common/recording/mcap/survey.hpp"
 
 #include <algorithm>
 
-#include "record_stream.hpp"
+#include "common/recording/mcap/record_stream.hpp"
 
-namespace prehend::mcap {
+namespace prehend::recording::mcap {
 namespace {
 
 // Loose messages are read in pieces of about this size.
-constexpr std::uint64_t most_stretch = 1024 * 1024;
+constexpr std::uint64_t max_stretch = 1024 * 1024;
 
 /// The ends of the data section, and what the footer says.
-struct Frame {
+struct DataSection {
   std::uint64_t data_begin = 0;
   std::uint64_t data_end = 0;
   std::optional<Footer> footer;
@@ -22,7 +22,7 @@ bool is_magic(View bytes) {
   return std::ranges::equal(bytes, magic);
 }
 
-Expected<Header> read_header(const File& file, Frame& frame) {
+Expected<Header> read_header(const File& file, DataSection& frame) {
   const auto start = file.read(0, magic.size());
   if (!start) return fail("too short to be an MCAP file", file.name());
   if (!is_magic(*start)) {
@@ -40,7 +40,7 @@ Expected<Header> read_header(const File& file, Frame& frame) {
   return header;
 }
 
-void find_footer(const File& file, Frame& frame) {
+void find_footer(const File& file, DataSection& frame) {
   frame.data_end = file.size();
   constexpr std::uint64_t tail = record_head + footer_content + magic.size();
   if (file.size() < frame.data_begin + tail) return;
@@ -60,7 +60,7 @@ void find_footer(const File& file, Frame& frame) {
 
 class Survey {
  public:
-  Survey(const File& file, const Frame& frame, Contents& contents)
+  Survey(const File& file, const DataSection& frame, Contents& contents)
       : file_(file), frame_(frame), contents_(contents) {}
 
   /// Takes the summary over, or says why not.
@@ -81,7 +81,7 @@ class Survey {
   void take_message(const RawRecord& record, const Message& message);
 
   const File& file_;
-  const Frame& frame_;
+  const DataSection& frame_;
   Contents& contents_;
   std::vector<Region> regions_;  // that the indexes cover, in order
   Statistics counted_;           // of what was walked through
@@ -286,7 +286,7 @@ Expected<void> Survey::take_chunk(const RawRecord& raw) {
 void Survey::take_message(const RawRecord& raw, const Message& message) {
   after_chunk_ = false;
   counted_.count(message.channel_id, message.log_time);
-  if (!in_stretch_ || raw.offset - contents_.stretches.back().begin >= most_stretch)
+  if (!in_stretch_ || raw.offset - contents_.stretches.back().begin >= max_stretch)
     contents_.stretches.push_back({raw.offset, raw.end(), message.log_time, message.log_time});
   in_stretch_ = true;
   Stretch& stretch = contents_.stretches.back();
@@ -298,7 +298,7 @@ void Survey::take_message(const RawRecord& raw, const Message& message) {
 }  // namespace
 
 Expected<Contents> survey(const File& file) {
-  Frame frame;
+  DataSection frame;
   const auto header = read_header(file, frame);
   if (!header) return tl::unexpected(header.error());
   find_footer(file, frame);
@@ -343,4 +343,4 @@ tl::unexpected<Error> at(const File& file, std::uint64_t offset, Error error) {
   return tl::unexpected(std::move(error));
 }
 
-}  // namespace prehend::mcap
+}  // namespace prehend::recording::mcap

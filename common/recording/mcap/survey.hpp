@@ -1,10 +1,9 @@
 #pragma once
 
-#include <prehend/base/error.hpp>
+#include "common/base/error.hpp"
+#include "common/recording/mcap/reader.hpp"
 
-#include "reader.hpp"
-
-namespace prehend::mcap {
+namespace prehend::recording::mcap {
 
 /// Finds out what is in a file: from its summary as far as that is sound, else by walking through
 /// the records. Fails only when the file is not an MCAP file of this version.
@@ -16,4 +15,4 @@ Expected<Bytes> read_chunk(const File& file, const ChunkIndex& index);
 /// The same failure, said to be at this place of the file.
 tl::unexpected<Error> at(const File& file, std::uint64_t offset, Error error);
 
-}  // namespace prehend::mcap
+}  // namespace prehend::recording::mcap

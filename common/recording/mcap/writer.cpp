@@ -1,14 +1,14 @@
-#include "writer.hpp"
+#include "common/recording/mcap/writer.hpp"
 
 #include <algorithm>
 #include <limits>
 #include <utility>
 
-namespace prehend::mcap {
+namespace prehend::recording::mcap {
 namespace {
 
 // Without chunks messages are gathered up to this size before they are written.
-constexpr std::size_t most_pending = 256 * 1024;
+constexpr std::size_t max_pending = 256 * 1024;
 
 template <class Places>
 Expected<std::uint16_t> free_id(const Places& places, const char* what, const File& file) {
@@ -111,7 +111,7 @@ Expected<void> Writer::write(const Message& message) {
   statistics_.count(message.channel_id, time);
   if (!options_.chunks) {
     append_data(message);
-    return pending_.size() < most_pending ? Expected<void>{} : put();
+    return pending_.size() < max_pending ? Expected<void>{} : put();
   }
   if (options_.message_index) {
     if (message.channel_id >= index_places_.size())
@@ -261,4 +261,4 @@ Expected<void> Writer::write_summary() {
   return put();
 }
 
-}  // namespace prehend::mcap
+}  // namespace prehend::recording::mcap

@@ -3,15 +3,15 @@
 #include <filesystem>
 #include <map>
 #include <optional>
-#include <prehend/base/error.hpp>
-#include <prehend/base/time.hpp>
 #include <vector>
 
-#include "compression.hpp"
-#include "file.hpp"
-#include "record.hpp"
+#include "common/base/error.hpp"
+#include "common/base/time.hpp"
+#include "common/recording/mcap/compression.hpp"
+#include "common/recording/mcap/file.hpp"
+#include "common/recording/mcap/record.hpp"
 
-namespace prehend::mcap {
+namespace prehend::recording::mcap {
 
 /// What of the specification's optional parts a file gets. The defaults are what readers like best.
 struct WriterOptions {
@@ -111,4 +111,4 @@ class Writer {
   bool closed_ = false;
 };
 
-}  // namespace prehend::mcap
+}  // namespace prehend::recording::mcap

@@ -1,4 +1,4 @@
-#include "idl.hpp"
+#include "common/recording/types/idl.hpp"
 
 #include <algorithm>
 #include <cctype>
@@ -6,10 +6,11 @@
 #include <fstream>
 #include <iterator>
 #include <optional>
-#include <prehend/base/paths.hpp>
 #include <set>
 
-namespace prehend::types {
+#include "common/base/paths.hpp"
+
+namespace prehend::recording::types {
 namespace {
 
 struct Token {
@@ -76,7 +77,7 @@ class Tokens {
   Token token_;
 };
 
-constexpr int most_modules = 32;  // inside each other: a text must not decide how deep we recurse
+constexpr int max_modules = 32;  // inside each other: a text must not decide how deep we recurse
 
 class Parser {
  public:
@@ -167,7 +168,7 @@ class Parser {
     const auto called = name();
     if (!called) return tl::unexpected(called.error());
     if (auto done = expect("{"); !done) return done;
-    if (++depth_ > most_modules) return error("too many modules inside each other");
+    if (++depth_ > max_modules) return error("too many modules inside each other");
     const std::string outside = scope_;
     scope_ += *called + "::";
     while (!tokens_.take_if("}")) {
@@ -425,4 +426,4 @@ Expected<Library> load_contract() {
   return load_idl(share_directory() / "idl");
 }
 
-}  // namespace prehend::types
+}  // namespace prehend::recording::types

@@ -1,4 +1,4 @@
-#include "schema_text.hpp"
+#include "common/recording/types/schema_text.hpp"
 
 #include <fmt/format.h>
 
@@ -11,7 +11,7 @@
 #include <sstream>
 #include <vector>
 
-namespace prehend::types {
+namespace prehend::recording::types {
 namespace {
 
 /// The types a type needs, each after those that it needs itself.
@@ -150,7 +150,7 @@ class Ros2Parser {
     if (part == parts_.end()) return fail("type " + wanted + " is not in its schema");
     if (const Structure* known = library_.find(part->first)) return known;
     if (!open_.insert(part->first).second) return fail("type " + wanted + " contains itself");
-    if (++depth_ > Library::most_depth)
+    if (++depth_ > Library::max_depth)
       return fail("the type " + wanted + " lies too deep inside others");
     Structure result{.name = part->first};
     for (const std::string& line : part->second) {
@@ -279,4 +279,4 @@ Expected<const Structure*> parse_ros2msg(std::string_view name, std::string_view
   return Ros2Parser(name, text, library).structure(std::string(name));
 }
 
-}  // namespace prehend::types
+}  // namespace prehend::recording::types

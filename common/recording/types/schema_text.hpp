@@ -1,13 +1,13 @@
 #pragma once
 
-#include <prehend/base/error.hpp>
 #include <string>
 #include <string_view>
 
-#include "type.hpp"
+#include "common/base/error.hpp"
+#include "common/recording/types/type.hpp"
 
 /// Descriptions of a type for those who do not have our IDL: one self-contained text each.
-namespace prehend::types {
+namespace prehend::recording::types {
 
 /// The name that readers of `ros2msg` expect: prehend::v1::Pose is prehend_v1/msg/Pose.
 std::string ros2_name(std::string_view scoped_name);
@@ -27,4 +27,4 @@ std::string omgidl(const Structure& type);
 Expected<const Structure*> parse_ros2msg(std::string_view name, std::string_view text,
                                          Library& library);
 
-}  // namespace prehend::types
+}  // namespace prehend::recording::types

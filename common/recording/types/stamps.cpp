@@ -1,9 +1,9 @@
-#include "stamps.hpp"
+#include "common/recording/types/stamps.hpp"
 
 #include <algorithm>
 #include <cstring>
 
-namespace prehend::types {
+namespace prehend::recording::types {
 namespace {
 
 /// Walks through a message (XCDR1, little-endian) and notes where its stamps are.
@@ -95,4 +95,4 @@ bool move_stamps(const Structure& type, const std::function<std::int64_t(std::in
   return true;
 }
 
-}  // namespace prehend::types
+}  // namespace prehend::recording::types

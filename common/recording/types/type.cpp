@@ -1,8 +1,8 @@
-#include "type.hpp"
+#include "common/recording/types/type.hpp"
 
 #include <algorithm>
 
-namespace prehend::types {
+namespace prehend::recording::types {
 
 std::string_view Enumeration::name_of(std::uint32_t value) const {
   for (const auto& [name_of_value, each] : enumerators)
@@ -32,7 +32,7 @@ Expected<const Structure*> Library::add(Structure structure) {
   for (const Field& field : structure.fields)
     if (field.type.structure)
       structure.depth = std::max(structure.depth, field.type.structure->depth + 1);
-  if (structure.depth > most_depth)
+  if (structure.depth > max_depth)
     return fail("the type " + name + " has too many structures inside each other");
   return (structures_[name] = std::make_unique<Structure>(std::move(structure))).get();
 }
@@ -44,4 +44,4 @@ Expected<const Enumeration*> Library::add(Enumeration enumeration) {
   return (enumerations_[name] = std::make_unique<Enumeration>(std::move(enumeration))).get();
 }
 
-}  // namespace prehend::types
+}  // namespace prehend::recording::types

@@ -3,13 +3,14 @@
 #include <cstdint>
 #include <map>
 #include <memory>
-#include <prehend/base/error.hpp>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
-namespace prehend::types {
+#include "common/base/error.hpp"
+
+namespace prehend::recording::types {
 
 enum class Kind {
   boolean,
@@ -75,7 +76,7 @@ struct Structure {
 class Library {
  public:
   /// Structures inside each other, at most: whoever walks through a type may recurse.
-  static constexpr int most_depth = 64;
+  static constexpr int max_depth = 64;
 
   /// Nothing when it is not there.
   const Structure* find(std::string_view name) const;
@@ -93,4 +94,4 @@ class Library {
   std::map<std::string, std::unique_ptr<Enumeration>, std::less<>> enumerations_;
 };
 
-}  // namespace prehend::types
+}  // namespace prehend::recording::types

@@ -1,4 +1,4 @@
-#include "value.hpp"
+#include "common/recording/types/value.hpp"
 
 #include <algorithm>
 #include <array>
@@ -6,7 +6,7 @@
 #include <cstring>
 #include <nlohmann/json.hpp>
 
-namespace prehend::types {
+namespace prehend::recording::types {
 namespace {
 
 class Decoder {
@@ -205,4 +205,4 @@ nlohmann::ordered_json to_json(const Value& value) {
       value.content);
 }
 
-}  // namespace prehend::types
+}  // namespace prehend::recording::types

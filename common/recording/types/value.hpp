@@ -2,16 +2,16 @@
 
 #include <cstdint>
 #include <nlohmann/json_fwd.hpp>
-#include <prehend/base/error.hpp>
 #include <span>
 #include <string>
 #include <string_view>
 #include <variant>
 #include <vector>
 
-#include "type.hpp"
+#include "common/base/error.hpp"
+#include "common/recording/types/type.hpp"
 
-namespace prehend::types {
+namespace prehend::recording::types {
 
 /// An enumerator; its name is empty where the type has none for the value.
 struct Enumerator {
@@ -48,4 +48,4 @@ Expected<Value> decode(const Structure& type, std::span<const std::uint8_t> mess
 /// Numbers as numbers, enumerators by name, bytes as base64; not-a-number and infinities are null.
 nlohmann::ordered_json to_json(const Value& value);
 
-}  // namespace prehend::types
+}  // namespace prehend::recording::types

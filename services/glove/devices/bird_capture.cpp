@@ -1,4 +1,4 @@
-#include "bird_capture.hpp"
+#include "services/glove/devices/bird_capture.hpp"
 
 #include <charconv>
 #include <cmath>

@@ -1,11 +1,11 @@
 #pragma once
 
-#include <prehend/base/error.hpp>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "bird_protocol.hpp"
+#include "common/base/error.hpp"
+#include "services/glove/devices/bird_protocol.hpp"
 
 namespace prehend::glove::bird {
 

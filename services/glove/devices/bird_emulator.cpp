@@ -1,4 +1,4 @@
-#include "bird_emulator.hpp"
+#include "services/glove/devices/bird_emulator.hpp"
 
 #include <algorithm>
 #include <utility>
@@ -147,7 +147,7 @@ std::string Emulator::examine(std::uint8_t parameter) {
     case group_mode:
       return group_ ? "\x01"s : "\x00"s;
     case system_status: {
-      std::string bytes(most_units, '\0');
+      std::string bytes(max_units, '\0');
       // One unit that stands alone has no bus to tell about.
       for (int n = 0; units_.size() > 1 && n < static_cast<int>(units_.size()); ++n)
         bytes[static_cast<std::size_t>(n)] = static_cast<char>(

@@ -4,8 +4,8 @@
 #include <string_view>
 #include <vector>
 
-#include "bird_protocol.hpp"
-#include "emulator.hpp"
+#include "services/glove/devices/bird_protocol.hpp"
+#include "services/glove/devices/emulator.hpp"
 
 namespace prehend::glove::bird {
 

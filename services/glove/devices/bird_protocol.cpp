@@ -1,9 +1,10 @@
-#include "bird_protocol.hpp"
+#include "services/glove/devices/bird_protocol.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <prehend/base/pose.hpp>
+
+#include "common/base/pose.hpp"
 
 namespace prehend::glove::bird {
 namespace {
@@ -93,7 +94,7 @@ std::size_t examined_length(std::uint8_t parameter) {
     case model_name:
       return 10;
     case system_status:
-      return most_units;
+      return max_units;
     default:
       return 0;
   }

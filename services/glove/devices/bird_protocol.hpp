@@ -60,7 +60,7 @@ std::size_t changed_length(std::uint8_t parameter);
 /// Bits of a unit's byte in the system status.
 inline constexpr std::uint8_t accessible = 0x80, running = 0x40, has_receiver = 0x20,
                               extended_range = 0x10;
-inline constexpr std::size_t most_units = 14;
+inline constexpr std::size_t max_units = 14;
 
 inline constexpr double inch = 0.0254;            // m
 inline constexpr double short_range = 36 * inch;  // full scale of a position word, m

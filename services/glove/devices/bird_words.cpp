@@ -1,11 +1,11 @@
-#include "bird_words.hpp"
+#include "services/glove/devices/bird_words.hpp"
 
 #include <fmt/format.h>
 
 #include <array>
 #include <vector>
 
-#include "bird_protocol.hpp"
+#include "services/glove/devices/bird_protocol.hpp"
 
 namespace prehend::glove::bird {
 

@@ -1,4 +1,4 @@
-#include "datagrams.hpp"
+#include "services/glove/devices/datagrams.hpp"
 
 #include <arpa/inet.h>
 #include <poll.h>

@@ -2,12 +2,12 @@
 
 #include <netinet/in.h>
 
-#include <prehend/base/error.hpp>
-#include <prehend/base/time.hpp>
 #include <string>
 #include <string_view>
 
-#include "emulator.hpp"
+#include "common/base/error.hpp"
+#include "common/base/time.hpp"
+#include "services/glove/devices/emulator.hpp"
 
 namespace prehend::glove {
 

@@ -1,18 +1,21 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <memory>
-#include <prehend/base/error.hpp>
-#include <prehend/glove/frame.hpp>
-#include <prehend/glove/joint_sensors.hpp>
-#include <prehend/model/catalogue.hpp>
-#include <prehend/model/scene.hpp>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "emulation.hpp"
+#include "common/base/error.hpp"
+#include "common/base/named_values.hpp"
+#include "common/model/catalogue.hpp"
+#include "common/model/scene.hpp"
+#include "services/glove/core/frame.hpp"
+#include "services/glove/core/frame_source.hpp"
+#include "services/glove/core/joint_sensors.hpp"
+#include "services/glove/devices/emulation.hpp"
 
 namespace prehend::glove {
 
@@ -37,8 +40,9 @@ struct DeviceOptions {
   JointGains joint_gains;  // of a joint-angle glove; empty: not calibrated
   std::string wrist_port;  // of a tracker on the back of that glove; empty: none
   std::filesystem::path file;
-  double rate = 30;   // Hz
-  bool left = false;  // the hand that wears the glove
+  double rate = 30;        // Hz
+  std::uint64_t seed = 0;  // of a synthetic hand's noise, beside the scene's own
+  bool left = false;       // the hand that wears the glove
   double hand_scale = 1;
   model::Scene scene;
   model::Catalogue catalogue;
@@ -53,23 +57,54 @@ class Device {
   virtual void start(DeviceSink sink) = 0;
 };
 
-/// What a device hangs on.
-enum class Line { none, serial, datagrams };
+/// Where frames come from.
+enum class Line {
+  none,       // computed here
+  serial,     // glove.port is the path of a serial port
+  datagrams,  // glove.port is host:port where they come
+  topic,      // others publish them on glove/frame; the service must not publish them again
+  file        // glove.file is played once
+};
+/// As `prehend glove devices` says it.
+inline constexpr auto line_names = named_values<Line>({{Line::none, "none"},
+                                                       {Line::serial, "serial"},
+                                                       {Line::datagrams, "udp"},
+                                                       {Line::topic, "topic"},
+                                                       {Line::file, "file"}});
 
+/// Everything that others may want to know of a kind of device. Nothing outside this folder names
+/// one: the service, its tools and `prehend demo` ask the row.
 struct DeviceKind {
-  std::string_view name;
+  std::string_view name;  // as in glove.device
   std::string_view help;
   Expected<std::unique_ptr<Device>> (*create)(const DeviceOptions& options) = nullptr;
   Line line = Line::none;
-  /// Its other side, for tests and `prehend glove emulate`: whatever has a line needs one.
+  /// Its other side, for tests and `prehend glove emulate`: whatever has a port needs one.
   std::unique_ptr<Emulator> (*emulate)(const DeviceOptions& options) = nullptr;
-  /// Frames come by topic from elsewhere; the service must not publish them again.
-  bool by_topic = false;
+  /// What has no port: the hand itself, which can also move an emulated device (--from).
+  Expected<std::unique_ptr<FrameSource>> (*source)(const DeviceOptions& options) = nullptr;
+  /// Datagrams: where they come unless glove.port says otherwise.
+  std::string_view address{};
+  /// It is the hand of the scene's demonstrator, whose measures are known: nobody calibrates it.
+  bool synthetic = false;
+  /// It may be worn on a left hand, too.
+  bool left = true;
+  /// The kind of tracker on its back, at glove.wrist_port, that says where the hand is, since the
+  /// device itself measures only joints; empty: it tracks the hand.
+  std::string_view tracker{};
+  /// The keys of lab.toml that concern it, beside those of every glove.
+  std::vector<std::string_view> keys{};
+
+  bool has_port() const { return line == Line::serial || line == Line::datagrams; }
 };
 
-/// The one table of devices; a new one is a row in registry.cpp.
+/// The one table of devices; a new one is a row in registry.cpp. The first is what a lab has that
+/// names none; the first with an emulator is what `prehend demo` plays on.
 const std::vector<DeviceKind>& device_kinds();
+/// An empty name is the first of the table.
 Expected<DeviceKind> find_device(std::string_view name);
+/// The one that takes frames from glove/frame.
+const DeviceKind& topic_device();
 
 /// How to run the emulator of a kind that has one (see emulate()): a serial one on a
 /// pseudo-terminal with this link at options.baud, or as a sender of datagrams to options.port.

@@ -1,4 +1,4 @@
-#include "emulation.hpp"
+#include "services/glove/devices/emulation.hpp"
 
 #include <algorithm>
 #include <deque>

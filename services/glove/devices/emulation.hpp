@@ -2,10 +2,10 @@
 
 #include <functional>
 #include <memory>
-#include <prehend/glove/frame_source.hpp>
 
-#include "emulator.hpp"
-#include "faults.hpp"
+#include "services/glove/core/frame_source.hpp"
+#include "services/glove/devices/emulator.hpp"
+#include "services/glove/devices/faults.hpp"
 
 namespace prehend::glove {
 

@@ -1,11 +1,12 @@
 #pragma once
 
-#include <prehend/base/error.hpp>
-#include <prehend/base/time.hpp>
-#include <prehend/glove/frame.hpp>
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include "common/base/error.hpp"
+#include "common/base/time.hpp"
+#include "services/glove/core/frame.hpp"
 
 namespace prehend::glove {
 

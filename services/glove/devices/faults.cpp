@@ -1,4 +1,4 @@
-#include "faults.hpp"
+#include "services/glove/devices/faults.hpp"
 
 #include <utility>
 

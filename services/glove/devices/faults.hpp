@@ -1,9 +1,10 @@
 #pragma once
 
-#include <prehend/base/random.hpp>
-#include <prehend/base/time.hpp>
-#include <prehend/glove/frame.hpp>
 #include <string>
+
+#include "common/base/random.hpp"
+#include "common/base/time.hpp"
+#include "services/glove/core/frame.hpp"
 
 namespace prehend::glove {
 

@@ -1,4 +1,4 @@
-#include "frame_clock.hpp"
+#include "services/glove/devices/frame_clock.hpp"
 
 #include <algorithm>
 
@@ -7,7 +7,7 @@ namespace {
 
 constexpr int acquisition = 32;      // arrivals that give the first estimate of the period
 constexpr int block = 8;             // frames between two corrections
-constexpr int most_jumps = 4;        // one after the other
+constexpr int max_jumps = 4;         // one after the other
 constexpr double phase_gain = 0.5;   // of the phase that the least late frame of a block shows
 constexpr double period_gain = 0.1;  // of the phase correction that each frame needed
 
@@ -40,18 +40,18 @@ Time FrameClock::follow(Time arrival, double late) {
     stamp = arrival;
     corrected_ += late;
   }
-  least_late_ = in_block_ == 0 ? late : std::min(least_late_, late);
+  min_lateness_ = in_block_ == 0 ? late : std::min(min_lateness_, late);
   if (++in_block_ < block) return stamp;
 
   // Where even the least late frame was late, the clock lags behind the device: by whole periods
   // if frames were lost, and these say nothing about its rate.
   // Where they seem to be lost again and again, the rate is another.
-  if (least_late_ > period_ / 2) {
-    stamp += seconds(least_late_);
-    if (++jumps_ == most_jumps) restart();
+  if (min_lateness_ > period_ / 2) {
+    stamp += seconds(min_lateness_);
+    if (++jumps_ == max_jumps) restart();
   } else {
     jumps_ = 0;
-    const double ahead = phase_gain * std::max(least_late_, 0.0);
+    const double ahead = phase_gain * std::max(min_lateness_, 0.0);
     stamp += seconds(ahead);
     period_ += period_gain * (corrected_ + ahead) / block;
   }

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <prehend/base/time.hpp>
+#include "common/base/time.hpp"
 
 namespace prehend::glove {
 
@@ -28,11 +28,11 @@ class FrameClock {
 
   int frames_ = 0;  // since the start, until the period is known
   Time first_{}, last_{};
-  double period_ = 0;      // s; 0: not known
-  int in_block_ = 0;       // frames since the last correction
-  double least_late_ = 0;  // s, of these
-  double corrected_ = 0;   // s, of phase while they came
-  int jumps_ = 0;          // blocks, the last ones, in which frames were lost
+  double period_ = 0;        // s; 0: not known
+  int in_block_ = 0;         // frames since the last correction
+  double min_lateness_ = 0;  // s, of these
+  double corrected_ = 0;     // s, of phase while they came
+  int jumps_ = 0;            // blocks, the last ones, in which frames were lost
 };
 
 }  // namespace prehend::glove

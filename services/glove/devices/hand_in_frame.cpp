@@ -1,6 +1,6 @@
-#include "hand_in_frame.hpp"
+#include "services/glove/devices/hand_in_frame.hpp"
 
-#include <prehend/glove/fingers_from_tips.hpp>
+#include "services/glove/core/fingers_from_tips.hpp"
 
 namespace prehend::glove {
 

@@ -1,8 +1,9 @@
 #pragma once
 
 #include <optional>
-#include <prehend/glove/frame.hpp>
-#include <prehend/model/human_hand.hpp>
+
+#include "common/model/human_hand.hpp"
+#include "services/glove/core/frame.hpp"
 
 namespace prehend::glove {
 

@@ -1,4 +1,4 @@
-#include "joint_emulator.hpp"
+#include "services/glove/devices/joint_emulator.hpp"
 
 #include <algorithm>
 #include <cctype>
@@ -6,13 +6,13 @@
 #include <cstdlib>
 #include <utility>
 
-#include "hand_in_frame.hpp"
+#include "services/glove/devices/hand_in_frame.hpp"
 
 namespace prehend::glove::joint {
 namespace {
 
 constexpr char stop = 3;  // Ctrl-C
-constexpr std::size_t longest_command = 32;
+constexpr std::size_t max_command = 32;
 
 std::string answer(char name, std::size_t value) {
   return {'?', name, static_cast<char>(value), '\0'};
@@ -36,7 +36,7 @@ std::string Emulator::receive(std::string_view bytes, Duration) {
     }
     pending_.push_back(byte);
     answers += command();
-    if (pending_.size() > longest_command) pending_.clear();
+    if (pending_.size() > max_command) pending_.clear();
   }
   return answers;
 }

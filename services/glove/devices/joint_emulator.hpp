@@ -1,10 +1,9 @@
 #pragma once
 
-#include <prehend/glove/joint_sensors.hpp>
-#include <prehend/model/human_hand.hpp>
-
-#include "emulator.hpp"
-#include "joint_protocol.hpp"
+#include "common/model/human_hand.hpp"
+#include "services/glove/core/joint_sensors.hpp"
+#include "services/glove/devices/emulator.hpp"
+#include "services/glove/devices/joint_protocol.hpp"
 
 namespace prehend::glove::joint {
 

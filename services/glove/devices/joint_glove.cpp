@@ -1,17 +1,17 @@
-#include "joint_glove.hpp"
+#include "services/glove/devices/joint_glove.hpp"
 
 #include <fmt/format.h>
 
 #include <mutex>
-#include <prehend/base/clock.hpp>
-#include <prehend/base/log.hpp>
 
-#include "frame_clock.hpp"
-#include "joint_emulator.hpp"
-#include "joint_protocol.hpp"
-#include "nest_of_birds.hpp"
-#include "persistent.hpp"
-#include "serial_port.hpp"
+#include "common/base/clock.hpp"
+#include "common/base/log.hpp"
+#include "services/glove/devices/frame_clock.hpp"
+#include "services/glove/devices/joint_emulator.hpp"
+#include "services/glove/devices/joint_protocol.hpp"
+#include "services/glove/devices/nest_of_birds.hpp"
+#include "services/glove/devices/persistent.hpp"
+#include "services/glove/devices/serial_port.hpp"
 
 namespace prehend::glove {
 namespace {
@@ -131,7 +131,7 @@ class JointGlove final : public Device {
     joint::RecordParser parser(sensors);
     std::uint64_t garbage = 0;
     auto last = Clock::now();
-    const Duration longest_silence = std::max<Duration>(milliseconds(500), seconds(3 / rate_));
+    const Duration max_silence = std::max<Duration>(milliseconds(500), seconds(3 / rate_));
     while (!stop.stop_requested()) {
       auto bytes = port.read(milliseconds(50));
       if (!bytes) return tl::unexpected(bytes.error());
@@ -142,7 +142,7 @@ class JointGlove final : public Device {
       }
       if (parser.garbage() > garbage) sink_.drop("garbage bytes", parser.garbage() - garbage);
       garbage = parser.garbage();
-      if (Clock::now() - last > longest_silence)
+      if (Clock::now() - last > max_silence)
         return fail("the glove has fallen silent", path_, "starts it again by itself");
     }
     return {};
@@ -202,7 +202,7 @@ Expected<std::unique_ptr<Device>> create_joint_glove(const DeviceOptions& option
 
 std::unique_ptr<Emulator> emulate_joint_glove(const DeviceOptions& options) {
   const JointGains gains =
-      check(options.joint_gains) ? options.joint_gains : *typical_gains(most_joint_sensors);
+      check(options.joint_gains) ? options.joint_gains : *typical_gains(max_joint_sensors);
   return std::make_unique<joint::Emulator>(
       joint::EmulatorOptions{.gains = gains, .hand_scale = options.hand_scale});
 }

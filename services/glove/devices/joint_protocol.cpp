@@ -1,4 +1,4 @@
-#include "joint_protocol.hpp"
+#include "services/glove/devices/joint_protocol.hpp"
 
 #include <fmt/format.h>
 

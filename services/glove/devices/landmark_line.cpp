@@ -1,4 +1,4 @@
-#include "landmark_line.hpp"
+#include "services/glove/devices/landmark_line.hpp"
 
 #include <cmath>
 #include <nlohmann/json.hpp>

@@ -1,10 +1,11 @@
 #pragma once
 
 #include <optional>
-#include <prehend/glove/bare_hand.hpp>
 #include <string>
 #include <string_view>
 #include <tl/expected.hpp>
+
+#include "services/glove/core/bare_hand.hpp"
 
 /// What a hand tracking program (webcam, headset, Leap) sends to the `landmarks` device: one line
 /// of JSON a hand, UTF-8, version 1. Several lines may share a datagram.

@@ -1,12 +1,11 @@
-#include "landmarks.hpp"
+#include "services/glove/devices/landmarks.hpp"
 
-#include <prehend/base/clock.hpp>
-
-#include "datagrams.hpp"
-#include "frame_clock.hpp"
-#include "hand_in_frame.hpp"
-#include "landmark_line.hpp"
-#include "persistent.hpp"
+#include "common/base/clock.hpp"
+#include "services/glove/devices/datagrams.hpp"
+#include "services/glove/devices/frame_clock.hpp"
+#include "services/glove/devices/hand_in_frame.hpp"
+#include "services/glove/devices/landmark_line.hpp"
+#include "services/glove/devices/persistent.hpp"
 
 namespace prehend::glove {
 namespace {
@@ -15,7 +14,7 @@ using std::chrono::milliseconds;
 using Clock = std::chrono::steady_clock;
 
 constexpr double stale = 0.3;  // s, as the processor has it
-constexpr Duration longest_silence = milliseconds(500);
+constexpr Duration max_silence = milliseconds(500);
 
 /// From the wrist, m: the middle knuckle at least and at most, and the farthest of all points.
 constexpr double short_palm = 0.04, long_palm = 0.18, long_hand = 0.35;
@@ -54,7 +53,7 @@ class LandmarksDevice final : public Device {
       const auto datagram = socket->read(milliseconds(50));
       if (!datagram) return tl::unexpected(datagram.error());
       if (!datagram->empty() && receive(*datagram, process_now())) last = Clock::now();
-      if (Clock::now() - last > longest_silence)
+      if (Clock::now() - last > max_silence)
         return fail("no usable landmarks come", address_, "start the hand tracking program");
     }
     return {};

@@ -1,17 +1,17 @@
-#include "nest_of_birds.hpp"
+#include "services/glove/devices/nest_of_birds.hpp"
 
 #include <fmt/format.h>
 
-#include <prehend/base/clock.hpp>
-#include <prehend/base/log.hpp>
 #include <set>
 
-#include "bird_emulator.hpp"
-#include "bird_protocol.hpp"
-#include "bird_words.hpp"
-#include "frame_clock.hpp"
-#include "persistent.hpp"
-#include "serial_port.hpp"
+#include "common/base/clock.hpp"
+#include "common/base/log.hpp"
+#include "services/glove/devices/bird_emulator.hpp"
+#include "services/glove/devices/bird_protocol.hpp"
+#include "services/glove/devices/bird_words.hpp"
+#include "services/glove/devices/frame_clock.hpp"
+#include "services/glove/devices/persistent.hpp"
+#include "services/glove/devices/serial_port.hpp"
 
 namespace prehend::glove {
 namespace {
@@ -20,9 +20,9 @@ using std::chrono::milliseconds;
 using Clock = std::chrono::steady_clock;
 
 constexpr Duration settle = milliseconds(600);  // around auto-configure: 300 needed, 600 advised
-constexpr Duration answer_time = milliseconds(200);
-constexpr Duration quiet = milliseconds(30);  // longer than the gap between two records
-constexpr Duration longest_silence = milliseconds(500);
+constexpr Duration bird_answer_time = milliseconds(200);
+constexpr Duration bird_quiet = milliseconds(30);  // longer than the gap between two records
+constexpr Duration max_bird_silence = milliseconds(500);
 constexpr char xon = 0x11;
 
 /// Gathers the records of one cycle into a frame.
@@ -191,7 +191,7 @@ class NestOfBirds final : public Device {
   Expected<void> drain(SerialPort& port) {
     const auto until = Clock::now() + milliseconds(300);
     while (Clock::now() < until) {
-      auto bytes = port.read(quiet);
+      auto bytes = port.read(bird_quiet);
       if (!bytes) return tl::unexpected(bytes.error());
       if (bytes->empty()) break;
     }
@@ -204,7 +204,7 @@ class NestOfBirds final : public Device {
     if (auto sent = port.write({question, sizeof question}); !sent)
       return tl::unexpected(sent.error());
     std::string answer;
-    const auto until = Clock::now() + answer_time;
+    const auto until = Clock::now() + bird_answer_time;
     while (answer.size() < bird::examined_length(parameter) && Clock::now() < until) {
       auto bytes = port.read(milliseconds(20));
       if (!bytes) return tl::unexpected(bytes.error());
@@ -217,7 +217,7 @@ class NestOfBirds final : public Device {
   Expected<bool> running(SerialPort& port) {
     const auto answer = examine(port, bird::system_status);
     if (!answer) return tl::unexpected(answer.error());
-    if (answer->size() != bird::most_units) return false;
+    if (answer->size() != bird::max_units) return false;
     constexpr auto wanted = static_cast<std::uint8_t>(bird::running | bird::has_receiver);
     for (int unit = 0; unit < setup_.sensors; ++unit)
       if ((static_cast<std::uint8_t>((*answer)[static_cast<std::size_t>(unit)]) & wanted) != wanted)
@@ -247,7 +247,7 @@ class NestOfBirds final : public Device {
       if (parser_.garbage() > garbage_)
         device_.sink_.drop("garbage bytes", parser_.garbage() - garbage_);
       garbage_ = parser_.garbage();
-      if (Clock::now() - last_ > longest_silence)
+      if (Clock::now() - last_ > max_bird_silence)
         return fail("the tracker has fallen silent", device_.path_, "starts it again by itself");
       return frames;
     }
@@ -274,7 +274,8 @@ class NestOfBirds final : public Device {
     auto due = Clock::now();
     while (!stop.stop_requested()) {
       if (auto sent = port.write("B"); !sent) return sent;
-      const auto lost = Clock::now() + answer_time;  // asked again if no frame has come by then
+      const auto lost =
+          Clock::now() + bird_answer_time;  // asked again if no frame has come by then
       for (int frames = 0; frames == 0 && Clock::now() < lost && !stop.stop_requested();) {
         auto got = reader.read(milliseconds(20));
         if (!got) return tl::unexpected(got.error());
@@ -324,8 +325,8 @@ Expected<std::unique_ptr<Device>> create_nest_of_birds(const DeviceOptions& opti
     return fail("no port is named", "glove.port", "name one such as /dev/ttyUSB0");
   if (options.baud < 2400 || options.baud > 115200)
     return fail("the tracker knows 2400 to 115200 bits per second", "glove.baud");
-  if (options.sites.empty() || options.sites.size() > bird::most_units)
-    return fail(fmt::format("1 to {} sensors are possible", bird::most_units), "glove.sites");
+  if (options.sites.empty() || options.sites.size() > bird::max_units)
+    return fail(fmt::format("1 to {} sensors are possible", bird::max_units), "glove.sites");
   setup.sensors = static_cast<int>(options.sites.size());
   setup.format = *format;
   setup.range = options.range * bird::inch;

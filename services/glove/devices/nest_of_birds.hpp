@@ -1,7 +1,7 @@
 #pragma once
 
-#include "device.hpp"
-#include "emulator.hpp"
+#include "services/glove/devices/device.hpp"
+#include "services/glove/devices/emulator.hpp"
 
 namespace prehend::glove {
 

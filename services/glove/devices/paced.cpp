@@ -1,9 +1,10 @@
-#include "paced.hpp"
+#include "services/glove/devices/paced.hpp"
 
 #include <algorithm>
 #include <condition_variable>
 #include <mutex>
-#include <prehend/base/clock.hpp>
+
+#include "common/base/clock.hpp"
 
 namespace prehend::glove {
 

@@ -1,10 +1,10 @@
 #pragma once
 
 #include <memory>
-#include <prehend/glove/frame_source.hpp>
 #include <thread>
 
-#include "device.hpp"
+#include "services/glove/core/frame_source.hpp"
+#include "services/glove/devices/device.hpp"
 
 namespace prehend::glove {
 

@@ -1,4 +1,4 @@
-#include "persistent.hpp"
+#include "services/glove/devices/persistent.hpp"
 
 #include <condition_variable>
 #include <mutex>

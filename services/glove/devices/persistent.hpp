@@ -1,10 +1,11 @@
 #pragma once
 
 #include <functional>
-#include <prehend/base/error.hpp>
-#include <prehend/base/time.hpp>
 #include <string>
 #include <thread>
+
+#include "common/base/error.hpp"
+#include "common/base/time.hpp"
 
 namespace prehend::glove {
 

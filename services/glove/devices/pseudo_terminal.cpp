@@ -1,4 +1,4 @@
-#include "pseudo_terminal.hpp"
+#include "services/glove/devices/pseudo_terminal.hpp"
 
 #include <fcntl.h>
 #include <poll.h>

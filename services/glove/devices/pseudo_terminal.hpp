@@ -1,12 +1,12 @@
 #pragma once
 
 #include <filesystem>
-#include <prehend/base/error.hpp>
-#include <prehend/base/time.hpp>
 #include <string>
 #include <string_view>
 
-#include "emulator.hpp"
+#include "common/base/error.hpp"
+#include "common/base/time.hpp"
+#include "services/glove/devices/emulator.hpp"
 
 namespace prehend::glove {
 

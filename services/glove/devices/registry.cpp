@@ -1,14 +1,15 @@
-#include <prehend/base/log.hpp>
-#include <prehend/glove/recording.hpp>
-#include <prehend/glove/synthetic_hand.hpp>
+#include <algorithm>
 
-#include "datagrams.hpp"
-#include "device.hpp"
-#include "joint_glove.hpp"
-#include "landmarks.hpp"
-#include "nest_of_birds.hpp"
-#include "paced.hpp"
-#include "pseudo_terminal.hpp"
+#include "common/base/log.hpp"
+#include "services/glove/core/synthetic_hand.hpp"
+#include "services/glove/devices/datagrams.hpp"
+#include "services/glove/devices/device.hpp"
+#include "services/glove/devices/joint_glove.hpp"
+#include "services/glove/devices/landmarks.hpp"
+#include "services/glove/devices/nest_of_birds.hpp"
+#include "services/glove/devices/paced.hpp"
+#include "services/glove/devices/pseudo_terminal.hpp"
+#include "services/glove/files/hand_recording.hpp"
 
 namespace prehend::glove {
 namespace {
@@ -23,19 +24,35 @@ Expected<std::unique_ptr<Device>> create_topic(const DeviceOptions&) {
   return std::make_unique<TopicDevice>();
 }
 
-Expected<std::unique_ptr<Device>> create_synthetic(const DeviceOptions& options) {
-  auto hand = SyntheticHand::create(options.scene, options.catalogue,
-                                    {.X_WT = options.X_WT, .rate = options.rate});
+Expected<std::unique_ptr<FrameSource>> synthetic_source(const DeviceOptions& options) {
+  auto hand =
+      SyntheticHand::create(options.scene, options.catalogue,
+                            {.X_WT = options.X_WT, .rate = options.rate, .seed = options.seed});
   if (!hand) return tl::unexpected(hand.error());
-  return std::make_unique<PacedDevice>(std::make_unique<SyntheticHand>(std::move(*hand)),
-                                       PacedOptions{.rate = options.rate});
+  return std::make_unique<SyntheticHand>(std::move(*hand));
+}
+
+Expected<std::unique_ptr<Device>> create_synthetic(const DeviceOptions& options) {
+  auto hand = synthetic_source(options);
+  if (!hand) return tl::unexpected(hand.error());
+  return std::make_unique<PacedDevice>(std::move(*hand), PacedOptions{.rate = options.rate});
+}
+
+Expected<Recording> load_recording(const DeviceOptions& options) {
+  return Recording::load(options.file, {.X_WT = options.X_WT,
+                                        .X_WH = options.scene.X_WH,
+                                        .rate = options.scene.recording_rate,
+                                        .hand_scale = options.hand_scale});
+}
+
+Expected<std::unique_ptr<FrameSource>> recording_source(const DeviceOptions& options) {
+  auto recording = load_recording(options);
+  if (!recording) return tl::unexpected(recording.error());
+  return std::make_unique<Recording>(std::move(*recording));
 }
 
 Expected<std::unique_ptr<Device>> create_recording(const DeviceOptions& options) {
-  auto recording = Recording::load(options.file, {.X_WT = options.X_WT,
-                                                  .X_WH = options.scene.X_WH,
-                                                  .rate = options.scene.recording_rate,
-                                                  .hand_scale = options.hand_scale});
+  auto recording = load_recording(options);
   if (!recording) return tl::unexpected(recording.error());
   log::info("{}: {} frames{}", options.file.string(), recording->size(),
             recording->left() ? " of a left hand, mirrored into a right one" : "");
@@ -54,36 +71,50 @@ Expected<std::unique_ptr<Device>> create_recording(const DeviceOptions& options)
 
 const std::vector<DeviceKind>& device_kinds() {
   static const std::vector<DeviceKind> kinds{
-      {.name = "topic",
-       .help = "frames that others publish on glove/frame",
-       .create = create_topic,
-       .by_topic = true},
+      {.name = "synthetic",
+       .help = "a computed hand that grasps the scene's object",
+       .create = create_synthetic,
+       .source = synthetic_source,
+       .synthetic = true,
+       .left = false,
+       .keys = {"glove.rate"}},
       {.name = "nest_of_birds",
        .help = "magnetic sensors on a serial port",
        .create = create_nest_of_birds,
        .line = Line::serial,
-       .emulate = emulate_nest_of_birds},
+       .emulate = emulate_nest_of_birds,
+       .keys = {"glove.port", "glove.baud", "glove.sites", "glove.format", "glove.mode",
+                "glove.range", "glove.hemisphere", "glove.rate"}},
       {.name = "joint_glove",
        .help = "a glove that measures joint angles, on a serial port",
        .create = create_joint_glove,
        .line = Line::serial,
-       .emulate = emulate_joint_glove},
+       .emulate = emulate_joint_glove,
+       .tracker = "nest_of_birds",
+       .keys = {"glove.port", "glove.baud", "glove.rate", "glove.wrist_port"}},
       {.name = "landmarks",
        .help = "a bare hand that a camera sees, as datagrams",
        .create = create_landmarks,
        .line = Line::datagrams,
-       .emulate = emulate_landmarks},
+       .emulate = emulate_landmarks,
+       .address = landmarks_address,
+       .keys = {"glove.port"}},
       {.name = "recording",
        .help = "a hand recording, Leap or 21 landmarks",
-       .create = create_recording},
-      {.name = "synthetic",
-       .help = "a computed hand that grasps the scene's object",
-       .create = create_synthetic},
+       .create = create_recording,
+       .line = Line::file,
+       .source = recording_source,
+       .keys = {"glove.file"}},
+      {.name = "topic",
+       .help = "frames that others publish on glove/frame",
+       .create = create_topic,
+       .line = Line::topic},
   };
   return kinds;
 }
 
 Expected<DeviceKind> find_device(std::string_view name) {
+  if (name.empty()) return device_kinds().front();
   std::string known;
   for (const DeviceKind& kind : device_kinds()) {
     if (kind.name == name) return kind;
@@ -93,13 +124,19 @@ Expected<DeviceKind> find_device(std::string_view name) {
               "choose one of " + known);
 }
 
+const DeviceKind& topic_device() {
+  return *std::find_if(device_kinds().begin(), device_kinds().end(),
+                       [](const DeviceKind& kind) { return kind.line == Line::topic; });
+}
+
 EmulationOptions emulation_of(const DeviceKind& kind, const DeviceOptions& options,
                               const std::filesystem::path& link) {
   EmulationOptions made;
   made.device = [kind, options] { return kind.emulate(options); };
   if (kind.line == Line::datagrams) {
-    made.plug_in = [options]() -> Expected<std::unique_ptr<Plug>> {
-      auto sender = DatagramSender::create(options.port.empty() ? landmarks_address : options.port);
+    const std::string address = options.port.empty() ? std::string(kind.address) : options.port;
+    made.plug_in = [address]() -> Expected<std::unique_ptr<Plug>> {
+      auto sender = DatagramSender::create(address);
       if (!sender) return tl::unexpected(sender.error());
       return std::make_unique<DatagramSender>(std::move(*sender));
     };

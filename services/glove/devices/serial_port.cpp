@@ -1,4 +1,4 @@
-#include "serial_port.hpp"
+#include "services/glove/devices/serial_port.hpp"
 
 #include <fcntl.h>
 #include <libserialport.h>
@@ -36,25 +36,25 @@ bool wait_for(int handle, short events, Duration timeout, short& seen) {
 }  // namespace
 
 Expected<SerialPort> SerialPort::open(const std::string& path, int baud) {
-  const std::string mend = "check glove.port, the cable, and the right to use it (group dialout)";
+  const std::string hint = "check glove.port, the cable, and the right to use it (group dialout)";
   // The library knows ports by their place in /dev, not by links to it.
   std::error_code error;
   const std::filesystem::path real = std::filesystem::canonical(path, error);
-  if (error) return fail("there is no such port", path, mend);
+  if (error) return fail("there is no such port", path, hint);
   SerialPort made(path);
   if (real.string().starts_with("/dev/pts/")) {
     made.handle_ = ::open(real.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
     termios settings{};
     if (made.handle_ < 0 || ::tcgetattr(made.handle_, &settings) != 0)
-      return fail(std::strerror(errno), path, mend);
+      return fail(std::strerror(errno), path, hint);
     ::cfmakeraw(&settings);
     ::tcsetattr(made.handle_, TCSANOW, &settings);
     return made;
   }
   if (sp_get_port_by_name(real.c_str(), &made.port_) != SP_OK)
-    return fail("this is not a serial port", path, mend);
+    return fail("this is not a serial port", path, hint);
   if (sp_open(made.port_, SP_MODE_READ_WRITE) != SP_OK)
-    return fail("the port cannot be opened: " + last_error(), path, mend);
+    return fail("the port cannot be opened: " + last_error(), path, hint);
   if (sp_set_baudrate(made.port_, baud) != SP_OK || sp_set_bits(made.port_, 8) != SP_OK ||
       sp_set_parity(made.port_, SP_PARITY_NONE) != SP_OK ||
       sp_set_stopbits(made.port_, 1) != SP_OK ||
@@ -63,7 +63,7 @@ Expected<SerialPort> SerialPort::open(const std::string& path, int baud) {
   // These trackers take a raised RTS for a reset that lasts.
   sp_set_rts(made.port_, SP_RTS_OFF);
   if (sp_get_port_handle(made.port_, &made.handle_) != SP_OK)
-    return fail("the port has no handle: " + last_error(), path, mend);
+    return fail("the port has no handle: " + last_error(), path, hint);
   return made;
 }
 

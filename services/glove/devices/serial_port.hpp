@@ -1,10 +1,11 @@
 #pragma once
 
 #include <memory>
-#include <prehend/base/error.hpp>
-#include <prehend/base/time.hpp>
 #include <string>
 #include <string_view>
+
+#include "common/base/error.hpp"
+#include "common/base/time.hpp"
 
 struct sp_port;
 

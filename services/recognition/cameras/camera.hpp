@@ -1,12 +1,16 @@
 #pragma once
 
 #include <memory>
-#include <prehend/base/error.hpp>
-#include <prehend/base/time.hpp>
-#include <prehend/model/scene.hpp>
-#include <prehend/recognition_geometry/camera_model.hpp>
-#include <prehend/recognition_picture/picture.hpp>
 #include <string>
+#include <string_view>
+#include <vector>
+
+#include "common/base/error.hpp"
+#include "common/base/named_values.hpp"
+#include "common/base/time.hpp"
+#include "common/model/scene.hpp"
+#include "services/recognition/core/geometry/camera_model.hpp"
+#include "services/recognition/core/picture/picture.hpp"
 
 namespace prehend::recognition {
 
@@ -26,13 +30,58 @@ class Camera {
 };
 
 struct CameraOptions {
-  std::string source;  // device, video, folder or synthetic
+  std::string source;  // a name of camera_kinds()
   std::string path;    // device file or number, video file or address, folder
-  CameraModel model;   // wanted size; for synthetic: the calibration
+  CameraModel model;   // wanted size; for a synthetic one: the calibration
   double rate = 10;    // Hz, asked of a device; of a file's pictures those between are left out
 };
 
-/// The scene and the catalogue are used by `synthetic` only.
+/// Where pictures come from.
+enum class CameraLine {
+  none,    // computed here
+  device,  // recognition.path is a device file or its number; empty: the first
+  stream,  // recognition.path is a file or an address
+  folder,  // recognition.path is a folder of pictures
+  topic    // others publish them on camera/image; there is nothing to open
+};
+/// As `prehend camera sources` says it.
+inline constexpr auto camera_line_names = named_values<CameraLine>({{CameraLine::none, "none"},
+                                                                    {CameraLine::device, "device"},
+                                                                    {CameraLine::stream, "stream"},
+                                                                    {CameraLine::folder, "folder"},
+                                                                    {CameraLine::topic, "topic"}});
+
+/// Everything that others may want to know of a kind of camera. Nothing outside this folder names
+/// one: the service, its tools and `prehend demo` ask the row.
+struct CameraKind {
+  std::string_view name;  // as in recognition.source
+  std::string_view help;
+  CameraLine line = CameraLine::none;
+  /// Opens it; none: pictures come by topic. `scene` may be missing.
+  Expected<std::unique_ptr<Camera>> (*open)(const CameraOptions& options,
+                                            const model::Catalogue& catalogue,
+                                            const model::Scene* scene) = nullptr;
+  /// It shows lab.scene, so what stands there is known exactly.
+  bool synthetic = false;
+};
+
+/// The one table of cameras; a new one is a row in camera.cpp. The first is what a lab has that
+/// names none.
+const std::vector<CameraKind>& camera_kinds();
+/// An empty name is the first of the table.
+Expected<CameraKind> find_camera(std::string_view name);
+/// The one that takes pictures from camera/image.
+const CameraKind& topic_camera();
+/// «device[:PATH], video:PATH or folder:PATH»: those of the lines that a command accepts.
+std::string camera_words(const std::vector<CameraLine>& lines);
+
+/// What is before and after the colon of KIND[:PATH].
+struct CameraSource {
+  std::string kind, path;
+};
+CameraSource camera_source(const std::string& text);
+
+/// The scene and the catalogue are used by a synthetic one only.
 Expected<std::unique_ptr<Camera>> open_camera(const CameraOptions& options,
                                               const model::Catalogue& catalogue,
                                               const model::Scene* scene);

@@ -4,8 +4,8 @@
 #include <chrono>
 #include <opencv2/videoio.hpp>
 
-#include "frame.hpp"
-#include "sources.hpp"
+#include "services/recognition/cameras/frame.hpp"
+#include "services/recognition/cameras/sources.hpp"
 
 namespace prehend::recognition {
 namespace {

@@ -1,6 +1,5 @@
-#include <prehend/recognition_picture/picture_file.hpp>
-
-#include "sources.hpp"
+#include "services/recognition/cameras/sources.hpp"
+#include "services/recognition/files/picture_file.hpp"
 
 namespace prehend::recognition {
 namespace {

@@ -1,4 +1,4 @@
-#include "frame.hpp"
+#include "services/recognition/cameras/frame.hpp"
 
 #include <opencv2/imgproc.hpp>
 

@@ -1,9 +1,10 @@
 #pragma once
 
 #include <opencv2/core.hpp>
-#include <prehend/base/error.hpp>
-#include <prehend/recognition_picture/picture.hpp>
 #include <string>
+
+#include "common/base/error.hpp"
+#include "services/recognition/core/picture/picture.hpp"
 
 namespace prehend::recognition {
 

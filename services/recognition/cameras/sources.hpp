@@ -1,6 +1,6 @@
 #pragma once
 
-#include "camera.hpp"
+#include "services/recognition/cameras/camera.hpp"
 
 namespace prehend::recognition {
 

@@ -1,6 +1,5 @@
-#include <prehend/recognition_rendering/renderer.hpp>
-
-#include "sources.hpp"
+#include "services/recognition/cameras/sources.hpp"
+#include "services/recognition/core/rendering/renderer.hpp"
 
 namespace prehend::recognition {
 namespace {

@@ -11,8 +11,8 @@ extern "C" {
 #include <cmath>
 #include <opencv2/core.hpp>
 
-#include "frame.hpp"
-#include "sources.hpp"
+#include "services/recognition/cameras/frame.hpp"
+#include "services/recognition/cameras/sources.hpp"
 
 namespace prehend::recognition {
 namespace {

@@ -7,19 +7,19 @@
 #include <fstream>
 #include <iostream>
 #include <nlohmann/json.hpp>
-#include <prehend/mcap/writer.hpp>
-#include <prehend/types/idl.hpp>
-#include <prehend/types/schema_text.hpp>
 
-#include "random_message.hpp"
+#include "common/recording/mcap/writer.hpp"
+#include "common/recording/types/idl.hpp"
+#include "common/recording/types/schema_text.hpp"
+#include "tests/unit/recording/random_message.hpp"
 
 using namespace prehend;
 using Json = nlohmann::ordered_json;
 
 namespace {
 
-Json exact(const types::Value& value) {
-  using types::Value;
+Json exact(const recording::types::Value& value) {
+  using recording::types::Value;
   if (const auto* fields = std::get_if<Value::Fields>(&value.content)) {
     Json object = Json::object();
     for (const auto& [name, each] : *fields) object[std::string(name)] = exact(each);
@@ -41,7 +41,7 @@ Json exact(const types::Value& value) {
   if (const auto* number = std::get_if<std::uint64_t>(&value.content))
     return fmt::format("i{}", *number);
   if (const auto* number = std::get_if<double>(&value.content)) return fmt::format("d{}", *number);
-  if (const auto* enumerator = std::get_if<types::Enumerator>(&value.content))
+  if (const auto* enumerator = std::get_if<recording::types::Enumerator>(&value.content))
     return fmt::format("i{}", enumerator->value);
   return "s" + std::get<std::string>(value.content);
 }
@@ -51,23 +51,26 @@ Json exact(const types::Value& value) {
 int main(int argc, char** argv) {
   if (argc != 4) return 2;
   const std::string folder = argv[1], encoding = argv[2], compression = argv[3];
-  const types::Library contract = types::load_idl(PREHEND_SOURCE "/idl").value();
-  mcap::WriterOptions options{.compression = mcap::compression_named(compression).value(),
-                              .chunk_bytes = 5000};
-  mcap::Writer writer = mcap::Writer::create(folder + "/samples.mcap", options).value();
+  const recording::types::Library contract =
+      recording::types::load_idl(PREHEND_SOURCE "/idl").value();
+  recording::mcap::WriterOptions options{
+      .compression = recording::mcap::compression_named(compression).value(), .chunk_bytes = 5000};
+  recording::mcap::Writer writer =
+      recording::mcap::Writer::create(folder + "/samples.mcap", options).value();
   Json messages = Json::object();
   Random random(17);
   std::uint64_t time = 1'700'000'000'000'000'000;
   for (const auto& [name, type] : contract.structures()) {
     if (!type->find("stamp_ns")) continue;  // no topic's
     const bool ros2 = encoding == "ros2msg";
-    const auto schema = writer.add_schema(ros2 ? types::ros2_name(name) : name, encoding,
-                                          ros2 ? types::ros2msg(*type) : types::omgidl(*type));
+    const auto schema = writer.add_schema(
+        ros2 ? recording::types::ros2_name(name) : name, encoding,
+        ros2 ? recording::types::ros2msg(*type) : recording::types::omgidl(*type));
     const auto channel = writer.add_channel(schema.value(), name, "cdr", {{"type", name}}).value();
     for (std::uint32_t i = 0; i < 20; ++i) {
-      const types::Value value = testing::random_value(*type, random);
+      const recording::types::Value value = testing::random_value(*type, random);
       const auto bytes = testing::encode(*type, value, i % 4 == 3);
-      if (!writer.write(mcap::Message{channel, i, ++time, time, bytes})) return 1;
+      if (!writer.write(recording::mcap::Message{channel, i, ++time, time, bytes})) return 1;
       messages[name].push_back(exact(value));
     }
   }

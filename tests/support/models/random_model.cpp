@@ -1,6 +1,6 @@
-#include "random_model.hpp"
+#include "tests/support/models/random_model.hpp"
 
-#include <prehend/base/random.hpp>
+#include "common/base/random.hpp"
 
 namespace prehend::test {
 

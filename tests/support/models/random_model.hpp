@@ -1,7 +1,8 @@
 #pragma once
 
 #include <cstdint>
-#include <prehend/mapping/mapping_model.hpp>
+
+#include "services/mapping/core/mapping_model.hpp"
 
 namespace prehend::test {
 

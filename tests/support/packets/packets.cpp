@@ -1,4 +1,4 @@
-#include "packets.hpp"
+#include "tests/support/packets/packets.hpp"
 
 #include <algorithm>
 

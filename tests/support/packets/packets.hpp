@@ -1,7 +1,8 @@
 #pragma once
 
-#include <prehend/dds/packet.hpp>
 #include <vector>
+
+#include "common/dds/packet.hpp"
 
 namespace prehend::test {
 

@@ -3,9 +3,10 @@
 #include <Eigen/Geometry>
 #include <cmath>
 #include <numbers>
-#include <prehend/analysis/contact.hpp>
-#include <prehend/base/random.hpp>
 #include <vector>
+
+#include "common/analysis/contact.hpp"
+#include "common/base/random.hpp"
 
 namespace prehend::analysis {
 

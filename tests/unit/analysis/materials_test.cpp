@@ -1,8 +1,9 @@
 // The friction table against figures read from it, and the choice of contacts.
+#include "common/analysis/materials.hpp"
+
 #include <gtest/gtest.h>
 
-#include <prehend/analysis/contact.hpp>
-#include <prehend/analysis/materials.hpp>
+#include "common/analysis/contact.hpp"
 
 namespace {
 

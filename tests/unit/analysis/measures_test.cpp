@@ -8,14 +8,14 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <prehend/analysis/approach.hpp>
-#include <prehend/analysis/contact_wrenches.hpp>
-#include <prehend/analysis/grasp_map.hpp>
-#include <prehend/analysis/grip_forces.hpp>
-#include <prehend/analysis/linear_program.hpp>
-#include <prehend/analysis/resistance.hpp>
 
-#include "grasps.hpp"
+#include "common/analysis/approach.hpp"
+#include "common/analysis/contact_wrenches.hpp"
+#include "common/analysis/grasp_map.hpp"
+#include "common/analysis/grip_forces.hpp"
+#include "common/analysis/linear_program.hpp"
+#include "common/analysis/resistance.hpp"
+#include "tests/unit/analysis/grasps.hpp"
 
 namespace {
 

@@ -6,9 +6,9 @@
 #include <cmath>
 #include <cstdlib>
 #include <limits>
-#include <prehend/analysis/wrench_space.hpp>
 
-#include "grasps.hpp"
+#include "common/analysis/wrench_space.hpp"
+#include "tests/unit/analysis/grasps.hpp"
 
 namespace {
 

@@ -2,6 +2,8 @@
 // is a known body, ε and volume are known exactly; there the tolerance is 1e-9, what is left of
 // double precision after Qhull has joggled coplanar points by about 1e-11. GraspIt!'s own figures
 // have nine digits in their wrenches: 1e-6 for ε, 5e-4 for its volume (it trims facets).
+#include "common/analysis/wrench_space.hpp"
+
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
@@ -11,8 +13,9 @@
 #include <fstream>
 #include <limits>
 #include <numbers>
-#include <prehend/analysis/wrench_space.hpp>
-#include <prehend/base/random.hpp>
+
+#include "common/base/random.hpp"
+#include "tests/support/shared_data.hpp"
 
 namespace {
 
@@ -141,10 +144,7 @@ TEST(WrenchSpace, RefusesWhatIsNotFinite) {
 }
 
 TEST(WrenchSpace, AgreesWithGraspIt) {
-  const char* shared = std::getenv("PREHEND_SHARED");
-  const std::filesystem::path folder = (shared ? std::filesystem::path(shared) / "data"
-                                               : std::filesystem::path(PREHEND_SHARED_DATA)) /
-                                       "graspit_contacts";
+  const std::filesystem::path folder = shared_data() / "graspit_contacts";
   if (!std::filesystem::is_directory(folder)) GTEST_SKIP() << folder << " is not there";
   int files = 0;
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {

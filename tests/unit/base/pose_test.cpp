@@ -1,8 +1,9 @@
 // Rigid transforms: what comes from outside is checked, steps are limited as stated.
+#include "common/base/pose.hpp"
+
 #include <gtest/gtest.h>
 
-#include <prehend/base/pose.hpp>
-#include <prehend/base/random.hpp>
+#include "common/base/random.hpp"
 
 namespace prehend {
 namespace {

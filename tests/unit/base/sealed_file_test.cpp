@@ -1,7 +1,7 @@
 // Sealed files: every cut and every flipped bit is noticed, another kind is refused by name.
-#include <gtest/gtest.h>
+#include "common/proto/sealed_file.hpp"
 
-#include <prehend/proto/sealed_file.hpp>
+#include <gtest/gtest.h>
 
 namespace prehend::proto {
 namespace {

@@ -1,10 +1,11 @@
 // A tool that changes one line of a person's file leaves the rest of it alone.
+#include "common/base/toml_text.hpp"
+
 #include <gtest/gtest.h>
 #include <unistd.h>
 
 #include <fstream>
 #include <iterator>
-#include <prehend/base/toml_text.hpp>
 
 namespace prehend {
 namespace {

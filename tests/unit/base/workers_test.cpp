@@ -1,8 +1,9 @@
 // Shared work is done once each, whatever the number of threads, and an exception comes out.
+#include "common/base/workers.hpp"
+
 #include <gtest/gtest.h>
 
 #include <atomic>
-#include <prehend/base/workers.hpp>
 #include <stdexcept>
 #include <vector>
 

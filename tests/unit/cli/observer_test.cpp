@@ -1,9 +1,10 @@
 // What is said about a demonstration, from messages made here. Distances are computed by hand; the
 // tolerance of 1e-12 m is rounding.
+#include "services/cli/service/observer.hpp"
+
 #include <gtest/gtest.h>
 
-#include <prehend/cli/observer.hpp>
-#include <prehend/dds/convert.hpp>
+#include "common/convert/convert.hpp"
 
 namespace prehend::cli {
 namespace {
@@ -21,8 +22,8 @@ v1::ObjectDetection detection(const std::string& name, double x, double y, std::
   v1::ObjectDetection message;
   message.name(name);
   message.shape(v1::SHAPE_CYLINDER);
-  message.size(dds::to_message(Eigen::Vector3d(0.024, 0.024, 0.105)));
-  message.X_WO(dds::to_message(make_pose(Eigen::Vector3d(x, y, 0.3))));
+  message.size(convert::to_message(Eigen::Vector3d(0.024, 0.024, 0.105)));
+  message.X_WO(convert::to_message(make_pose(Eigen::Vector3d(x, y, 0.3))));
   message.stamp_ns(stamp);
   message.probability(probability);
   return message;
@@ -34,7 +35,7 @@ v1::HandCommand command(v1::MappingMode mode, double weight, const std::string& 
   message.mode(mode);
   message.weight(weight);
   message.object(object);
-  message.X_WB(dds::to_message(make_pose(Eigen::Vector3d(0.1, 0, 0.2))));
+  message.X_WB(convert::to_message(make_pose(Eigen::Vector3d(0.1, 0, 0.2))));
   return message;
 }
 
@@ -50,7 +51,7 @@ v1::GraspReport report(const std::string& believed, bool held, std::int64_t stam
   message.epsilon(0.04);
   message.force_closure(true);
   message.held(held);
-  message.X_BO(dds::to_message(make_pose(Eigen::Vector3d(0, 0, -0.15))));
+  message.X_BO(convert::to_message(make_pose(Eigen::Vector3d(0, 0, -0.15))));
   return message;
 }
 

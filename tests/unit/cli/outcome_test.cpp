@@ -1,8 +1,9 @@
 // The documents that others read: their keys are a contract.
+#include "services/cli/service/outcome.hpp"
+
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
-#include <prehend/cli/outcome.hpp>
 
 namespace prehend::cli {
 namespace {

@@ -1,12 +1,13 @@
 // Children of this program: how they end, and that none is ever left behind. Limits of seconds only
 // bound the waiting; a passing test waits for events.
+#include "common/service/process.hpp"
+
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <csignal>
 #include <fstream>
-#include <prehend/service/process.hpp>
 #include <thread>
 
 namespace prehend::service {

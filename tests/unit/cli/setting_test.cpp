@@ -1,10 +1,13 @@
 // Scenes of the demonstration: drawn among what the hand can hold, the same for the same seed.
+#include "services/cli/tools/setting.hpp"
+
 #include <gtest/gtest.h>
 
-#include <prehend/cli/setting.hpp>
-#include <prehend/model/catalogue.hpp>
-#include <prehend/model/hand_model.hpp>
 #include <set>
+
+#include "common/model/catalogue.hpp"
+#include "common/model/hand_model.hpp"
+#include "tests/support/hands.hpp"
 
 namespace prehend::cli {
 namespace {
@@ -44,7 +47,7 @@ TEST(Setting, TargetsFitTheHandAndVary) {
 // DLR's straight fingers met the table before they met the object: the person reached as deep as a
 // human hand can.
 TEST(Setting, ThePersonGivesTheRobotHandTheRoomItNeeds) {
-  for (const char* name : {"barrett", "dlr", "robonaut", "rutgers", "parallel_jaw"}) {
+  for (const std::string& name : test::mappable_hands()) {
     SettingOptions wishes = options(3);
     wishes.hand = models / "hands" / name;
     const auto hand = model::HandModel::load(wishes.hand);

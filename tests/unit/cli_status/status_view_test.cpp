@@ -1,9 +1,10 @@
 // The table is checked by what it says, the document by its keys, which others rely on.
+#include "services/cli/tools/status/status_view.hpp"
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
-#include <prehend/cli_status/status_view.hpp>
 
 namespace prehend::cli {
 namespace {

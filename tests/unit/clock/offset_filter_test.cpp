@@ -3,10 +3,11 @@
 //   |estimate - true offset| <= uncertainty, always. No tolerance: it is a bound, not a statistic;
 //   the uncertainty is at most half the smallest delay of the last 16 exchanges plus the drift
 //   since; a step larger than the uncertainties is found with the first exchange after it.
+#include "common/clock/offset_filter.hpp"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <prehend/clock/offset_filter.hpp>
 #include <random>
 
 namespace prehend::clock {

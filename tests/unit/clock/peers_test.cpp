@@ -1,11 +1,12 @@
 // A rig of processes whose clocks differ by hours, over a network that delays and loses beacons:
 // after two beacons of each side everybody knows everybody's clock to within its uncertainty,
 // stamps come out in the reader's own time, and a process whose clock agrees is left alone.
+#include "common/clock/peers.hpp"
+
 #include <gtest/gtest.h>
 
 #include <functional>
 #include <memory>
-#include <prehend/clock/peers.hpp>
 #include <random>
 #include <vector>
 

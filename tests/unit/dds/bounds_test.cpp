@@ -7,15 +7,16 @@
 
 #include <chrono>
 #include <fstream>
-#include <prehend/dds/participant.hpp>
-#include <prehend/dds/raw.hpp>
 #include <random>
+
+#include "common/dds/participant.hpp"
+#include "common/dds/raw.hpp"
 
 namespace prehend::dds {
 namespace {
 
 const int many = std::getenv("PREHEND_LONG") ? 50'000 : 5'000;
-constexpr double least_leak = 200;  // bytes for each instance
+constexpr double min_leak = 200;  // bytes for each instance
 
 double resident() {
   std::ifstream statm("/proc/self/statm");
@@ -67,10 +68,9 @@ TEST_F(Bounds, NothingIsKeptOfOrdersAndNoneIsLost) {
   // A recorder of any topic is there as well.
   Participant third = join("recorder");
   std::atomic<int> recorded = 0;
-  auto raw = RawReader::create(
-      third,
-      {"operator/command", "prehend::v1::OperatorCommand", false, *find_topic("operator/command")},
-      [&](RawSample&& sample) { recorded += sample.kind == RawSample::Kind::data; });
+  auto raw = RawReader::create(third, raw_topic(operator_command), [&](RawSample&& sample) {
+    recorded += sample.kind == RawSample::Kind::data;
+  });
   ASSERT_TRUE(raw);
   meet(writer, 2);
   int given = 0, heard = 0;
@@ -91,7 +91,7 @@ TEST_F(Bounds, NothingIsKeptOfOrdersAndNoneIsLost) {
         << " and " << recorded << " of " << given;
   });
   EXPECT_LE(reader.instances(), 1u);
-  EXPECT_LT(grew, least_leak) << "bytes for each order";
+  EXPECT_LT(grew, min_leak) << "bytes for each order";
   EXPECT_EQ((*raw)->lost(), 0u);
   std::cout << grew << " bytes for each order\n";
 }
@@ -125,7 +125,7 @@ TEST_F(Bounds, ATrackThatIsGoneIsForgottenByAllAndUnknownToLateReaders) {
       return reader.instances() == 1;
     })) << reader.instances();
   });
-  EXPECT_LT(grew, least_leak) << "bytes for each track";
+  EXPECT_LT(grew, min_leak) << "bytes for each track";
   std::cout << grew << " bytes for each track\n";
   EXPECT_GE(gone, static_cast<std::uint32_t>(2 * many / 50));
   Participant third = join("late");
@@ -163,12 +163,12 @@ TEST_F(Bounds, OfReportsALateReaderGetsTheLastAndAReaderWhoIsThereGetsAll) {
     }
     EXPECT_TRUE(eventually(take));
   });
-  EXPECT_LT(grew, least_leak) << "bytes for each report";
+  EXPECT_LT(grew, min_leak) << "bytes for each report";
   std::cout << grew << " bytes for each report\n";
   Participant third = join("late");
   auto late = *third.reader(grasp_report);
   std::vector<std::uint64_t> told;
-  const auto kept = static_cast<std::size_t>(find_topic("grasp/report")->writer_depth);
+  const auto kept = static_cast<std::size_t>(grasp_report.qos.writer_depth);
   EXPECT_TRUE(eventually([&] {
     for (const auto& sample : late.take()) told.push_back(sample.data.sequence_number());
     return told.size() >= kept;

@@ -2,8 +2,8 @@
 // nothing in the environment or the working directory changes DDS. That broken files stop a process
 // is tests/integration/profiles_test.cpp, in processes of their own: Fast DDS keeps what it has
 // read.
-#include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
-#include <fastrtps/utils/IPLocator.h>
+#include "common/dds/network.hpp"
+
 #include <gtest/gtest.h>
 
 #include <chrono>
@@ -11,17 +11,16 @@
 #include <fastdds/dds/domain/DomainParticipantFactory.hpp>
 #include <filesystem>
 #include <fstream>
-#include <prehend/dds/network.hpp>
-#include <prehend/dds/participant.hpp>
 #include <random>
+
+#include "common/dds/participant.hpp"
 
 namespace prehend::dds {
 namespace {
 
-namespace rtps = eprosima::fastrtps::rtps;
 using eprosima::fastdds::rtps::UDPv4TransportDescriptor;
 
-int random_domain() {
+int random_network_domain() {
   return static_cast<int>(std::random_device{}() % 200);
 }
 
@@ -52,12 +51,12 @@ TEST(Network, ClientsOfAServerKnowItByItsPort) {
   const auto client = participant_qos(network);
   ASSERT_TRUE(client) << client.error().message();
   const auto& discovery = client->wire_protocol().builtin.discovery_config;
-  EXPECT_EQ(discovery.discoveryProtocol, rtps::DiscoveryProtocol_t::CLIENT);
+  EXPECT_EQ(discovery.discoveryProtocol, DiscoveryProtocol::CLIENT);
   ASSERT_EQ(discovery.m_DiscoveryServers.size(), 2u);
   const auto all = participant_qos(network, {.sees_all = true});
   ASSERT_TRUE(all);
   EXPECT_EQ(all->wire_protocol().builtin.discovery_config.discoveryProtocol,
-            rtps::DiscoveryProtocol_t::SUPER_CLIENT);
+            DiscoveryProtocol::SUPER_CLIENT);
   for (int i = 0; i < 2; ++i) {
     const auto server = participant_qos({.profile = "server"},
                                         {.serves = "127.0.0.1:" + std::to_string(11811 + i)});
@@ -71,8 +70,7 @@ TEST(Network, ClientsOfAServerKnowItByItsPort) {
 TEST(Network, WhoJoinsAtOnceListensAtAPortOfItsOwn) {
   const auto port_of = [](const auto& qos) {
     for (const auto& own : qos.wire_protocol().builtin.metatrafficUnicastLocatorList)
-      if (own.kind == LOCATOR_KIND_TCPv4)
-        return eprosima::fastrtps::rtps::IPLocator::getPhysicalPort(own);
+      if (own.kind == LOCATOR_KIND_TCPv4) return rtps::IPLocator::getPhysicalPort(own);
     return std::uint16_t{0};
   };
   const auto one = participant_qos({.profile = "wan"});
@@ -132,11 +130,11 @@ TEST(Network, EnvironmentAndWorkingDirectoryHaveNoEffect) {
   std::ofstream("named.xml") << profile;
   ::setenv("FASTRTPS_DEFAULT_PROFILES_FILE", (folder / "named.xml").c_str(), 1);
   ::setenv("ROS_DISCOVERY_SERVER", "192.0.2.1:11811", 1);
-  const auto influences = outside_influence();
+  const auto influences = environment_overrides();
   EXPECT_EQ(influences.size(), 3u);
-  for (const Error& influence : influences) EXPECT_FALSE(influence.mend.empty());
+  for (const Error& influence : influences) EXPECT_FALSE(influence.hint.empty());
 
-  const int domain = random_domain();
+  const int domain = random_network_domain();
   const std::string rig = "rig" + std::to_string(std::random_device{}());
   auto here = Participant::create({.name = "here", .domain = domain, .rig = rig});
   auto there = Participant::create({.name = "there", .domain = domain, .rig = rig});

@@ -1,12 +1,14 @@
 // Typed writers and readers over real DDS: values arrive whole, rigs are apart, gone instances are
 // told with their key, late joiners get what is transient local, and bad poses are refused.
+#include "common/dds/participant.hpp"
+
 #include <gtest/gtest.h>
 #include <unistd.h>
 
 #include <chrono>
-#include <prehend/dds/convert.hpp>
-#include <prehend/dds/participant.hpp>
 #include <random>
+
+#include "common/convert/convert.hpp"
 
 namespace prehend::dds {
 namespace {
@@ -38,8 +40,8 @@ v1::ObjectDetection detection(std::uint32_t track, const std::string& name) {
   message.stamp_ns(123);
   message.name(name.c_str());
   message.shape(v1::SHAPE_CYLINDER);
-  message.size(to_message(Eigen::Vector3d(0.03, 0.03, 0.1)));
-  message.X_WO(to_message(make_pose(Eigen::Vector3d(1, 2, 3))));
+  message.size(convert::to_message(Eigen::Vector3d(0.03, 0.03, 0.1)));
+  message.X_WO(convert::to_message(make_pose(Eigen::Vector3d(1, 2, 3))));
   message.covariance()[5] = 0.25;
   return message;
 }
@@ -57,7 +59,7 @@ TEST(Participant, ALateReaderGetsTheLastDetectionAndItsEnd) {
   EXPECT_EQ(samples[1].data.name(), "Cup");
   EXPECT_EQ(samples[1].data.covariance()[5], 0.25);
   EXPECT_NE(samples[0].info.instance, samples[1].info.instance);
-  const auto X = from_message(samples[1].data.X_WO());
+  const auto X = convert::from_message(samples[1].data.X_WO());
   ASSERT_TRUE(X);
   EXPECT_EQ(X->translation(), Eigen::Vector3d(1, 2, 3));
 
@@ -84,9 +86,9 @@ TEST(Participant, RigsDoNotHearEachOther) {
 TEST(Participant, MistakesAreErrors) {
   EXPECT_FALSE(Participant::create({.name = "test", .domain = 300}));
   Participant here = join(random_domain(), "x");
-  EXPECT_FALSE(here.writer(Topic<v1::GloveFramePubSubType>{"no/such/topic"}));
+  EXPECT_FALSE(here.writer(Topic<v1::GloveFramePubSubType>({.name = "no/such/topic"})));
   v1::Pose bad;  // a default quaternion has no norm
-  EXPECT_FALSE(from_message(bad));
+  EXPECT_FALSE(convert::from_message(bad));
 }
 
 }  // namespace

@@ -1,6 +1,8 @@
 // Raw topics over real DDS: what a typed writer says is found by discovery, read as bytes, written
 // again by a raw writer and read by a typed reader, and nothing has changed on the way: bytes,
 // keys, ends of instances, source time stamps, QoS.
+#include "common/dds/raw.hpp"
+
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -8,7 +10,6 @@
 #include <chrono>
 #include <condition_variable>
 #include <map>
-#include <prehend/dds/raw.hpp>
 #include <random>
 #include <thread>
 
@@ -68,8 +69,11 @@ struct Raw : testing::Test {
       std::this_thread::yield();
     return reader.writers() > 0;
   }
-  static bool match(Discovered& out, Collector<Discovered>& found, const std::string& topic) {
-    const auto there = [&](const Discovered& one) { return one.topic.name == topic && !one.gone; };
+  static bool match(DiscoveredWriter& out, Collector<DiscoveredWriter>& found,
+                    const std::string& topic) {
+    const auto there = [&](const DiscoveredWriter& one) {
+      return one.topic.name == topic && !one.gone;
+    };
     const auto all =
         found.wait([&](const auto& list) { return std::any_of(list.begin(), list.end(), there); });
     const auto one = std::find_if(all.begin(), all.end(), there);
@@ -79,7 +83,7 @@ struct Raw : testing::Test {
   }
 };
 
-v1::ObjectDetection detection(std::uint32_t track, const std::string& name) {
+v1::ObjectDetection raw_detection(std::uint32_t track, const std::string& name) {
   v1::ObjectDetection message;
   message.track(track);
   message.stamp_ns(123456789);
@@ -89,14 +93,14 @@ v1::ObjectDetection detection(std::uint32_t track, const std::string& name) {
 }
 
 TEST_F(Raw, DiscoveryTellsTypeKeyAndQosOfATopic) {
-  Collector<Discovered> found;
-  Discovery discovery([&](const Discovered& one) { found.add(one); });
+  Collector<DiscoveredWriter> found;
+  Discovery discovery([&](const DiscoveredWriter& one) { found.add(one); });
   const Participant listener = join("", &discovery);
   Participant lab = join("");
   auto commands = lab.writer(robot_command);
   auto clock = lab.writer(lab_clock);
   ASSERT_TRUE(commands && clock);
-  Discovered command, tick;
+  DiscoveredWriter command, tick;
   ASSERT_TRUE(match(command, found, "robot/command"));
   ASSERT_TRUE(match(tick, found, "lab/clock"));
   EXPECT_EQ(command.topic.type, "prehend::v1::HandCommand");
@@ -105,7 +109,7 @@ TEST_F(Raw, DiscoveryTellsTypeKeyAndQosOfATopic) {
   EXPECT_EQ(command.rigs, std::vector{rig});
   EXPECT_TRUE(command.topic.qos.reliable);
   EXPECT_FALSE(command.topic.qos.transient_local);
-  EXPECT_TRUE(command.topic.qos.exclusive);
+  EXPECT_TRUE(command.topic.qos.exclusive_ownership);
   EXPECT_EQ(command.topic.qos.deadline, std::chrono::milliseconds(100));
   EXPECT_EQ(command.topic.qos.lifespan, std::chrono::milliseconds(200));
   EXPECT_EQ(command.topic.qos.writer_depth, 64);
@@ -113,13 +117,13 @@ TEST_F(Raw, DiscoveryTellsTypeKeyAndQosOfATopic) {
 }
 
 TEST_F(Raw, BytesKeysEndsAndStampsPassThrough) {
-  Collector<Discovered> found;
-  Discovery discovery([&](const Discovered& one) { found.add(one); });
+  Collector<DiscoveredWriter> found;
+  Discovery discovery([&](const DiscoveredWriter& one) { found.add(one); });
   Participant recorder = join("a", &discovery);
   Participant lab = join("a");
   auto writer = lab.writer(object_detection);
   ASSERT_TRUE(writer);
-  Discovered topic;
+  DiscoveredWriter topic;
   ASSERT_TRUE(match(topic, found, "object/detection"));
   Collector<RawSample> taken;
   auto reader = RawReader::create(recorder, topic.topic,
@@ -128,11 +132,11 @@ TEST_F(Raw, BytesKeysEndsAndStampsPassThrough) {
   meet(writer->raw());
   ASSERT_TRUE(met(**reader));
 
-  ASSERT_TRUE(writer->write(detection(4, "Talc")));
-  ASSERT_TRUE(writer->write(detection(7, "Cup")));
-  ASSERT_TRUE(writer->dispose(detection(4, "")));
-  ASSERT_TRUE(writer->write(detection(4, "Talc again")));
-  ASSERT_TRUE(writer->write(detection(7, std::string(60, 'x'))));
+  ASSERT_TRUE(writer->write(raw_detection(4, "Talc")));
+  ASSERT_TRUE(writer->write(raw_detection(7, "Cup")));
+  ASSERT_TRUE(writer->dispose(raw_detection(4, "")));
+  ASSERT_TRUE(writer->write(raw_detection(4, "Talc again")));
+  ASSERT_TRUE(writer->write(raw_detection(7, std::string(60, 'x'))));
   const auto first = taken.wait(5);
   ASSERT_EQ(first.size(), 5u);
   EXPECT_EQ(first[2].kind, Kind::disposed);
@@ -176,10 +180,8 @@ TEST_F(Raw, BytesKeysEndsAndStampsPassThrough) {
 
 TEST_F(Raw, DisposeAndUnregisterAreKeptApart) {
   Participant player = join(""), listener = join("");
-  const RawTopic topic{.name = "some/topic",
-                       .type = "some::Type",
-                       .keyed = true,
-                       .qos = {.name = "", .writer_depth = 0}};
+  const RawTopic topic{
+      .name = "some/topic", .type = "some::Type", .keyed = true, .qos = {.writer_depth = 0}};
   Collector<RawSample> taken;
   auto reader =
       RawReader::create(listener, topic, [&](RawSample&& sample) { taken.add(std::move(sample)); });
@@ -220,16 +222,16 @@ TEST_F(Raw, WhatAKeepLastWriterHasForgottenIsNoLoss) {
   Participant lab = join(""), listener = join("");
   auto writer = lab.writer(object_detection);
   ASSERT_TRUE(writer);
-  for (int i = 0; i < 20; ++i) ASSERT_TRUE(writer->write(detection(1, "Cup")));
+  for (int i = 0; i < 20; ++i) ASSERT_TRUE(writer->write(raw_detection(1, "Cup")));
   Collector<RawSample> taken;
   const RawTopic topic{.name = "object/detection",
                        .type = "prehend::v1::ObjectDetection",
-                       .qos = {.name = "", .transient_local = true}};
+                       .qos = {.transient_local = true}};
   auto reader =
       RawReader::create(listener, topic, [&](RawSample&& sample) { taken.add(std::move(sample)); });
   ASSERT_TRUE(reader);
   ASSERT_EQ(taken.wait(1).size(), 1u);
-  ASSERT_TRUE(writer->write(detection(2, "Talc")));
+  ASSERT_TRUE(writer->write(raw_detection(2, "Talc")));
   EXPECT_EQ(taken.wait(2).size(), 2u);
   EXPECT_EQ((*reader)->lost(), 0u);
   EXPECT_EQ((*reader)->received(), 2u);

@@ -7,9 +7,11 @@
 
 #include <cstdlib>
 #include <filesystem>
-#include <prehend/glove/features.hpp>
-#include <prehend/glove/one_euro.hpp>
-#include <prehend/glove/recording.hpp>
+
+#include "services/glove/core/features.hpp"
+#include "services/glove/core/one_euro.hpp"
+#include "services/glove/files/hand_recording.hpp"
+#include "tests/support/shared_data.hpp"
 
 namespace prehend::glove {
 namespace {
@@ -81,9 +83,7 @@ TEST(FilterLag, OfAnExponentialFilterOnARampIsFourFrames) {
 }
 
 TEST(FilterLag, IsAtMostOneFrameOnRealHands) {
-  const char* shared = std::getenv("PREHEND_SHARED");
-  const fs::path folder =
-      (shared ? fs::path(shared) / "data" : fs::path(PREHEND_SHARED_DATA)) / "leap_hand_recordings";
+  const fs::path folder = shared_data() / "leap_hand_recordings";
   if (!fs::exists(folder)) GTEST_SKIP() << "no " << folder;
   std::vector<Path> all;
   for (const char* name : {"grab", "pinch", "HandSplay-110fps"}) {

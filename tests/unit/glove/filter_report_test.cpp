@@ -6,13 +6,16 @@
 //
 // At 30 Hz the first aim cannot be met: half of the noise takes three frames to average, in which a
 // finger at 2.5 cm/s goes 2 mm. What is reached there is printed, and held against getting worse.
+#include "services/glove/core/filter_report.hpp"
+
 #include <gtest/gtest.h>
 
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
-#include <prehend/glove/filter_report.hpp>
-#include <prehend/glove/recording.hpp>
+
+#include "services/glove/files/hand_recording.hpp"
+#include "tests/support/shared_data.hpp"
 
 namespace prehend::glove {
 namespace {
@@ -20,9 +23,7 @@ namespace {
 namespace fs = std::filesystem;
 
 fs::path folder() {
-  const char* shared = std::getenv("PREHEND_SHARED");
-  return (shared ? fs::path(shared) / "data" : fs::path(PREHEND_SHARED_DATA)) /
-         "leap_hand_recordings";
+  return shared_data() / "leap_hand_recordings";
 }
 
 constexpr std::array names{"HandSplay-110fps",

@@ -1,8 +1,9 @@
 // The gate lets motion through and withholds extreme points; a true jump costs one frame.
+#include "services/glove/core/gate.hpp"
+
 #include <gtest/gtest.h>
 
-#include <prehend/base/random.hpp>
-#include <prehend/glove/gate.hpp>
+#include "common/base/random.hpp"
 
 namespace prehend::glove {
 namespace {

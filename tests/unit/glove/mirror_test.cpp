@@ -5,9 +5,10 @@
 #include <gtest/gtest.h>
 
 #include <limits>
-#include <prehend/base/random.hpp>
-#include <prehend/glove/features.hpp>
-#include <prehend/glove/frame.hpp>
+
+#include "common/base/random.hpp"
+#include "services/glove/core/features.hpp"
+#include "services/glove/core/frame.hpp"
 
 namespace prehend::glove {
 namespace {

@@ -1,15 +1,17 @@
-// What the core lets through: invariant features (eq. 4.1), and nothing of what real trackers get
-// wrong. Tolerances of positions are 1e-9 where nothing but rounding is in between.
+// What the core lets through: invariant features [Thesis, eq. 4.1], and nothing of what real
+// trackers get wrong. Tolerances of positions are 1e-9 where nothing but rounding is in between.
+#include "services/glove/core/processor.hpp"
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <prehend/base/random.hpp>
-#include <prehend/glove/features.hpp>
-#include <prehend/glove/processor.hpp>
 #include <string>
+
+#include "common/base/random.hpp"
+#include "services/glove/core/features.hpp"
 
 namespace prehend::glove {
 namespace {
@@ -203,7 +205,7 @@ TEST(Processor, RejectsBadJointAnglesAndKeepsTheSensors) {
   EXPECT_EQ(with([](auto& q) { q.pop_back(); }), "not the joints of a hand");
 }
 
-// The tracker of the thesis: 30 Hz, noise of 1.5 mm, 1 % extreme points of up to 50 cm in every
+// The tracker of [Thesis, 4.1]: 30 Hz, noise of 1.5 mm, 1 % extreme points of up to 50 cm in every
 // sensor, on a hand that moves and closes. What is published may be off by the noise and by a frame
 // of lag, never by an extreme point.
 TEST(Processor, HoldsItsPromiseAtThirtyHertz) {

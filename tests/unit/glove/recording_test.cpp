@@ -5,21 +5,18 @@
 #include <array>
 #include <cstdlib>
 #include <filesystem>
-#include <prehend/glove/features.hpp>
-#include <prehend/glove/processor.hpp>
-#include <prehend/glove/recording.hpp>
 #include <string>
+
+#include "services/glove/core/features.hpp"
+#include "services/glove/core/processor.hpp"
+#include "services/glove/files/hand_recording.hpp"
+#include "tests/support/shared_data.hpp"
 
 namespace prehend::glove {
 namespace {
 
 using Eigen::Vector3d;
 namespace fs = std::filesystem;
-
-fs::path shared_data() {
-  const char* shared = std::getenv("PREHEND_SHARED");
-  return shared ? fs::path(shared) / "data" : fs::path(PREHEND_SHARED_DATA);
-}
 
 const RecordingOptions room{.X_WT = make_pose(Vector3d(0, 0.45, 0.3)),
                             .X_WH = make_pose(Vector3d(0.05, 0, 0.25))};

@@ -1,11 +1,13 @@
 // The synthetic hand over all shapes that a hand can grasp: finite, orthonormal, in order, smooth,
 // the same each time, and really reaching for the object where the scene says it stands.
+#include "services/glove/core/synthetic_hand.hpp"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <prehend/glove/processor.hpp>
-#include <prehend/glove/synthetic_hand.hpp>
-#include <prehend/model/placement.hpp>
+
+#include "common/model/placement.hpp"
+#include "services/glove/core/processor.hpp"
 
 namespace prehend::glove {
 namespace {

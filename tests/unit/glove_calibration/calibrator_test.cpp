@@ -3,13 +3,14 @@
 // fingertip 160 mm away is 2.5 % of scale, and nine readings share it with the palm's place and the
 // joints' error; four standard deviations of that, 6 %, is the tolerance for everyone, and 2.5 %
 // for the mean error. The same seeds always, so the figures do not move.
+#include "services/glove/core/calibration/calibrator.hpp"
+
 #include <gtest/gtest.h>
 
 #include <cstdio>
-#include <prehend/glove_calibration/calibrator.hpp>
-#include <prehend/model/human_hand.hpp>
 
-#include "people.hpp"
+#include "common/model/human_hand.hpp"
+#include "tests/unit/glove_calibration/people.hpp"
 
 namespace prehend::glove {
 namespace {

@@ -2,10 +2,11 @@
 // kinds, the joints between the poses come out right afterwards. Tolerance: sensors tremble by one
 // count, about 0.01 rad, the mean over half a second by a tenth of that; at the end of a sensor's
 // range counts are cut off, which the people drawn here avoid.
+#include "services/glove/core/calibration/joint_calibrator.hpp"
+
 #include <gtest/gtest.h>
 
-#include <prehend/base/random.hpp>
-#include <prehend/glove_calibration/joint_calibrator.hpp>
+#include "common/base/random.hpp"
 
 namespace {
 

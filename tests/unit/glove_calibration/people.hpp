@@ -1,9 +1,10 @@
 #pragma once
 
-#include <prehend/base/random.hpp>
-#include <prehend/glove/frame.hpp>
-#include <prehend/glove_calibration/hand_fit.hpp>
 #include <vector>
+
+#include "common/base/random.hpp"
+#include "services/glove/core/calibration/hand_fit.hpp"
+#include "services/glove/core/frame.hpp"
 
 namespace prehend::glove {
 
@@ -55,7 +56,7 @@ struct Person {
   model::HumanHand hand;
   std::array<Eigen::Vector3d, model::finger_count> sensor;  // p_FS
   Pose X_HR;
-  bool three_fingers = true;  // the glove of the thesis; otherwise all five
+  bool three_fingers = true;  // the glove of [Thesis, 4.1]; otherwise all five
 };
 
 }  // namespace prehend::glove

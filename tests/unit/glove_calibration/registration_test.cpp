@@ -4,8 +4,8 @@
 // tolerance.
 #include <gtest/gtest.h>
 
-#include <prehend/base/random.hpp>
-#include <prehend/glove_calibration/toucher.hpp>
+#include "common/base/random.hpp"
+#include "services/glove/core/calibration/toucher.hpp"
 
 namespace prehend::glove {
 namespace {

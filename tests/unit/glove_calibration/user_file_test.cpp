@@ -1,11 +1,13 @@
 // What is saved is what is loaded, to the digits of the file (0.1 of a permille of the scale, 0.01
 // mm of the bones); anything else is one clear error.
+#include "services/glove/files/user_file.hpp"
+
 #include <gtest/gtest.h>
 
 #include <filesystem>
 #include <fstream>
-#include <prehend/base/random.hpp>
-#include <prehend/glove_calibration/user_file.hpp>
+
+#include "common/base/random.hpp"
 
 namespace prehend::glove {
 namespace {

@@ -1,11 +1,14 @@
 // Captures of real trackers: every record, and the same orientation from matrix and angles.
+#include "services/glove/devices/bird_capture.hpp"
+
 #include <gtest/gtest.h>
 
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
-#include <prehend/glove_devices/bird_capture.hpp>
+
+#include "tests/support/shared_data.hpp"
 
 namespace prehend::glove::bird {
 namespace {
@@ -13,9 +16,7 @@ namespace {
 namespace fs = std::filesystem;
 
 fs::path captures() {
-  const char* shared = std::getenv("PREHEND_SHARED");
-  return (shared ? fs::path(shared) / "data" : fs::path(PREHEND_SHARED_DATA)) /
-         "flock_of_birds_captures";
+  return shared_data() / "flock_of_birds_captures";
 }
 
 std::string text_of(const fs::path& file) {

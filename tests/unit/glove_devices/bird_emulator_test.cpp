@@ -1,9 +1,10 @@
 // The emulated tracker: what the driver is tested against must itself do what a tracker does.
+#include "services/glove/devices/bird_emulator.hpp"
+
 #include <gtest/gtest.h>
 
-#include <prehend/base/random.hpp>
-#include <prehend/glove_devices/bird_emulator.hpp>
-#include <prehend/glove_devices/bird_words.hpp>
+#include "common/base/random.hpp"
+#include "services/glove/devices/bird_words.hpp"
 
 namespace prehend::glove::bird {
 namespace {

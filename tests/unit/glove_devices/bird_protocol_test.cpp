@@ -1,11 +1,13 @@
 // The tracker's records: round trips over all formats, garbage, and finding the place again.
+#include "services/glove/devices/bird_protocol.hpp"
+
 #include <gtest/gtest.h>
 
 #include <map>
 #include <numbers>
-#include <prehend/base/pose.hpp>
-#include <prehend/base/random.hpp>
-#include <prehend/glove_devices/bird_protocol.hpp>
+
+#include "common/base/pose.hpp"
+#include "common/base/random.hpp"
 
 namespace prehend::glove::bird {
 namespace {

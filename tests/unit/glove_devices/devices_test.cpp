@@ -7,13 +7,15 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <numbers>
-#include <prehend/base/clock.hpp>
-#include <prehend/glove_devices/paced.hpp>
 #include <set>
 
-#include "listener.hpp"
+#include "common/base/clock.hpp"
+#include "common/service/config.hpp"
+#include "services/glove/devices/paced.hpp"
+#include "tests/unit/glove_devices/listener.hpp"
 
 namespace prehend::glove {
 namespace {
@@ -88,7 +90,7 @@ class EveryDevice : public ::testing::TestWithParam<DeviceKind> {
     emulation.faults = faults;
     return std::make_unique<EmulatedDevice>(std::move(emulation), source_);
   }
-  bool has_line() const { return GetParam().line != Line::none; }
+  bool has_line() const { return GetParam().has_port(); }
 
   /// Of all frames so far. Arrivals were before now.
   static void expect_sound(const std::vector<Frame>& frames) {
@@ -122,19 +124,62 @@ class EveryDevice : public ::testing::TestWithParam<DeviceKind> {
   WavingHand source_;
 };
 
-TEST_P(EveryDevice, ThatHasALineHasAnEmulator) {
-  const std::set<std::string_view> without{"topic", "recording", "synthetic"};
-  EXPECT_EQ(has_line(), !without.contains(GetParam().name)) << "say what line the new one has";
-  EXPECT_EQ(GetParam().emulate != nullptr, has_line());
-  EXPECT_TRUE(GetParam().create);
-  EXPECT_FALSE(GetParam().help.empty());
+TEST_P(EveryDevice, SaysAllThatOthersAsk) {
+  const DeviceKind& kind = GetParam();
+  EXPECT_TRUE(kind.create);
+  EXPECT_FALSE(kind.help.empty());
+  EXPECT_EQ(kind.emulate != nullptr, kind.has_port()) << "what has a port needs an emulator";
+  EXPECT_FALSE(kind.source && kind.has_port()) << "a hand that has a port is no source";
+  EXPECT_EQ(!kind.address.empty(), kind.line == Line::datagrams);
+  EXPECT_TRUE(!kind.synthetic || kind.source) << "a computed hand can move emulated devices";
+  EXPECT_EQ(line_names.value(line_names.name(kind.line)), kind.line);
+}
+
+// A misspelt key would be refused in lab.toml; what has a port is told where.
+TEST_P(EveryDevice, ReadsKeysThatThereAre) {
+  std::set<std::string_view> known;
+  for (const service::ConfigKey& key : service::config_keys()) known.insert(key.name);
+  std::set<std::string_view> named;
+  for (const std::string_view key : GetParam().keys) {
+    EXPECT_TRUE(known.contains(key)) << key;
+    EXPECT_TRUE(named.insert(key).second) << key << " twice";
+  }
+  EXPECT_EQ(named.contains("glove.port"), GetParam().has_port());
+  EXPECT_EQ(named.contains("glove.file"), GetParam().line == Line::file);
+  EXPECT_EQ(named.contains("glove.wrist_port"), !GetParam().tracker.empty());
+}
+
+TEST_P(EveryDevice, IsFoundByItsNameAlone) {
+  const auto found = find_device(GetParam().name);
+  ASSERT_TRUE(found);
+  EXPECT_EQ(found->create, GetParam().create);
+  if (GetParam().tracker.empty()) return;
+  const auto tracker = find_device(GetParam().tracker);
+  ASSERT_TRUE(tracker) << "sits on its back";
+  EXPECT_TRUE(tracker->has_port());
+  EXPECT_TRUE(tracker->tracker.empty()) << "tracks by itself";
+}
+
+// What a lab has that names none, what it has in lockstep, what `prehend demo` plays on.
+TEST(Devices, ThereIsOneForEachUse) {
+  EXPECT_EQ(find_device("")->name, device_kinds().front().name);
+  EXPECT_EQ(topic_device().line, Line::topic);
+  const auto has = [](auto&& what) {
+    return std::any_of(device_kinds().begin(), device_kinds().end(), what);
+  };
+  EXPECT_TRUE(has([](const DeviceKind& kind) { return kind.emulate != nullptr; }));
+  EXPECT_TRUE(has([](const DeviceKind& kind) { return kind.source && kind.line == Line::none; }));
+  const auto none = find_device("mind reader");
+  ASSERT_FALSE(none);
+  for (const DeviceKind& kind : device_kinds())
+    EXPECT_NE(none.error().hint.find(kind.name), std::string::npos) << kind.name;
 }
 
 // Nothing is wrong, so nothing is dropped; and no frame is stamped before it can have been
 // measured.
 TEST_P(EveryDevice, GivesSoundFrames) {
-  if (GetParam().by_topic) return;
-  if (GetParam().name == "recording") return;  // recording_test.cpp reads its files
+  if (GetParam().line == Line::topic) return;
+  if (GetParam().line == Line::file) return;  // recording_test.cpp reads its files
   const auto emulated = has_line() ? emulator() : nullptr;
   Listener listener;
   const auto driver = device();
@@ -205,7 +250,7 @@ TEST_P(EveryDevice, SaysWhenItFallsSilentAndComesBack) {
 }
 
 TEST_P(EveryDevice, EndsAtOnce) {
-  if (GetParam().by_topic || GetParam().name == "recording") return;
+  if (GetParam().line == Line::topic || GetParam().line == Line::file) return;
   Listener listener;
   auto driver = device();
   driver->start(listener.sink());

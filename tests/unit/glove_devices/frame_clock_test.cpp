@@ -2,12 +2,14 @@
 // from ours by up to 1e-4; frame n arrives d_n >= 0 later. What the stamps shall be is the
 // measurement's time plus a constant, so each test compares the deviation of (stamp - measurement)
 // with that of (arrival - measurement).
+#include "services/glove/devices/frame_clock.hpp"
+
 #include <gtest/gtest.h>
 
 #include <numeric>
-#include <prehend/base/random.hpp>
-#include <prehend/glove_devices/frame_clock.hpp>
 #include <vector>
+
+#include "common/base/random.hpp"
 
 namespace prehend::glove {
 namespace {

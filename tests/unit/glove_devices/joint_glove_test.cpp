@@ -3,9 +3,9 @@
 #include <unistd.h>
 
 #include <filesystem>
-#include <prehend/glove_devices/joint_emulator.hpp>
 
-#include "listener.hpp"
+#include "services/glove/devices/joint_emulator.hpp"
+#include "tests/unit/glove_devices/listener.hpp"
 
 namespace prehend::glove {
 namespace {

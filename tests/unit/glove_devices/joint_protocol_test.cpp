@@ -2,8 +2,8 @@
 // records are lost by one fault.
 #include <gtest/gtest.h>
 
-#include <prehend/base/random.hpp>
-#include <prehend/glove_devices/joint_emulator.hpp>
+#include "common/base/random.hpp"
+#include "services/glove/devices/joint_emulator.hpp"
 
 namespace prehend::glove::joint {
 namespace {

@@ -3,11 +3,12 @@
 // A count is rounded to a whole number, so an angle is off by up to half a gain: 0.0133 rad for the
 // coarsest sensor. Gains from two poses one step of counts wrong at either end: relative error
 // 1/(counts between them), below 2 % where a finger moves by 60 counts.
+#include "services/glove/core/joint_sensors.hpp"
+
 #include <gtest/gtest.h>
 
-#include <prehend/base/random.hpp>
-#include <prehend/glove/fingers_from_tips.hpp>
-#include <prehend/glove/joint_sensors.hpp>
+#include "common/base/random.hpp"
+#include "services/glove/core/fingers_from_tips.hpp"
 
 namespace prehend::glove {
 namespace {

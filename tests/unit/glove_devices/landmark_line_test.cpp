@@ -1,8 +1,9 @@
 // The lines of hand tracking programs: what is documented is read, anything else has a reason.
+#include "services/glove/devices/landmark_line.hpp"
+
 #include <gtest/gtest.h>
 
-#include <prehend/base/random.hpp>
-#include <prehend/glove_devices/landmark_line.hpp>
+#include "common/base/random.hpp"
 
 namespace prehend::glove {
 namespace {

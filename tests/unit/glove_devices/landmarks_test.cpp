@@ -3,13 +3,12 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
-#include <prehend/base/clock.hpp>
-#include <prehend/base/random.hpp>
-#include <prehend/glove_devices/datagrams.hpp>
-#include <prehend/glove_devices/landmark_line.hpp>
-#include <prehend/glove_devices/paced.hpp>
-
-#include "listener.hpp"
+#include "common/base/clock.hpp"
+#include "common/base/random.hpp"
+#include "services/glove/devices/datagrams.hpp"
+#include "services/glove/devices/landmark_line.hpp"
+#include "services/glove/devices/paced.hpp"
+#include "tests/unit/glove_devices/listener.hpp"
 
 namespace prehend::glove {
 namespace {

@@ -7,9 +7,10 @@
 #include <future>
 #include <map>
 #include <mutex>
-#include <prehend/glove_devices/device.hpp>
-#include <prehend/glove_devices/emulation.hpp>
 #include <thread>
+
+#include "services/glove/devices/device.hpp"
+#include "services/glove/devices/emulation.hpp"
 
 namespace prehend::glove::testing {
 

@@ -5,10 +5,10 @@
 #include <unistd.h>
 
 #include <filesystem>
-#include <prehend/glove_devices/bird_emulator.hpp>
-#include <prehend/glove_devices/pseudo_terminal.hpp>
 
-#include "listener.hpp"
+#include "services/glove/devices/bird_emulator.hpp"
+#include "services/glove/devices/pseudo_terminal.hpp"
+#include "tests/unit/glove_devices/listener.hpp"
 
 namespace prehend::glove {
 namespace {

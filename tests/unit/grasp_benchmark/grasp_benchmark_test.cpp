@@ -2,11 +2,14 @@
 // all modes and stay within the errors that are drawn, and the results do not depend on how the
 // work is divided. Everything is deterministic, so equality is exact; tolerances are those of the
 // errors' definitions.
+#include "services/mapping/tools/study/grasp_benchmark.hpp"
+
 #include <gtest/gtest.h>
 
-#include <prehend/study/grasp_benchmark.hpp>
 #include <stdexcept>
 #include <thread>
+
+#include "services/mapping/files/mapping_model_file.hpp"
 
 namespace prehend::mapping {
 namespace {
@@ -32,7 +35,7 @@ const std::vector<RobotGrasp>& grasps() {
 Expected<std::vector<TrialResult>> run(const GraspBenchmarkOptions& options,
                                        const grasping::ForEach& for_each) {
   static const auto model =
-      loaded(MappingModel::load(PREHEND_TRAINED "/barrett.mapping", barrett()));
+      loaded(load_mapping_model(PREHEND_TRAINED "/barrett.mapping", barrett()));
   static const auto catalogue =
       loaded(model::Catalogue::load(PREHEND_SOURCE "/common/models/objects/catalogue.toml"));
   return run_grasp_benchmark({barrett(), model, grasps(), catalogue}, options, for_each, {});
@@ -112,7 +115,7 @@ TEST(GraspBenchmark, GivesAllModesTheSameTakesHoweverTheWorkIsDivided) {
 
 TEST(GraspBenchmark, SaysWhenThereIsNothingToRepeat) {
   const std::vector<RobotGrasp> none;
-  const auto model = loaded(MappingModel::load(PREHEND_TRAINED "/barrett.mapping", barrett()));
+  const auto model = loaded(load_mapping_model(PREHEND_TRAINED "/barrett.mapping", barrett()));
   const model::Catalogue catalogue;
   const auto results = run_grasp_benchmark({barrett(), model, none, catalogue}, {}, in_order, {});
   ASSERT_FALSE(results);

@@ -1,9 +1,9 @@
 // The arm's velocity is integrated as the world does it: x += v dt. A goal that is accelerated
 // within the limits is followed with the same acceleration, which is what the shaking of the hold
 // test rests on; the first step of a jump in acceleration is lost, 2 ms of 64 ms.
-#include <gtest/gtest.h>
+#include "common/grasping/arm.hpp"
 
-#include <prehend/grasping/arm.hpp>
+#include <gtest/gtest.h>
 
 namespace {
 

@@ -1,10 +1,11 @@
 // Two fingers that lie across the palm towards each other. Each is a bar of 50 mm about an axis at
 // its own side; bars that lie higher must open first, and two forks, each with one tine above and
 // one below the other's, cannot open one after the other at all.
+#include "common/grasping/blocking.hpp"
+
 #include <gtest/gtest.h>
 
-#include <prehend/grasping/blocking.hpp>
-#include <prehend/test_support/hands.hpp>
+#include "tests/support/hands.hpp"
 
 namespace {
 

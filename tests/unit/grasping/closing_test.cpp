@@ -1,10 +1,12 @@
-// Closing a hand on the objects that the thesis names: every grasp that is found must touch with
+// Closing a hand on the objects of [Thesis]: every grasp that is found must touch with
 // all fingers, resist any wrench and hold the object's weight.
+#include "common/grasping/closing.hpp"
+
 #include <gtest/gtest.h>
 
 #include <limits>
-#include <prehend/grasping/closing.hpp>
-#include <prehend/test_support/hands.hpp>
+
+#include "tests/support/hands.hpp"
 
 namespace {
 

@@ -3,8 +3,8 @@
 // motor's) and the inner one stays where it was let go. Tolerances: the drives' give of 0.02 rad.
 #include <gtest/gtest.h>
 
-#include <prehend/grasping/world.hpp>
-#include <prehend/test_support/hands.hpp>
+#include "common/grasping/world.hpp"
+#include "tests/support/hands.hpp"
 
 namespace {
 

@@ -2,9 +2,9 @@
 // contacts that the world reports carry the same coefficients that it solves with.
 #include <gtest/gtest.h>
 
-#include <prehend/analysis/materials.hpp>
-#include <prehend/grasping/world.hpp>
-#include <prehend/test_support/hands.hpp>
+#include "common/analysis/materials.hpp"
+#include "common/grasping/world.hpp"
+#include "tests/support/hands.hpp"
 
 namespace {
 

@@ -3,8 +3,8 @@
 // frame fit together. The world is deterministic, so a grasp that is found once is found always.
 #include <gtest/gtest.h>
 
-#include <prehend/grasping/closing.hpp>
-#include <prehend/model/catalogue.hpp>
+#include "common/grasping/closing.hpp"
+#include "common/model/catalogue.hpp"
 
 namespace {
 

@@ -1,12 +1,14 @@
 // What every hand in common/models/hands must keep to in the world: the same calls give the same
 // bits, a clone starts from the same bits, and nonsense is refused without a trace.
+#include "tests/support/hands.hpp"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <filesystem>
 #include <limits>
-#include <prehend/grasping/world.hpp>
-#include <prehend/test_support/hands.hpp>
+
+#include "common/grasping/world.hpp"
 
 namespace {
 

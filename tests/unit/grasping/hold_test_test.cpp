@@ -1,9 +1,10 @@
 // The long form of the hold test tells apart what the short one cannot: a grip that carries the
 // object's weight but not twice that, and a hand that merely lies under its object.
+#include "common/grasping/hold_test.hpp"
+
 #include <gtest/gtest.h>
 
-#include <prehend/grasping/hold_test.hpp>
-#include <prehend/test_support/hands.hpp>
+#include "tests/support/hands.hpp"
 
 namespace {
 

@@ -8,8 +8,9 @@
 #include <filesystem>
 #include <fstream>
 #include <limits>
-#include <prehend/grasping/mesh_body.hpp>
-#include <prehend/test_support/hands.hpp>
+
+#include "common/grasping/mesh_body.hpp"
+#include "tests/support/hands.hpp"
 
 namespace {
 
@@ -183,8 +184,8 @@ TEST(ConvexPartsOf, MorePartsComeNearerToACurvedHollow) {
     cap.emplace_back(i + 1, inner - 1, inner);
   }
   const Mesh mesh = prism(outline, cap, 0.06);
-  const auto coarse = convex_parts(mesh, {.most_parts = 4});
-  const auto fine = convex_parts(mesh, {.most_parts = 16});
+  const auto coarse = convex_parts(mesh, {.max_parts = 4});
+  const auto fine = convex_parts(mesh, {.max_parts = 16});
   ASSERT_TRUE(coarse && fine);
   EXPECT_GT(coarse->concavity, 1.5);
   EXPECT_LT(fine->excess, coarse->excess);

@@ -1,11 +1,13 @@
 // What the physical world must keep to whatever happens in it: the table carries, limits hold, the
 // same calls give the same bits, nonsense is refused and leaves the world unharmed.
+#include "common/grasping/world.hpp"
+
 #include <gtest/gtest.h>
 
 #include <limits>
-#include <prehend/grasping/hold_test.hpp>
-#include <prehend/grasping/world.hpp>
-#include <prehend/test_support/hands.hpp>
+
+#include "common/grasping/hold_test.hpp"
+#include "tests/support/hands.hpp"
 
 namespace {
 

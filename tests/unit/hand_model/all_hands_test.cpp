@@ -12,10 +12,11 @@
 #include <algorithm>
 #include <filesystem>
 #include <numbers>
-#include <prehend/analysis/materials.hpp>
-#include <prehend/base/random.hpp>
-#include <prehend/model/hand_model.hpp>
-#include <prehend/test_support/hands.hpp>
+
+#include "common/analysis/materials.hpp"
+#include "common/base/random.hpp"
+#include "common/model/hand_model.hpp"
+#include "tests/support/hands.hpp"
 
 namespace {
 

@@ -2,9 +2,10 @@
 #include <gtest/gtest.h>
 
 #include <fstream>
-#include <prehend/model/hand_model.hpp>
-#include <prehend/model/xml.hpp>
 #include <sstream>
+
+#include "common/model/hand_model.hpp"
+#include "common/model/xml.hpp"
 
 namespace {
 

@@ -8,8 +8,10 @@
 #include <filesystem>
 #include <fstream>
 #include <numbers>
-#include <prehend/base/random.hpp>
-#include <prehend/model/hand_model.hpp>
+
+#include "common/base/random.hpp"
+#include "common/model/hand_model.hpp"
+#include "tests/support/shared_data.hpp"
 
 namespace {
 
@@ -100,10 +102,7 @@ TEST(Barrett, EqualsItsTableEverywhere) {
 }
 
 TEST(Barrett, EqualsFramesThatGraspItPrinted) {
-  const char* shared = std::getenv("PREHEND_SHARED");
-  const std::filesystem::path folder = (shared ? std::filesystem::path(shared) / "data"
-                                               : std::filesystem::path(PREHEND_SHARED_DATA)) /
-                                       "graspit_contacts";
+  const std::filesystem::path folder = shared_data() / "graspit_contacts";
   if (!std::filesystem::is_directory(folder)) GTEST_SKIP() << folder << " is not there";
   const model::HandModel hand = barrett();
   int compared = 0;

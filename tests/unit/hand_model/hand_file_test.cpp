@@ -4,8 +4,9 @@
 
 #include <filesystem>
 #include <fstream>
-#include <prehend/model/hand_model.hpp>
 #include <sstream>
+
+#include "common/model/hand_model.hpp"
 
 namespace {
 

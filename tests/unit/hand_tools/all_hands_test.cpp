@@ -9,9 +9,10 @@
 #include <filesystem>
 #include <fstream>
 #include <optional>
-#include <prehend/hands/make_hand.hpp>
-#include <prehend/test_support/hands.hpp>
 #include <sstream>
+
+#include "services/simulation/tools/hand_import/make_hand.hpp"
+#include "tests/support/hands.hpp"
 
 namespace {
 
@@ -35,20 +36,20 @@ class EveryHand : public testing::TestWithParam<std::string> {
     auto loaded = model::HandModel::load(folder() / GetParam());
     ASSERT_TRUE(loaded) << loaded.error().message();
     written = std::move(*loaded);
-    const auto robot = hands::read_robot(read(folder() / GetParam() / "hand.urdf"));
+    const auto robot = simulation::read_robot(read(folder() / GetParam() / "hand.urdf"));
     ASSERT_TRUE(robot) << robot.error().message();
-    auto hand = hands::make_hand(*robot, GetParam(), hands::mesh_files(folder()));
+    auto hand = simulation::make_hand(*robot, GetParam(), simulation::mesh_files(folder()));
     ASSERT_TRUE(hand) << hand.error().message();
     made.emplace(std::move(*hand));
   }
 
   model::HandModel written;
-  std::optional<hands::MadeHand> made;
+  std::optional<simulation::MadeHand> made;
 };
 
 TEST_P(EveryHand, HasNoErrors) {
-  for (const hands::Finding& finding : made->findings)
-    EXPECT_EQ(finding.severity, hands::Severity::warning) << finding.element << finding.what;
+  for (const simulation::UrdfFinding& finding : made->findings)
+    EXPECT_EQ(finding.severity, simulation::Severity::warning) << finding.element << finding.what;
   EXPECT_TRUE(made->opposed);
 }
 

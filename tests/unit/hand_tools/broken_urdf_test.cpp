@@ -3,16 +3,16 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <prehend/hands/check.hpp>
 #include <stdexcept>
 
-#include "made_hands.hpp"
+#include "services/simulation/tools/hand_import/check.hpp"
+#include "tests/unit/hand_tools/made_hands.hpp"
 
 namespace {
 
 using namespace prehend;
 
-Expected<std::vector<Eigen::Vector3d>> block(const hands::Solid& solid) {
+Expected<std::vector<Eigen::Vector3d>> block(const simulation::Solid& solid) {
   std::vector<Eigen::Vector3d> corners;
   for (const double x : {-30, 30})
     for (const double y : {-50, 50})
@@ -27,11 +27,11 @@ std::string replaced(std::string text, const std::string& from, const std::strin
   return text.replace(at, from.size(), to);
 }
 
-std::vector<hands::Finding> findings_of(const std::string& urdf,
-                                        const hands::MeshReader& meshes = block) {
-  const auto robot = hands::read_robot(urdf);
+std::vector<simulation::UrdfFinding> findings_of(const std::string& urdf,
+                                                 const simulation::MeshReader& meshes = block) {
+  const auto robot = simulation::read_robot(urdf);
   if (!robot) throw std::runtime_error(robot.error().message());
-  return hands::check(*robot, meshes);
+  return simulation::check(*robot, meshes);
 }
 
 struct Broken {
@@ -43,8 +43,8 @@ struct Broken {
 };
 
 TEST(HandCheck, FindsNothingWrongInASoundGripper) {
-  for (const hands::Finding& finding : findings_of(made_hands::gripper())) {
-    EXPECT_EQ(finding.severity, hands::Severity::warning) << finding.what;
+  for (const simulation::UrdfFinding& finding : findings_of(made_hands::gripper())) {
+    EXPECT_EQ(finding.severity, simulation::Severity::warning) << finding.what;
     EXPECT_EQ(finding.code, "mesh-collision") << finding.element << ": " << finding.what;
   }
 }
@@ -108,7 +108,7 @@ TEST(HandCheck, NamesWhatIsBroken) {
     const auto findings = findings_of(urdf);
     const bool named = std::any_of(findings.begin(), findings.end(), [&](const auto& finding) {
       return finding.code == broken.code && finding.element == broken.element &&
-             !finding.mend.empty();
+             !finding.repair.empty();
     });
     std::string all;
     for (const auto& finding : findings)
@@ -116,16 +116,16 @@ TEST(HandCheck, NamesWhatIsBroken) {
     EXPECT_TRUE(named) << broken.from << " -> " << broken.to << " must give " << broken.code
                        << " of " << broken.element << ", not\n"
                        << all;
-    EXPECT_EQ(hands::is_usable(findings), broken.usable) << broken.to << "\n" << all;
+    EXPECT_EQ(simulation::is_usable(findings), broken.usable) << broken.to << "\n" << all;
   }
 }
 
 TEST(HandCheck, NamesMeshesThatAreNotThere) {
-  const auto none = [](const hands::Solid&) -> Expected<std::vector<Eigen::Vector3d>> {
+  const auto none = [](const simulation::Solid&) -> Expected<std::vector<Eigen::Vector3d>> {
     return fail("is not there");
   };
   const auto findings = findings_of(made_hands::gripper(), none);
-  EXPECT_FALSE(hands::is_usable(findings));
+  EXPECT_FALSE(simulation::is_usable(findings));
   EXPECT_EQ(findings.front().code, "missing-mesh");
   EXPECT_EQ(findings.front().element, "link body");
   EXPECT_EQ(findings.front().line, 3);
@@ -133,9 +133,9 @@ TEST(HandCheck, NamesMeshesThatAreNotThere) {
 
 TEST(HandCheck, RefusesWhatIsNoUrdf) {
   for (const std::string text : {"", "solid stl", "<sdf/>", "<robot>", "<robot name='a'"})
-    EXPECT_FALSE(hands::read_robot(text)) << text;
-  EXPECT_FALSE(hands::is_usable(findings_of("<robot/>")));
-  EXPECT_FALSE(hands::is_usable(findings_of("<robot><link name='a'/></robot>")));
+    EXPECT_FALSE(simulation::read_robot(text)) << text;
+  EXPECT_FALSE(simulation::is_usable(findings_of("<robot/>")));
+  EXPECT_FALSE(simulation::is_usable(findings_of("<robot><link name='a'/></robot>")));
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 // `prehend hand` as a user calls it: exit codes, JSON alone on standard output, and the example of
-// services/simulation/hands/README.md line by line.
+// services/simulation/README.md line by line.
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -10,7 +10,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "made_hands.hpp"
+#include "tests/unit/hand_tools/made_hands.hpp"
 
 namespace {
 
@@ -90,7 +90,7 @@ TEST(HandCommand, AddsAForeignGripper) {
 }
 
 TEST(HandCommand, TheExampleOfTheReadmeRuns) {
-  const std::string page = read(PREHEND_SOURCE "/services/simulation/hands/README.md");
+  const std::string page = read(PREHEND_SOURCE "/services/simulation/README.md");
   const std::string fence = "```sh\n";
   const std::size_t begin = page.find(fence) + fence.size(), end = page.find("```", begin);
   ASSERT_NE(end, std::string::npos);

@@ -7,22 +7,22 @@
 #include <filesystem>
 #include <fstream>
 #include <numbers>
-#include <prehend/hands/make_hand.hpp>
 
-#include "made_hands.hpp"
+#include "services/simulation/tools/hand_import/make_hand.hpp"
+#include "tests/unit/hand_tools/made_hands.hpp"
 
 namespace {
 
 using namespace prehend;
 using Eigen::Vector3d;
 
-Expected<hands::MadeHand> made(const std::string& urdf) {
+Expected<simulation::MadeHand> made(const std::string& urdf) {
   const auto folder = std::filesystem::path(testing::TempDir()) / "made_hands" / "urdf";
   std::filesystem::create_directories(folder);
   std::ofstream(folder.parent_path() / "palm.obj") << made_hands::palm_mesh();
-  const auto robot = hands::read_robot(urdf);
+  const auto robot = simulation::read_robot(urdf);
   if (!robot) return tl::unexpected(robot.error());
-  return hands::make_hand(*robot, "foreign", hands::mesh_files(folder / "robot.urdf"));
+  return simulation::make_hand(*robot, "foreign", simulation::mesh_files(folder / "robot.urdf"));
 }
 
 const model::HandDof& dof(const model::HandModel& hand, const std::string& name) {
@@ -94,15 +94,15 @@ TEST(ForeignHand, MeshesBecomeTheNearestPrimitive) {
   for (const double x : {0.0, 0.03})
     for (const double y : {0.0, 0.05})
       for (const double z : {0.0, 0.02}) brick.emplace_back(x, y, z);
-  const auto sphere = hands::fit_primitive(ball);
+  const auto sphere = simulation::fit_primitive(ball);
   EXPECT_EQ(sphere.shape.kind, model::ShapeKind::sphere);
   EXPECT_NEAR(sphere.shape.size.x(), 0.02, 1e-4);
-  const auto cylinder = hands::fit_primitive(bar);
+  const auto cylinder = simulation::fit_primitive(bar);
   EXPECT_EQ(cylinder.shape.kind, model::ShapeKind::cylinder);
   EXPECT_NEAR(cylinder.shape.size.x(), 0.01, 1e-4);
   EXPECT_NEAR(cylinder.shape.size.z(), 0.08, 1e-9);
   EXPECT_LT((cylinder.X_LS.translation() - Vector3d(0, 0.04, 0)).norm(), 1e-4);
-  const auto box = hands::fit_primitive(brick);
+  const auto box = simulation::fit_primitive(brick);
   EXPECT_EQ(box.shape.kind, model::ShapeKind::box);
   EXPECT_NEAR(box.shape.size.prod(), 0.03 * 0.05 * 0.02, 1e-12);
 }

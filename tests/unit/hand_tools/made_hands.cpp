@@ -1,4 +1,4 @@
-#include "made_hands.hpp"
+#include "tests/unit/hand_tools/made_hands.hpp"
 
 #include <fmt/format.h>
 

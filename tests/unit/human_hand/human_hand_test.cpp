@@ -1,9 +1,10 @@
 // The human hand: frame H as its header defines it, opposition of the thumb, directions of closing,
 // the place of the grasp frame, and that closing on an object touches it without entering it.
+#include "common/model/human_hand.hpp"
+
 #include <gtest/gtest.h>
 
-#include <prehend/model/human_hand.hpp>
-#include <prehend/model/placement.hpp>
+#include "common/model/placement.hpp"
 
 namespace prehend::model {
 namespace {

@@ -1,8 +1,8 @@
 // Certificates, revocation lists and signed texts: what one authority made holds before it, and
 // nothing else does: neither what another made, nor what was altered, nor what its time has passed.
-#include <gtest/gtest.h>
+#include "common/keys/certificate.hpp"
 
-#include <prehend/keys/certificate.hpp>
+#include <gtest/gtest.h>
 
 namespace prehend::keys {
 namespace {

@@ -1,14 +1,14 @@
 // Permissions as text: every role's come back as they were written, and a text that says more than
 // ours can is refused.
-#include <gtest/gtest.h>
+#include "common/dds/permissions.hpp"
 
-#include <prehend/dds/permissions.hpp>
+#include <gtest/gtest.h>
 
 namespace prehend::dds {
 namespace {
 
 Permissions of(Role role) {
-  Permissions permissions = least_permissions(role);
+  Permissions permissions = min_permissions(role);
   permissions.subject = "CN=somebody";
   permissions.from = "2026-11-20T12:00:00";
   permissions.until = "2027-11-20T12:00:00";

@@ -1,15 +1,17 @@
 // Training and evaluating networks: properties of every method. FANN trains, our own forward pass
 // answers: the two must agree.
+#include "common/learning/network.hpp"
+
 #include <doublefann.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <prehend/base/random.hpp>
-#include <prehend/learning/network.hpp>
-#include <prehend/learning/training.hpp>
 #include <thread>
+
+#include "common/base/random.hpp"
+#include "common/learning/training.hpp"
 
 namespace prehend::learning {
 namespace {

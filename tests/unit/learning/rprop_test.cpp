@@ -1,12 +1,14 @@
 // Our RPROP against FANN's, from the same first weights on the same samples. Both add the same
 // numbers in another order, and a step is doubled or halved by the sign of a sum: 1e-9 after 30
 // epochs is what rounding leaves as long as no sum is so near zero that its sign differs.
+#include "common/learning/rprop.hpp"
+
 #include <doublefann.h>
 #include <gtest/gtest.h>
 
 #include <memory>
-#include <prehend/base/random.hpp>
-#include <prehend/learning/rprop.hpp>
+
+#include "common/base/random.hpp"
 
 namespace prehend::learning {
 namespace {

@@ -1,9 +1,11 @@
 // Scaling to [-1, 1] and back.
+#include "common/learning/scaling.hpp"
+
 #include <gtest/gtest.h>
 
 #include <limits>
-#include <prehend/base/random.hpp>
-#include <prehend/learning/scaling.hpp>
+
+#include "common/base/random.hpp"
 
 namespace prehend::learning {
 namespace {

@@ -1,9 +1,10 @@
 // Training sets: what is refused, and that a file brings back what was saved.
+#include "common/learning/training_set.hpp"
+
 #include <gtest/gtest.h>
 
 #include <filesystem>
 #include <limits>
-#include <prehend/learning/training_set.hpp>
 
 namespace prehend::learning {
 namespace {

@@ -1,11 +1,13 @@
 // The state machine by itself: each row of its table, and that the weight only ever moves the way
 // its phase says and no faster than the ramp.
+#include "services/mapping/core/arbitration.hpp"
+
 #include <gtest/gtest.h>
 
 #include <fstream>
 #include <iterator>
-#include <prehend/base/random.hpp>
-#include <prehend/mapping/arbitration.hpp>
+
+#include "common/base/random.hpp"
 
 namespace prehend::mapping {
 namespace {

@@ -7,10 +7,10 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
-#include <prehend/grasping/world.hpp>
-#include <prehend/mapping/arrival.hpp>
 
-#include "fixtures.hpp"
+#include "common/grasping/world.hpp"
+#include "services/mapping/core/finger_distances.hpp"
+#include "tests/unit/mapping/fixtures.hpp"
 
 namespace prehend::mapping {
 namespace {
@@ -19,7 +19,7 @@ class ArrivalOf : public testing::TestWithParam<std::string> {};
 
 TEST_P(ArrivalOf, EqualsThePhysicalDistance) {
   const model::HandModel& hand = test::hand(GetParam());
-  const Arrival arrival(hand);
+  const FingerDistances arrival(hand);
   ASSERT_EQ(arrival.fingers(), static_cast<int>(hand.fingertips().size()));
   const model::Shape ball{model::ShapeKind::sphere, Eigen::Vector3d::Constant(0.01)};
   Random random(4);
@@ -54,7 +54,7 @@ TEST_P(ArrivalOf, EqualsThePhysicalDistance) {
 
 TEST_P(ArrivalOf, FallsWhileAFingerClosesOnWhatItWillTouch) {
   const model::HandModel& hand = test::hand(GetParam());
-  const Arrival arrival(hand);
+  const FingerDistances arrival(hand);
   // In the middle of the closing fingers.
   const model::Shape ball{model::ShapeKind::sphere, Eigen::Vector3d::Constant(0.02)};
   Eigen::VectorXd dof = hand.postures().at("open");

@@ -1,12 +1,13 @@
 // What a mapping takes from a posture, and which grasp it thinks it is.
+#include "services/mapping/core/features.hpp"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
-#include <prehend/mapping/features.hpp>
-#include <prehend/mapping/grasp_type.hpp>
 
-#include "fixtures.hpp"
+#include "services/mapping/core/grasp_type.hpp"
+#include "tests/unit/mapping/fixtures.hpp"
 
 namespace prehend::mapping {
 namespace {

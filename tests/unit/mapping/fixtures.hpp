@@ -1,12 +1,13 @@
 #pragma once
 
 #include <array>
-#include <prehend/base/random.hpp>
-#include <prehend/mapping/mapping.hpp>
-#include <prehend/mapping/mapping_model.hpp>
-#include <prehend/model/human_hand.hpp>
-#include <prehend/test_models/random_model.hpp>
-#include <prehend/test_support/hands.hpp>
+
+#include "common/base/random.hpp"
+#include "common/model/human_hand.hpp"
+#include "services/mapping/core/mapping.hpp"
+#include "services/mapping/core/mapping_model.hpp"
+#include "tests/support/hands.hpp"
+#include "tests/support/models/random_model.hpp"
 
 namespace prehend::mapping {
 

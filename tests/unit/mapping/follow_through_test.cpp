@@ -1,11 +1,12 @@
 // Fingers that have closed on a known object go on until they are stopped. For every hand: only in
 // the closing direction, in proportion, within the limits and no faster than they may; what the
 // operator opens is opened at once; a hand that lifts what it holds goes on holding it.
+#include "services/mapping/core/follow_through.hpp"
+
 #include <gtest/gtest.h>
 
-#include <prehend/mapping/follow_through.hpp>
-#include <prehend/mapping/grip.hpp>
-#include <prehend/test_support/hands.hpp>
+#include "services/mapping/core/grip_controller.hpp"
+#include "tests/support/hands.hpp"
 
 namespace prehend::mapping {
 namespace {
@@ -14,7 +15,7 @@ using Eigen::Index;
 using Eigen::VectorXd;
 using std::chrono::milliseconds;
 
-constexpr auto frame = milliseconds(33);
+constexpr auto frame_period = milliseconds(33);
 
 class Following : public testing::TestWithParam<std::string> {
  protected:
@@ -45,7 +46,7 @@ class Following : public testing::TestWithParam<std::string> {
   VectorXd go_on(double share, bool is_closed, bool touching, int frames) {
     VectorXd result;
     for (int i = 0; i < frames; ++i)
-      result = following.go_on(closed(share), is_closed, touching, frame);
+      result = following.go_on(closed(share), is_closed, touching, frame_period);
     return result;
   }
 
@@ -63,7 +64,7 @@ TEST_P(Following, GoesOnUntilTheMostAtItsSpeed) {
   const VectorXd from = closed(0.4);
   double before = 0;
   for (int i = 0; i < 60; ++i) {
-    const VectorXd to = following.go_on(from, true, false, frame);
+    const VectorXd to = following.go_on(from, true, false, frame_period);
     EXPECT_EQ(hand.clamp(to), to);
     const double now = gone_on(from, to);
     EXPECT_GE(now, before - 1e-12);
@@ -90,7 +91,7 @@ TEST_P(Following, GoesOnInProportion) {
 
 TEST_P(Following, OpensAtOnceWithTheOperator) {
   go_on(0.6, true, true, 40);
-  EXPECT_EQ(following.go_on(closed(0.3), false, true, frame), closed(0.3));
+  EXPECT_EQ(following.go_on(closed(0.3), false, true, frame_period), closed(0.3));
 }
 
 TEST_P(Following, HoldsWhatItLifts) {

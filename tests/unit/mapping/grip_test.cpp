@@ -1,9 +1,8 @@
 // Squeezing: found by lag or torque, kept past the contact, let go by the operator only.
 #include <gtest/gtest.h>
 
-#include <prehend/mapping/grip.hpp>
-
-#include "fixtures.hpp"
+#include "services/mapping/core/grip_controller.hpp"
+#include "tests/unit/mapping/fixtures.hpp"
 
 namespace prehend::mapping {
 namespace {
@@ -23,8 +22,8 @@ RobotState at_rest(const Eigen::Vector4d& dof, int ms) {
 
 const Eigen::Vector4d stopped(0.2, 0.8, 0.8, 0.8);
 
-TEST(Grip, SqueezesFingersThatLagBehind) {
-  Grip grip(barrett(), {});
+TEST(GripController, SqueezesFingersThatLagBehind) {
+  GripController grip(barrett(), {});
   const Eigen::Vector4d commanded(0.2, 0.9, 0.82, 0.9);  // finger 2 is where it should be
   for (int ms = 0; ms <= 150; ms += 10) grip.observe(at_rest(stopped, ms), commanded);
   EXPECT_TRUE(grip.touching());
@@ -35,8 +34,8 @@ TEST(Grip, SqueezesFingersThatLagBehind) {
   EXPECT_DOUBLE_EQ(squeezed[3], 0.95);
 }
 
-TEST(Grip, WaitsUntilTheStopHasLasted) {
-  Grip grip(barrett(), {});
+TEST(GripController, WaitsUntilTheStopHasLasted) {
+  GripController grip(barrett(), {});
   const Eigen::Vector4d commanded(0.2, 0.9, 0.9, 0.9);
   for (int ms = 0; ms <= 90; ms += 10) grip.observe(at_rest(stopped, ms), commanded);
   EXPECT_FALSE(grip.touching());
@@ -46,8 +45,8 @@ TEST(Grip, WaitsUntilTheStopHasLasted) {
   EXPECT_FALSE(grip.touching());
 }
 
-TEST(Grip, SeesAFullTorqueBeforeAnyCommand) {
-  Grip grip(barrett(), {});
+TEST(GripController, SeesAFullTorqueBeforeAnyCommand) {
+  GripController grip(barrett(), {});
   for (int ms = 0; ms <= 150; ms += 10) {
     RobotState state = at_rest(stopped, ms);
     for (std::size_t j = 0; j < barrett().joints().size(); ++j)
@@ -61,8 +60,8 @@ TEST(Grip, SeesAFullTorqueBeforeAnyCommand) {
   EXPECT_DOUBLE_EQ(grip.squeeze(stopped)[1], 0.95);
 }
 
-TEST(Grip, LetsGoWhenTheOperatorOpens) {
-  Grip grip(barrett(), {});
+TEST(GripController, LetsGoWhenTheOperatorOpens) {
+  GripController grip(barrett(), {});
   for (int ms = 0; ms <= 150; ms += 10) grip.observe(at_rest(stopped, ms), stopped.array() + 0.1);
   const auto ask = [&](double q) { return grip.squeeze(Eigen::Vector4d(0, q, q, q))[1]; };
   EXPECT_DOUBLE_EQ(ask(0.75), 0.95);  // a little less than contact is still a grip
@@ -74,8 +73,8 @@ TEST(Grip, LetsGoWhenTheOperatorOpens) {
 
 // A drive that is told ever more reaches its limit and has no stiffness left: the first contact
 // stays.
-TEST(Grip, DoesNotCreepAfterAnObjectThatGivesWay) {
-  Grip grip(barrett(), {});
+TEST(GripController, DoesNotCreepAfterAnObjectThatGivesWay) {
+  GripController grip(barrett(), {});
   for (int ms = 0; ms <= 150; ms += 10) grip.observe(at_rest(stopped, ms), stopped.array() + 0.1);
   const Eigen::Vector4d further = stopped.array() + 0.05;
   for (int ms = 160; ms <= 300; ms += 10)
@@ -83,8 +82,8 @@ TEST(Grip, DoesNotCreepAfterAnObjectThatGivesWay) {
   EXPECT_DOUBLE_EQ(grip.squeeze(stopped)[1], 0.95);
 }
 
-TEST(Grip, GoesOnClosingWhenTheObjectSlipsAway) {
-  Grip grip(barrett(), {});
+TEST(GripController, GoesOnClosingWhenTheObjectSlipsAway) {
+  GripController grip(barrett(), {});
   for (int ms = 0; ms <= 150; ms += 10) grip.observe(at_rest(stopped, ms), stopped.array() + 0.1);
   ASSERT_TRUE(grip.touching());
   const Eigen::Vector4d arrived = stopped.array() + 0.145;
@@ -93,8 +92,8 @@ TEST(Grip, GoesOnClosingWhenTheObjectSlipsAway) {
   EXPECT_DOUBLE_EQ(grip.squeeze(Eigen::Vector4d(0, 1.2, 1.2, 1.2))[1], 1.2);
 }
 
-TEST(Grip, KeepsTheSpreadWhileItTouches) {
-  Grip grip(barrett(), {});
+TEST(GripController, KeepsTheSpreadWhileItTouches) {
+  GripController grip(barrett(), {});
   for (int ms = 0; ms <= 150; ms += 10) grip.observe(at_rest(stopped, ms), stopped.array() + 0.1);
   EXPECT_DOUBLE_EQ(grip.squeeze(Eigen::Vector4d(0.7, 0.8, 0.8, 0.8))[0], 0.3);
   grip.squeeze(Eigen::Vector4d::Zero());  // the operator opens

@@ -5,9 +5,10 @@
 
 #include <cmath>
 #include <limits>
-#include <prehend/mapping/learnt_place.hpp>
-#include <prehend/mapping/size_input.hpp>
-#include <prehend/model/placement.hpp>
+
+#include "common/model/placement.hpp"
+#include "services/mapping/core/palm_offset.hpp"
+#include "services/mapping/core/size_input.hpp"
 
 namespace prehend::mapping {
 namespace {
@@ -24,21 +25,21 @@ const Pose from_above =
 const Pose from_the_side =
     make_pose(Vector3d::Zero(), model::grasp_axes(Vector3d::UnitX(), Vector3d::UnitY()));
 
-LearntPlace learnt(const model::Shape& shape, const Pose& X_OG, const Vector3d& p_GR) {
+PalmOffset learnt(const model::Shape& shape, const Pose& X_OG, const Vector3d& p_GR) {
   return {shape.kind, size_numbers(SizeInput::seen, shape, X_OG), p_GR};
 }
 
-const std::vector<LearntPlace> known{learnt(cylinder(0.015), from_above, {0, 0.01, 0}),
-                                     learnt(cylinder(0.030), from_above, {0, -0.01, 0.005}),
-                                     learnt(cylinder(0.015), from_the_side, {0, 0, 0.02})};
+const std::vector<PalmOffset> known{learnt(cylinder(0.015), from_above, {0, 0.01, 0}),
+                                    learnt(cylinder(0.030), from_above, {0, -0.01, 0.005}),
+                                    learnt(cylinder(0.015), from_the_side, {0, 0, 0.02})};
 
-TEST(LearntPlace, OfAKnownSizeIsKept) {
+TEST(PalmOffset, OfAKnownSizeIsKept) {
   EXPECT_NEAR((place_for(known, cylinder(0.015), from_above) - known[0].p_GR).norm(), 0, 1e-4);
   EXPECT_NEAR((place_for(known, cylinder(0.030), from_above) - known[1].p_GR).norm(), 0, 1e-4);
   EXPECT_NEAR((place_for(known, cylinder(0.015), from_the_side) - known[2].p_GR).norm(), 0, 1e-4);
 }
 
-TEST(LearntPlace, GoesFromOneSizeToTheNextWithoutJumps) {
+TEST(PalmOffset, GoesFromOneSizeToTheNextWithoutJumps) {
   double before = place_for(known, cylinder(0.015), from_above).y();
   for (double radius = 0.0155; radius <= 0.030; radius += 0.0005) {
     const double now = place_for(known, cylinder(radius), from_above).y();
@@ -48,14 +49,14 @@ TEST(LearntPlace, GoesFromOneSizeToTheNextWithoutJumps) {
   }
 }
 
-TEST(LearntPlace, OfAnotherShapeIsTheOneAskedFor) {
+TEST(PalmOffset, OfAnotherShapeIsTheOneAskedFor) {
   EXPECT_EQ(place_for(known, {ShapeKind::box, {0.03, 0.03, 0.1}}, from_above), Vector3d::Zero());
   EXPECT_EQ(place_for({}, cylinder(0.03), from_above), Vector3d::Zero());
 }
 
-TEST(LearntPlace, RefusesWhatCannotBe) {
+TEST(PalmOffset, RefusesWhatCannotBe) {
   EXPECT_TRUE(check(known[0]));
-  LearntPlace bad = known[0];
+  PalmOffset bad = known[0];
   bad.shape = ShapeKind::unknown;
   EXPECT_FALSE(check(bad));
   for (const double wrong :

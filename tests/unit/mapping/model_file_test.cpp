@@ -2,16 +2,17 @@
 #include <gmock/gmock.h>
 #include <google/protobuf/stubs/logging.h>
 #include <gtest/gtest.h>
-#include <prehend/messages/mapping_model.pb.h>
 
 #include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <functional>
-#include <prehend/proto/sealed_file.hpp>
 #include <sstream>
 
-#include "fixtures.hpp"
+#include "common/proto/mapping_model.pb.h"
+#include "common/proto/sealed_file.hpp"
+#include "services/mapping/files/mapping_model_file.hpp"
+#include "tests/unit/mapping/fixtures.hpp"
 
 namespace prehend::mapping {
 namespace {
@@ -20,7 +21,7 @@ class ModelFile : public testing::Test {
  protected:
   void SetUp() override {
     file_ = std::filesystem::path(testing::TempDir()) / "prehend_model_file_test.mapping";
-    ASSERT_TRUE(random_model(1).save(file_, barrett()));
+    ASSERT_TRUE(save_mapping_model(file_, random_model(1), barrett()));
     std::ifstream in(file_, std::ios::binary);
     std::stringstream all;
     all << in.rdbuf();
@@ -39,7 +40,7 @@ class ModelFile : public testing::Test {
     ASSERT_TRUE(proto::write_sealed(file_, "mapping-model", message.SerializeAsString()));
   }
   std::string refusal() {
-    const auto loaded = MappingModel::load(file_, barrett());
+    const auto loaded = load_mapping_model(file_, barrett());
     return loaded ? "loaded" : loaded.error().message();
   }
 
@@ -61,8 +62,8 @@ TEST_F(ModelFile, CarriesShortcutsAndScalings) {
                                                Eigen::VectorXd::Constant(feature_count, 0.3), kind);
     const auto saved = MappingModel::create(barrett(), plain_traits(barrett()), {network});
     ASSERT_TRUE(saved) << saved.error().message();
-    ASSERT_TRUE(saved->save(file_, barrett()));
-    const auto loaded = MappingModel::load(file_, barrett());
+    ASSERT_TRUE(save_mapping_model(file_, *saved, barrett()));
+    const auto loaded = load_mapping_model(file_, barrett());
     ASSERT_TRUE(loaded) << loaded.error().message();
     EXPECT_EQ(loaded->networks()[0].network.wiring(), learning::Wiring::shortcut);
     EXPECT_EQ(loaded->networks()[0].input.kind(), kind);
@@ -76,7 +77,7 @@ TEST_F(ModelFile, CarriesShortcutsAndScalings) {
 }
 
 TEST_F(ModelFile, ComesBackBitForBit) {
-  const auto loaded = MappingModel::load(file_, barrett());
+  const auto loaded = load_mapping_model(file_, barrett());
   ASSERT_TRUE(loaded) << loaded.error().message();
   const MappingModel saved = random_model(1);
   Random random(3);
@@ -98,8 +99,8 @@ TEST_F(ModelFile, CarriesWhereTheHandStands) {
   const auto saved =
       MappingModel::create(barrett(), traits, {random_network(model::ShapeKind::unknown, 1)});
   ASSERT_TRUE(saved) << saved.error().message();
-  ASSERT_TRUE(saved->save(file_, barrett()));
-  const auto loaded = MappingModel::load(file_, barrett());
+  ASSERT_TRUE(save_mapping_model(file_, *saved, barrett()));
+  const auto loaded = load_mapping_model(file_, barrett());
   ASSERT_TRUE(loaded) << loaded.error().message();
   ASSERT_EQ(loaded->traits().places.size(), 1u);
   EXPECT_EQ(loaded->traits().places[0].shape, model::ShapeKind::box);
@@ -127,7 +128,7 @@ TEST_F(ModelFile, NoMutationLoads) {
         mutated[random.index(mutated.size())] ^= static_cast<char>(1 << random.index(8));
     if (mutated == bytes_) continue;
     write(mutated);
-    ASSERT_FALSE(MappingModel::load(file_, barrett())) << "trial " << trial;
+    ASSERT_FALSE(load_mapping_model(file_, barrett())) << "trial " << trial;
   }
 }
 
@@ -143,7 +144,7 @@ TEST_F(ModelFile, MutationsBehindTheSealNeverCrash) {
     for (int flip = 0; flip < 3; ++flip)
       mutated[random.index(mutated.size())] ^= static_cast<char>(1 << random.index(8));
     ASSERT_TRUE(proto::write_sealed(file_, "mapping-model", mutated));
-    const auto loaded = MappingModel::load(file_, barrett());
+    const auto loaded = load_mapping_model(file_, barrett());
     if (!loaded) {
       ++refused;
       continue;

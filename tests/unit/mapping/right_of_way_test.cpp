@@ -1,15 +1,14 @@
 // Fingers that meet. find_blocking (common/grasping), which moves the exact collision shapes in
 // Bullet, is the judge of which finger lies on which and in what order they open; the mapping must
 // come to the same by its capsules. Joint values are compared to 1e-9, sums of a few hundred steps;
-// 1e-5 m is ten times what RightOfWay takes for rounding.
+// 1e-5 m is ten times what FingerCollisionLimiter takes for rounding.
 #include <gtest/gtest.h>
 
-#include <prehend/grasping/blocking.hpp>
-#include <prehend/mapping/mapping.hpp>
-#include <prehend/mapping/right_of_way.hpp>
-#include <prehend/training/scheme.hpp>
-
-#include "fixtures.hpp"
+#include "common/grasping/blocking.hpp"
+#include "services/mapping/core/finger_collision_limiter.hpp"
+#include "services/mapping/core/mapping.hpp"
+#include "services/mapping/tools/training/scheme.hpp"
+#include "tests/unit/mapping/fixtures.hpp"
 
 namespace prehend::mapping {
 namespace {
@@ -35,7 +34,7 @@ class EveryFinger : public testing::TestWithParam<Case> {
   Scheme scheme_ =
       Scheme::load(PREHEND_SOURCE "/services/mapping/schemes/" + GetParam().scheme + ".toml", hand_)
           .value();
-  RightOfWay way_{hand_};
+  FingerCollisionLimiter way_{hand_};
 
   VectorXd anywhere(Random& random) const {
     VectorXd dof = scheme_.lower;
@@ -115,7 +114,7 @@ INSTANTIATE_TEST_SUITE_P(All, EveryFinger, testing::ValuesIn(cases),
 // A mapping that is started again while the third finger of the Barrett hand lies on another, in
 // front of an operator whose hand is open.
 TEST(LockedHand, IsOpenedByTheMappingFromTheTop) {
-  const RightOfWay way(barrett());
+  const FingerCollisionLimiter way(barrett());
   VectorXd locked = barrett().postures().at("open");
   std::vector<grasping::LinkPair> blocked;
   for (double spread = 0; spread < 0.8 && blocked.empty(); spread += 0.1)

@@ -2,14 +2,14 @@
 // scheme; what moves, or looks like another posture, is not taken. Distances are those of
 // TeachOptions; the tracker's noise here is 1 mm a coordinate, filtered as the glove does to 0.3
 // mm.
+#include "services/mapping/tools/training/teach.hpp"
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <prehend/training/demonstrator.hpp>
-#include <prehend/training/teach.hpp>
-#include <prehend/training/trainer.hpp>
-
-#include "fixtures.hpp"
+#include "services/mapping/tools/training/demonstrator.hpp"
+#include "services/mapping/tools/training/trainer.hpp"
+#include "tests/unit/mapping/fixtures.hpp"
 
 namespace prehend::mapping {
 namespace {
@@ -57,7 +57,7 @@ Scheme scheme_of(const std::string& name, const model::HandModel& hand) {
   return *Scheme::load(PREHEND_SOURCE "/services/mapping/schemes/" + name + ".toml", hand);
 }
 
-class TeachEveryHand : public testing::TestWithParam<const char*> {};
+class TeachEveryHand : public testing::TestWithParam<std::string> {};
 
 TEST_P(TeachEveryHand, TakesAllPosturesOfAPersonInLessThanAMinute) {
   const auto hand =
@@ -82,9 +82,8 @@ TEST_P(TeachEveryHand, TakesAllPosturesOfAPersonInLessThanAMinute) {
   EXPECT_TRUE(check_consistent(set));
 }
 
-INSTANTIATE_TEST_SUITE_P(All, TeachEveryHand,
-                         testing::Values("barrett", "dlr", "robonaut", "rutgers", "parallel_jaw"),
-                         [](const auto& given) { return std::string(given.param); });
+INSTANTIATE_TEST_SUITE_P(All, TeachEveryHand, testing::ValuesIn(test::mappable_hands()),
+                         [](const auto& given) { return given.param; });
 
 class TeachBarrett : public testing::Test {
  protected:

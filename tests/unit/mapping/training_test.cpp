@@ -6,10 +6,11 @@
 #include <filesystem>
 #include <fstream>
 #include <map>
-#include <prehend/training/trainer.hpp>
 #include <set>
 
-#include "fixtures.hpp"
+#include "services/mapping/files/mapping_model_file.hpp"
+#include "services/mapping/tools/training/trainer.hpp"
+#include "tests/unit/mapping/fixtures.hpp"
 
 namespace prehend::mapping {
 namespace {
@@ -97,7 +98,7 @@ TEST(RobotGrasps, AreClosedOnTheObjects) {
 // longest way here, so that is 0.8 for every joint but those whose least overshoot (0.1 rad) or
 // limit counts. Rounding only.
 TEST(PastContact, IsReachedByAllFingersTogether) {
-  for (const std::string name : {"barrett", "dlr", "robonaut", "rutgers", "parallel_jaw"}) {
+  for (const std::string& name : test::mappable_hands()) {
     const model::HandModel& hand = test::hand(name);
     const Scheme made =
         Scheme::load(PREHEND_SOURCE "/services/mapping/schemes/" + name + ".toml", hand).value();
@@ -106,7 +107,7 @@ TEST(PastContact, IsReachedByAllFingersTogether) {
     int proportional = 0;
     for (const RobotGrasp& grasp : *closed) {
       const auto unit = [&](Eigen::Index i) {
-        return grasping::radian_of(hand.dofs()[static_cast<std::size_t>(i)]);
+        return model::radian_of(hand.dofs()[static_cast<std::size_t>(i)]);
       };
       const auto way = [&](const Eigen::VectorXd& dof, Eigen::Index i) {
         return grasp.closing[i] * (dof[i] - made.open.robot[i]) / unit(i);
@@ -209,9 +210,10 @@ TEST(Training, RefusesSetsThatDoNotFit) {
   EXPECT_FALSE(train_mapping(barrett(), scheme(), sets, {}, in_turn, [](auto, auto) {}));
 }
 
-// The thesis's claim: knowing shape and size makes the grasp more exact, on takes not seen before.
+// The claim of [Thesis, 6.2]: knowing shape and size makes the grasp more exact, on takes not seen
+// before.
 TEST(TrainedModel, IntelligentErrorIsBelowDirectOnOtherPeople) {
-  const auto model = MappingModel::load(PREHEND_TRAINED "/barrett.mapping", barrett());
+  const auto model = load_mapping_model(PREHEND_TRAINED "/barrett.mapping", barrett());
   ASSERT_TRUE(model) << model.error().message();
   const learning::TrainingSet unseen = people(100, 12, 2);
   for (const auto shape : {model::ShapeKind::cylinder, model::ShapeKind::box}) {
@@ -229,9 +231,9 @@ TEST(TrainedModel, IntelligentErrorIsBelowDirectOnOtherPeople) {
 // The build trains every hand: its answers stay within the scheme's limits, and the open hand is
 // nearer to the scheme's open posture than to any closed one.
 TEST(TrainedModel, IsThereForEveryHand) {
-  for (const std::string name : {"barrett", "dlr", "robonaut", "rutgers", "parallel_jaw"}) {
+  for (const std::string& name : test::mappable_hands()) {
     const model::HandModel& hand = test::hand(name);
-    const auto model = MappingModel::load(PREHEND_TRAINED "/" + name + ".mapping", hand);
+    const auto model = load_mapping_model(PREHEND_TRAINED "/" + name + ".mapping", hand);
     ASSERT_TRUE(model) << model.error().message();
     EXPECT_GE(model->networks().size(), 2u) << name << ": some shape is known";
     const Scheme made =
@@ -248,7 +250,7 @@ TEST(TrainedModel, IsThereForEveryHand) {
 
 // An open human hand is an open robot hand: within 10 degrees a finger, whatever is there to grasp.
 TEST(TrainedModel, OpensWithTheHand) {
-  const auto model = MappingModel::load(PREHEND_TRAINED "/barrett.mapping", barrett());
+  const auto model = load_mapping_model(PREHEND_TRAINED "/barrett.mapping", barrett());
   ASSERT_TRUE(model);
   const Features open = *features(tips({}), 1);
   EXPECT_LT(model->direct(open).dof.tail<3>().maxCoeff(), 0.175);
@@ -264,7 +266,7 @@ TEST(TrainedModel, OpensWithTheHand) {
 TEST(TrainedModel, TellsGraspTypesOfOtherPeople) {
   for (const std::string name : {"barrett", "dlr", "robonaut"}) {
     const model::HandModel& hand = test::hand(name);
-    const auto model = MappingModel::load(PREHEND_TRAINED "/" + name + ".mapping", hand);
+    const auto model = load_mapping_model(PREHEND_TRAINED "/" + name + ".mapping", hand);
     ASSERT_TRUE(model) << model.error().message();
     std::map<GraspType, std::map<GraspType, int>> confusion;  // made, told
     for (unsigned person = 0; person < 40; ++person) {

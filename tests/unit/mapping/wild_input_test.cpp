@@ -5,11 +5,11 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
-#include <prehend/model/placement.hpp>
 #include <tuple>
 #include <vector>
 
-#include "fixtures.hpp"
+#include "common/model/placement.hpp"
+#include "tests/unit/mapping/fixtures.hpp"
 
 namespace prehend::mapping {
 namespace {
@@ -42,7 +42,7 @@ TEST_P(WildInput, NeverMovesFasterThanTheLimits) {
     if (silent) ms += 100;
     if (random.uniform() < 0.02) {
       const auto fingers = static_cast<FingerMode>(random.index(4));
-      ASSERT_TRUE(mapping.use(fingers, random.uniform() < 0.8, random.uniform() < 0.8));
+      ASSERT_TRUE(mapping.use({fingers, random.uniform() < 0.8, random.uniform() < 0.8}));
     }
     if (random.uniform() < 0.4) {
       const model::Shape& shape = random.uniform() < 0.5 ? thin : box;

@@ -1,11 +1,12 @@
 // Where a hand goes to grasp a standing object. For every object of the catalogue and random hands:
 // the answer is a rigid frame, closes across something that fits, does not reach below the table,
 // and is a fixed point (the nearest grasp to a grasp is itself).
+#include "common/model/placement.hpp"
+
 #include <gtest/gtest.h>
 
-#include <prehend/base/random.hpp>
-#include <prehend/model/catalogue.hpp>
-#include <prehend/model/placement.hpp>
+#include "common/base/random.hpp"
+#include "common/model/catalogue.hpp"
 
 namespace prehend::model {
 namespace {

@@ -1,11 +1,12 @@
 // Scenes drawn from seeds: they stand on the table, keep clear of one another, differ between
 // seeds, repeat for one seed, and survive the way through a file exactly.
+#include "common/model/scene.hpp"
+
 #include <gtest/gtest.h>
 #include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
-#include <prehend/model/scene.hpp>
 #include <set>
 
 namespace prehend::model {

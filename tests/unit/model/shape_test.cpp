@@ -1,13 +1,15 @@
 // The signed distance of each primitive against its definition: the distance to the nearest point
 // of the surface, found by brute force over a dense sample of the surface.
+#include "common/model/shape.hpp"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <limits>
 #include <numbers>
-#include <prehend/base/random.hpp>
-#include <prehend/model/shape.hpp>
 #include <vector>
+
+#include "common/base/random.hpp"
 
 namespace prehend::model {
 namespace {

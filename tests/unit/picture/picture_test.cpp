@@ -6,8 +6,9 @@
 #include <cmath>
 #include <filesystem>
 #include <numbers>
-#include <prehend/picture/grasp_picture.hpp>
 #include <set>
+
+#include "services/simulation/tools/picture/grasp_picture.hpp"
 
 namespace prehend::simulation {
 namespace {

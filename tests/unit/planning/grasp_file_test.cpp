@@ -1,17 +1,18 @@
 // Saved plans: what is written is read back (poses go through quaternions, so to 1e-12), damaged
 // files are refused and never crash, and what is exported is what `prehend grasp quality` reads.
+#include "services/simulation/tools/planning/grasp_file.hpp"
+
 #include <gtest/gtest.h>
 #include <unistd.h>
 
 #include <cstdlib>
 #include <fstream>
 #include <nlohmann/json.hpp>
-#include <prehend/base/random.hpp>
-#include <prehend/planning/export.hpp>
-#include <prehend/planning/grasp_file.hpp>
-#include <prehend/simulation/quality_file.hpp>
 
-#include "plans.hpp"
+#include "common/base/random.hpp"
+#include "services/simulation/tools/grasp/quality_file.hpp"
+#include "services/simulation/tools/planning/export.hpp"
+#include "tests/unit/planning/plans.hpp"
 
 namespace prehend::simulation {
 namespace {

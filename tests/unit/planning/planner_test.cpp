@@ -8,11 +8,11 @@
 #include <cstdlib>
 #include <limits>
 #include <numeric>
-#include <prehend/grasping/candidates.hpp>
-#include <prehend/planning/grasp_file.hpp>
-#include <prehend/test_support/hands.hpp>
 
-#include "plans.hpp"
+#include "common/grasping/candidates.hpp"
+#include "services/simulation/tools/planning/grasp_file.hpp"
+#include "tests/support/hands.hpp"
+#include "tests/unit/planning/plans.hpp"
 
 namespace prehend::simulation {
 namespace {
@@ -74,7 +74,7 @@ void expect_sound(const Plan& plan) {
 }
 
 TEST(PlanGrasps, OneThreadAndTwoGiveEqualBytes) {
-  const grasping::PlanOptions options{.candidates = 10, .seed = 7, .tested = 2, .most_tested = 2};
+  const grasping::PlanOptions options{.candidates = 10, .seed = 7, .tested = 2, .max_tested = 2};
   const std::string alone = serialise(plan("barrett", talc, options, 1));
   EXPECT_EQ(alone, serialise(plan("barrett", talc, options, 2)));
   grasping::PlanOptions other = options;
@@ -97,12 +97,12 @@ TEST_P(EveryHand, GivesSoundPlans) {
   const int candidates = std::getenv("PREHEND_LONG") ? 60 : 3;
   for (const Body& object : {talc, cube, ball})
     expect_sound(
-        plan(GetParam(), object, {.candidates = candidates, .tested = 1, .most_tested = 1}));
+        plan(GetParam(), object, {.candidates = candidates, .tested = 1, .max_tested = 1}));
 }
 
 TEST_P(EveryHand, IsToldWhatDoesNotFit) {
   const Body crate{"crate", {ShapeKind::box, {0.5, 0.6, 0.7}}, 1, "wood", {}};
-  const Plan planned = plan(GetParam(), crate, {.candidates = 2, .tested = 1, .most_tested = 1});
+  const Plan planned = plan(GetParam(), crate, {.candidates = 2, .tested = 1, .max_tested = 1});
   EXPECT_FALSE(planned.held());
   EXPECT_NE(planned.reason.find("wider than the hand's opening"), std::string::npos)
       << planned.reason;
@@ -128,7 +128,7 @@ INSTANTIATE_TEST_SUITE_P(Hands, EveryHand, testing::ValuesIn(test::hand_names())
 TEST(PlanGrasps, NothingReachesThroughTheTable) {
   const Body cube{"cube", {ShapeKind::box, {0.06, 0.06, 0.06}}, 0.1, "wood", {}};
   const Plan planned =
-      plan("barrett", cube, {.candidates = 24, .table = true, .tested = 4, .most_tested = 4});
+      plan("barrett", cube, {.candidates = 24, .table = true, .tested = 4, .max_tested = 4});
   expect_sound(planned);
   EXPECT_GT(planned.refused.at("the hand is in the table"), 0);
   for (const PlannedGrasp& grasp : planned.grasps) {
@@ -144,7 +144,7 @@ TEST(PlanGrasps, RefusesNonsense) {
   };
   EXPECT_TRUE(refused(talc, {.candidates = 0}));
   EXPECT_TRUE(refused(talc, {.tested = 0}));
-  EXPECT_TRUE(refused(talc, {.tested = 10, .most_tested = 5}));
+  EXPECT_TRUE(refused(talc, {.tested = 10, .max_tested = 5}));
   Body bad = talc;
   bad.shape.size.x() = std::numeric_limits<double>::quiet_NaN();
   EXPECT_TRUE(refused(bad, {}));

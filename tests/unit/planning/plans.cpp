@@ -1,8 +1,9 @@
-#include "plans.hpp"
+#include "tests/unit/planning/plans.hpp"
 
-#include <prehend/base/workers.hpp>
-#include <prehend/test_support/hands.hpp>
 #include <stdexcept>
+
+#include "common/base/workers.hpp"
+#include "tests/support/hands.hpp"
 
 namespace prehend::simulation {
 
@@ -18,7 +19,7 @@ grasping::Plan plan(const std::string& hand, const grasping::Body& object,
 
 const grasping::Plan& barrett_on_talc() {
   static const grasping::Plan planned =
-      plan("barrett", talc, {.candidates = 16, .seed = 3, .tested = 3, .most_tested = 6});
+      plan("barrett", talc, {.candidates = 16, .seed = 3, .tested = 3, .max_tested = 6});
   return planned;
 }
 

@@ -1,7 +1,8 @@
 #pragma once
 
-#include <prehend/grasping/planner.hpp>
 #include <string>
+
+#include "common/grasping/planner.hpp"
 
 namespace prehend::simulation {
 

@@ -12,11 +12,11 @@
 #include <fstream>
 #include <iterator>
 #include <numbers>
-#include <prehend/base/random.hpp>
-#include <prehend/recognition_calibration/board_taker.hpp>
-#include <prehend/recognition_picture/picture_file.hpp>
 
-#include "fixture.hpp"
+#include "common/base/random.hpp"
+#include "services/recognition/files/picture_file.hpp"
+#include "services/recognition/tools/calibration/board_taker.hpp"
+#include "tests/unit/recognition/fixture.hpp"
 
 namespace prehend::recognition {
 namespace {

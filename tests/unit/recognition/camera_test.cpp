@@ -4,8 +4,9 @@
 
 #include <limits>
 #include <numbers>
-#include <prehend/base/random.hpp>
-#include <prehend/recognition_geometry/silhouette.hpp>
+
+#include "common/base/random.hpp"
+#include "services/recognition/core/geometry/silhouette.hpp"
 
 namespace prehend::recognition {
 namespace {

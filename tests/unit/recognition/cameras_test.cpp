@@ -12,12 +12,12 @@
 #include <fstream>
 #include <opencv2/core.hpp>
 #include <opencv2/videoio.hpp>
-#include <prehend/recognition_cameras/camera.hpp>
-#include <prehend/recognition_cameras/frame.hpp>
-#include <prehend/recognition_picture/picture_file.hpp>
 #include <thread>
 
-#include "fixture.hpp"
+#include "services/recognition/cameras/camera.hpp"
+#include "services/recognition/cameras/frame.hpp"
+#include "services/recognition/files/picture_file.hpp"
+#include "tests/unit/recognition/fixture.hpp"
 
 namespace prehend::recognition {
 namespace {

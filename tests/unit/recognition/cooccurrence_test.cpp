@@ -1,12 +1,14 @@
 // Histograms of a masked region against the definition of a colour cooccurrence histogram, written
 // out naively. Counts are whole numbers below 2^24, so they must be equal exactly.
+#include "services/recognition/core/descriptor/cooccurrence.hpp"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <prehend/base/random.hpp>
-#include <prehend/recognition_descriptor/cooccurrence.hpp>
-#include <prehend/recognition_descriptor/palette.hpp>
-#include <prehend/recognition_learning/object_models.hpp>
+
+#include "common/base/random.hpp"
+#include "services/recognition/core/descriptor/palette.hpp"
+#include "services/recognition/core/learning/object_models.hpp"
 
 namespace prehend::recognition {
 namespace {

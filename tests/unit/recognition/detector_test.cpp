@@ -7,7 +7,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "fixture.hpp"
+#include "tests/unit/recognition/fixture.hpp"
 
 namespace prehend::recognition {
 namespace {

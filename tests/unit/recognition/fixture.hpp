@@ -1,11 +1,11 @@
 #pragma once
 
-#include <prehend/model/scene.hpp>
-#include <prehend/recognition/detector.hpp>
-#include <prehend/recognition_picture/picture_file.hpp>
-#include <prehend/recognition_rendering/renderer.hpp>
-#include <prehend/recognition_rendering/strangers.hpp>
-#include <prehend/recognition_rendering/training_views.hpp>
+#include "common/model/scene.hpp"
+#include "services/recognition/core/detection/detector.hpp"
+#include "services/recognition/core/rendering/renderer.hpp"
+#include "services/recognition/core/rendering/strangers.hpp"
+#include "services/recognition/core/rendering/training_views.hpp"
+#include "services/recognition/files/picture_file.hpp"
 
 namespace prehend::recognition {
 

@@ -1,14 +1,15 @@
 // Models survive the file, and a file that was touched anywhere is refused.
+#include "services/recognition/files/model_file.hpp"
+
 #include <gtest/gtest.h>
 #include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
 #include <iterator>
-#include <prehend/base/random.hpp>
-#include <prehend/recognition_learning/model_file.hpp>
 
-#include "fixture.hpp"
+#include "common/base/random.hpp"
+#include "tests/unit/recognition/fixture.hpp"
 
 namespace prehend::recognition {
 namespace {

@@ -1,11 +1,12 @@
 // What moved is told from noise, shadows and light. Noise has a sigma of 2 to 3 grey levels; the
 // threshold of 20 is then six sigma of a difference, and a cell has 25 pixels looked at.
+#include "services/recognition/core/detection/movement.hpp"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <prehend/recognition/movement.hpp>
 
-#include "fixture.hpp"
+#include "tests/unit/recognition/fixture.hpp"
 
 namespace prehend::recognition {
 namespace {

@@ -1,14 +1,16 @@
 // Pictures of every kind become 8-bit RGB or a clear error.
+#include "services/recognition/files/picture_file.hpp"
+
 #include <gtest/gtest.h>
 #include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
-#include <prehend/base/random.hpp>
-#include <prehend/recognition_cameras/camera.hpp>
-#include <prehend/recognition_picture/picture_file.hpp>
 
-#include "fixture.hpp"
+#include "common/base/random.hpp"
+#include "services/recognition/cameras/camera.hpp"
+#include "tests/support/shared_data.hpp"
+#include "tests/unit/recognition/fixture.hpp"
 
 namespace prehend::recognition {
 namespace {
@@ -121,10 +123,7 @@ TEST_F(PictureFile, MissingCamerasAreErrors) {
 }
 
 TEST_F(PictureFile, VideoOfAHandPlaysToItsEnd) {
-  const char* shared = std::getenv("PREHEND_SHARED");
-  const auto file =
-      std::filesystem::path(shared ? std::string(shared) + "/data" : PREHEND_SHARED_DATA) /
-      "landmark_hand_recording" / "human_hand_video.mp4";
+  const auto file = shared_data() / "landmark_hand_recording" / "human_hand_video.mp4";
   if (!std::filesystem::exists(file)) GTEST_SKIP() << "no " << file;
   CameraOptions options;
   options.source = "video";

@@ -3,9 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <prehend/recognition_geometry/silhouette.hpp>
 
-#include "fixture.hpp"
+#include "services/recognition/core/geometry/silhouette.hpp"
+#include "tests/unit/recognition/fixture.hpp"
 
 namespace prehend::recognition {
 namespace {
@@ -24,7 +24,7 @@ double brightness(const Picture& picture, const Eigen::Vector2d& pixel) {
 TEST(Renderer, ObjectsCoverTheirSilhouettes) {
   for (const auto& object : catalogue().objects()) {
     model::Scene scene;
-    const Standing at{0.05, 0.03, 0.5};
+    const TablePose at{0.05, 0.03, 0.5};
     scene.objects.push_back({object.name, standing_pose(object.shape, at)});
     const Plane mask = renderer().mask(scene, 0, lab_camera());
     const auto region = silhouette(lab_camera(), object.shape, at);

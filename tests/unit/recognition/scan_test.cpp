@@ -1,15 +1,16 @@
 // The scan against its definition, written out naively. Sums of counts are whole numbers and must
 // be equal exactly; scores are rounded to 16 bits, which moves none by more than a thousandth.
+#include "services/recognition/core/scan/scan.hpp"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
-#include <prehend/base/random.hpp>
-#include <prehend/recognition_geometry/silhouette.hpp>
-#include <prehend/recognition_scan/scan.hpp>
-#include <prehend/recognition_scan/window_sums.hpp>
 
-#include "fixture.hpp"
+#include "common/base/random.hpp"
+#include "services/recognition/core/geometry/silhouette.hpp"
+#include "services/recognition/core/scan/window_sums.hpp"
+#include "tests/unit/recognition/fixture.hpp"
 
 namespace prehend::recognition {
 namespace {

@@ -7,9 +7,9 @@
 
 #include <algorithm>
 #include <cstdlib>
-#include <prehend/recognition_trials/roc.hpp>
 
-#include "fixture.hpp"
+#include "services/recognition/tools/trials/roc.hpp"
+#include "tests/unit/recognition/fixture.hpp"
 
 namespace prehend::recognition {
 namespace {

@@ -1,10 +1,12 @@
 // A track keeps its number and, while the object stands still, a pose steadier than the sightings.
+#include "services/recognition/core/detection/tracker.hpp"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
-#include <prehend/base/random.hpp>
-#include <prehend/recognition/tracker.hpp>
+
+#include "common/base/random.hpp"
 
 namespace prehend::recognition {
 namespace {
@@ -15,7 +17,7 @@ Sighting box_at(double x, double y, double yaw = 0) {
   Sighting made;
   made.name = "box";
   made.shape = {model::ShapeKind::box, {0.04, 0.2, 0.1}};
-  made.at = Standing{x, y, yaw};
+  made.at = TablePose{x, y, yaw};
   return made;
 }
 Time at(double s) {

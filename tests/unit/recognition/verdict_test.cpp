@@ -1,8 +1,8 @@
 // A verdict must follow each sign in the direction that its reason gives, whatever the fit says: a
 // wrong sign of a weight is a fit to chance.
-#include <gtest/gtest.h>
+#include "services/recognition/core/detection/verdict.hpp"
 
-#include <prehend/recognition/verdict.hpp>
+#include <gtest/gtest.h>
 
 namespace prehend::recognition {
 namespace {

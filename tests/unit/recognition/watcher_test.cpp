@@ -1,12 +1,13 @@
 // A camera's pictures one after the other: what stands still is said again without another look,
 // what moves is followed, what is gone is forgotten, what comes is found.
+#include "services/recognition/core/detection/watcher.hpp"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
-#include <prehend/recognition/watcher.hpp>
 
-#include "fixture.hpp"
+#include "tests/unit/recognition/fixture.hpp"
 
 namespace prehend::recognition {
 namespace {

@@ -6,10 +6,10 @@
 #include <fstream>
 #include <iterator>
 #include <opencv2/imgcodecs.hpp>
-#include <prehend/recognition_learning/dataset.hpp>
-#include <prehend/recognition_picture/picture_file.hpp>
 
-#include "painted.hpp"
+#include "services/recognition/files/dataset.hpp"
+#include "services/recognition/files/picture_file.hpp"
+#include "tests/unit/recognition_learning/painted.hpp"
 
 namespace prehend::recognition {
 namespace {

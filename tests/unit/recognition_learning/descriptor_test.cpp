@@ -7,7 +7,7 @@
 
 #include <cmath>
 
-#include "painted.hpp"
+#include "tests/unit/recognition_learning/painted.hpp"
 
 namespace prehend::recognition {
 namespace {

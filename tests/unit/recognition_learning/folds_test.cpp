@@ -1,13 +1,14 @@
 // Folds: pictures before one background must not be parted, whatever their order; Ward's method
 // must find clusters that are far apart compared with their width.
+#include "services/recognition/core/learning/folds.hpp"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <map>
-#include <prehend/recognition_learning/folds.hpp>
 #include <set>
 
-#include "painted.hpp"
+#include "tests/unit/recognition_learning/painted.hpp"
 
 namespace prehend::recognition {
 namespace {

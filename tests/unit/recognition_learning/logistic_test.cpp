@@ -1,11 +1,13 @@
 // Outcomes drawn with known weights give the weights back: with n rows the fit's standard deviation
 // is that of the inverse information, about 0.1 for 4000 rows of unit variance; 0.4 is four of
 // them.
+#include "services/recognition/core/learning/logistic.hpp"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <prehend/base/random.hpp>
-#include <prehend/recognition_learning/logistic.hpp>
+
+#include "common/base/random.hpp"
 
 namespace prehend::recognition {
 namespace {

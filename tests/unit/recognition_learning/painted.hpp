@@ -1,6 +1,6 @@
 #pragma once
 
-#include <prehend/recognition_learning/training.hpp>
+#include "services/recognition/core/learning/training.hpp"
 
 namespace prehend::recognition {
 

@@ -5,13 +5,15 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
-#include <prehend/recognition_evaluation/trial.hpp>
-#include <prehend/recognition_learning/folds.hpp>
+
+#include "services/recognition/core/learning/folds.hpp"
+#include "services/recognition/tools/evaluation/trial.hpp"
+#include "tests/support/shared_data.hpp"
 
 namespace prehend::recognition {
 namespace {
 
-const std::filesystem::path data = PREHEND_SHARED_DATA;
+const std::filesystem::path data = shared_data();
 
 TEST(Photos, GroceryProductsBeforeABackgroundNotSeen) {
   if (!std::filesystem::exists(data / "grocery_store"))

@@ -6,11 +6,11 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
-#include <prehend/recognition_evaluation/false_alarm.hpp>
-#include <prehend/recognition_evaluation/trial.hpp>
-#include <prehend/recognition_learning/folds.hpp>
 
-#include "painted.hpp"
+#include "services/recognition/core/learning/folds.hpp"
+#include "services/recognition/tools/evaluation/false_alarm.hpp"
+#include "services/recognition/tools/evaluation/trial.hpp"
+#include "tests/unit/recognition_learning/painted.hpp"
 
 namespace prehend::recognition {
 namespace {

@@ -6,9 +6,10 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
-#include <prehend/recognition_rendering/renderer.hpp>
-#include <prehend/recognition_taking/catalogue_entry.hpp>
-#include <prehend/recognition_taking/view_taker.hpp>
+
+#include "services/recognition/core/rendering/renderer.hpp"
+#include "services/recognition/files/catalogue_entry.hpp"
+#include "services/recognition/tools/taking/view_taker.hpp"
 
 namespace prehend::recognition {
 namespace {

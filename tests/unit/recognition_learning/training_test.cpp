@@ -2,10 +2,9 @@
 // the same when a class is added later.
 #include <gtest/gtest.h>
 
-#include <prehend/recognition_learning/answer.hpp>
-#include <prehend/recognition_learning/model_file.hpp>
-
-#include "painted.hpp"
+#include "services/recognition/core/learning/answer.hpp"
+#include "services/recognition/files/model_file.hpp"
+#include "tests/unit/recognition_learning/painted.hpp"
 
 namespace prehend::recognition {
 namespace {
@@ -176,31 +175,31 @@ TEST(Training, PartsOfAMaskAreAsLargeAsSaid) {
   EXPECT_EQ(count(part_of(Plane(8, 8), random)), 0);
 }
 
-TEST(Answer, ObjectTwoObjectsUnknownAndNothing) {
+TEST(PhotoAnswer, ObjectTwoObjectsUnknownAndNothing) {
   const auto models = train(painted_classes(5, 1), small());
   ASSERT_TRUE(models);
   const auto unseen = painted_classes(5, 2);
   const Picture &first = unseen[0].views[0].picture, &second = unseen[1].views[0].picture;
-  const Answer one = answer(*models, first);
-  EXPECT_EQ(one.verdict, Verdict::object);
+  const PhotoAnswer one = answer(*models, first);
+  EXPECT_EQ(one.verdict, PhotoVerdict::object);
   EXPECT_EQ(one.first, 0);
   Picture both(2 * first.width, first.height);
   for (int y = 0; y < both.height; ++y)
     for (int x = 0; x < both.width; ++x)
       std::copy_n(x < first.width ? first.at(x, y) : second.at(x - first.width, y), 3,
                   both.at(x, y));
-  const Answer two = answer(*models, both);
-  EXPECT_EQ(two.verdict, Verdict::two_objects);
+  const PhotoAnswer two = answer(*models, both);
+  EXPECT_EQ(two.verdict, PhotoVerdict::two_objects);
   EXPECT_EQ(std::pair(two.first, two.second), std::pair(0, 1));
   Random random(7);
   EXPECT_EQ(
       answer(*models, painted({230, 140, 20}, {120, 30, 140}, {90, 160, 90}, 3, random).picture)
           .verdict,
-      Verdict::unknown);
+      PhotoVerdict::unknown);
   const Eigen::Vector3i table(120, 110, 90);
   EXPECT_EQ(answer(*models, painted(table, table, table, 3, random).picture).verdict,
-            Verdict::nothing);
-  EXPECT_EQ(answer(*models, Picture(4, 4)).verdict, Verdict::unknown);
+            PhotoVerdict::nothing);
+  EXPECT_EQ(answer(*models, Picture(4, 4)).verdict, PhotoVerdict::unknown);
 }
 
 TEST(Varied, KeepsTheSizeAndChangesTheLight) {

@@ -2,12 +2,14 @@
 // is 3/2, so a DoF that moves by d is never faster than 1.5 |d| / T. Checked for all hands and
 // random places by differences over a thousandth of the way, which lie on or below the steepest
 // slope; the tolerance 1e-9 is rounding.
+#include "services/recorder/core/ease_in.hpp"
+
 #include <gtest/gtest.h>
 
 #include <filesystem>
-#include <prehend/base/random.hpp>
-#include <prehend/recorder/ease_in.hpp>
-#include <prehend/test_support/hands.hpp>
+
+#include "common/base/random.hpp"
+#include "tests/support/hands.hpp"
 
 namespace prehend::recorder {
 namespace {

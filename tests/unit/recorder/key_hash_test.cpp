@@ -1,12 +1,12 @@
 // The key of a message by its IDL is the one that Fast DDS finds with its generated code: for every
 // keyed type of the contract and random messages, in either byte order. Fast DDS sends it beside
 // each sample; other writers do not, and their instances would merge.
+#include "services/recorder/service/key_hash.hpp"
+
 #include <gtest/gtest.h>
 
-#include <prehend/recorder/key_hash.hpp>
-#include <prehend/types/idl.hpp>
-
-#include "random_message.hpp"
+#include "common/recording/types/idl.hpp"
+#include "tests/unit/recording/random_message.hpp"
 
 namespace prehend::recorder {
 namespace {
@@ -26,34 +26,36 @@ module odd {
 }; )";
 
 struct Odd {
-  types::Library library;
+  recording::types::Library library;
   Odd() {
-    const auto parsed = types::parse_idl(odd_keys, "odd.idl", library);
+    const auto parsed = recording::types::parse_idl(odd_keys, "odd.idl", library);
     EXPECT_TRUE(parsed) << parsed.error().message();
   }
-  const types::Structure& type(const std::string& name) { return *library.find("odd::" + name); }
+  const recording::types::Structure& type(const std::string& name) {
+    return *library.find("odd::" + name);
+  }
 };
 
 using Bytes = std::vector<std::uint8_t>;
 
 template <class PubSub>
-void agrees(const types::Library& contract, const std::string& name) {
-  const types::Structure* type = contract.find(name);
+void agrees(const recording::types::Library& contract, const std::string& name) {
+  const recording::types::Structure* type = contract.find(name);
   ASSERT_NE(type, nullptr) << name;
   const auto hash = KeyHash::of(*type);
   ASSERT_TRUE(hash) << name;
   Random random(7);
   PubSub generated;
   for (int i = 0; i < 50; ++i) {
-    const types::Value value = prehend::testing::random_value(*type, random);
+    const recording::types::Value value = prehend::testing::random_value(*type, random);
     Bytes bytes = prehend::testing::encode(*type, value);
-    eprosima::fastrtps::rtps::SerializedPayload_t payload(static_cast<std::uint32_t>(bytes.size()));
+    dds::rtps::SerializedPayload_t payload(static_cast<std::uint32_t>(bytes.size()));
     std::copy(bytes.begin(), bytes.end(), payload.data);
     payload.length = static_cast<std::uint32_t>(bytes.size());
     typename PubSub::type message;
-    ASSERT_TRUE(generated.deserialize(&payload, &message));
-    eprosima::fastrtps::rtps::InstanceHandle_t handle;
-    ASSERT_TRUE(generated.getKey(&message, &handle, false));
+    ASSERT_TRUE(dds::deserialize(generated, payload, &message));
+    dds::rtps::InstanceHandle_t handle;
+    ASSERT_TRUE(dds::find_key(generated, &message, handle));
     dds::Guid expected{};
     std::copy_n(static_cast<const std::uint8_t*>(handle.value), 16, expected.begin());
     EXPECT_EQ(hash->of_message(bytes), expected) << name;
@@ -62,7 +64,7 @@ void agrees(const types::Library& contract, const std::string& name) {
 }
 
 TEST(KeyHash, IsTheOneOfFastDdsForEveryKeyedType) {
-  const auto contract = types::load_idl(std::string(PREHEND_SOURCE) + "/idl");
+  const auto contract = recording::types::load_idl(std::string(PREHEND_SOURCE) + "/idl");
   ASSERT_TRUE(contract) << contract.error().message();
   agrees<v1::GloveFramePubSubType>(*contract, "prehend::v1::GloveFrame");
   agrees<v1::HandPosturePubSubType>(*contract, "prehend::v1::HandPosture");

@@ -5,6 +5,8 @@
 // With stamps moved to now a stamp t becomes a + (t - t0) / rate for one a and t0 as long as nobody
 // pauses: so at rate 1 all differences between stamps are exactly the recorded ones, and at rate 2
 // half of them, rounded to a nanosecond.
+#include "services/recorder/service/player.hpp"
+
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -12,12 +14,11 @@
 
 #include <condition_variable>
 #include <mutex>
-#include <prehend/recorder/player.hpp>
-#include <prehend/recorder/recording_file.hpp>
-#include <prehend/types/idl.hpp>
 #include <thread>
 
-#include "scratch.hpp"
+#include "common/recording/types/idl.hpp"
+#include "services/recorder/service/recording_file.hpp"
+#include "tests/unit/recording/scratch.hpp"
 
 namespace prehend::recorder {
 namespace {
@@ -37,7 +38,7 @@ Time system_now() {
 class Writing {
  public:
   explicit Writing(const std::filesystem::path& path)
-      : file_(RecordingFile::create(path, heading_, mcap::Compression::lz4).value()) {}
+      : file_(RecordingFile::create(path, heading_, recording::mcap::Compression::lz4).value()) {}
 
   void report(std::uint64_t number, int ms, const std::string& hand = "hand") {
     v1::GraspReport report;
@@ -45,28 +46,26 @@ class Writing {
     report.sequence_number(number);
     report.stamp_ns(at(ms));
     report.origin_ns(at(ms) - 5'000'000);
-    write(source(dds::grasp_report, "prehend::v1::GraspReport"),
-          dds::encode(dds::grasp_report, report), ms, 1);
+    write(source(dds::grasp_report), dds::encode(dds::grasp_report, report), ms, 1);
   }
   void detection(std::uint32_t track, std::uint64_t number, int ms) {
     v1::ObjectDetection detection;
     detection.track(track);
     detection.sequence_number(number);
     detection.stamp_ns(at(ms));
-    write(source(dds::object_detection, "prehend::v1::ObjectDetection"),
-          dds::encode(dds::object_detection, detection), ms, static_cast<std::uint8_t>(track));
+    write(source(dds::object_detection), dds::encode(dds::object_detection, detection), ms,
+          static_cast<std::uint8_t>(track));
   }
   void gone(std::uint32_t track, int ms) {
-    write(source(dds::object_detection, "prehend::v1::ObjectDetection"), {}, ms,
-          static_cast<std::uint8_t>(track), RawSample::Kind::disposed);
+    write(source(dds::object_detection), {}, ms, static_cast<std::uint8_t>(track),
+          RawSample::Kind::disposed);
   }
   void command(std::uint64_t number, int ms) {
     v1::HandCommand command;
     command.hand("hand");
     command.sequence_number(number);
     command.stamp_ns(at(ms));
-    write(source(dds::robot_command, "prehend::v1::HandCommand"),
-          dds::encode(dds::robot_command, command), ms, 1);
+    write(source(dds::robot_command), dds::encode(dds::robot_command, command), ms, 1);
   }
   void close() { ASSERT_TRUE(file_.close()); }
   static std::int64_t at(int ms) { return begin_ns + ms * 1'000'000ll; }
@@ -83,10 +82,9 @@ class Writing {
     sample.sent = sample.received = from_ns(at(ms));
     ASSERT_TRUE(file_.write(source, sample, sample.received));
   }
-  template <class P>
-  const Source& source(const dds::Topic<P>& topic, const std::string& type) {
+  const Source& source(const dds::TopicInfo& topic) {
     Source& source = sources_[std::string(topic.name)];
-    source = {{std::string(topic.name), type, true, *dds::find_topic(topic.name)}, "lab"};
+    source = {dds::raw_topic(topic), "lab"};
     return source;
   }
 
@@ -98,16 +96,14 @@ class Writing {
 };
 
 /// Hears all that is played on one topic.
-class Ear {
+class Collector {
  public:
-  Ear(dds::Participant& participant, const std::string& topic, const std::string& type,
-      dds::TopicQos qos) {
-    reader_ =
-        dds::RawReader::create(participant, {topic, type, true, qos}, [this](RawSample&& sample) {
-          const std::scoped_lock lock(mutex_);
-          heard_.push_back(std::move(sample));
-          news_.notify_all();
-        }).value();
+  Collector(dds::Participant& participant, const dds::RawTopic& topic) {
+    reader_ = dds::RawReader::create(participant, topic, [this](RawSample&& sample) {
+                const std::scoped_lock lock(mutex_);
+                heard_.push_back(std::move(sample));
+                news_.notify_all();
+              }).value();
   }
   /// Waits until so many have come; fewer when they do not.
   std::vector<RawSample> wait(std::size_t count) {
@@ -146,12 +142,12 @@ class PlayerTest : public ::testing::Test {
                                      .listener = listener})
         .value();
   }
-  Ear ear(std::string_view topic, const std::string& type) {
-    return Ear(hall_, std::string(topic), type, *dds::find_topic(topic));
-  }
+  Collector collect(const dds::TopicInfo& topic) { return Collector(hall_, dds::raw_topic(topic)); }
   /// Reports have all been heard however late a reader is: their topic keeps all.
-  Ear reports(const std::string& topic = "grasp/report") {
-    return Ear(hall_, topic, "prehend::v1::GraspReport", *dds::find_topic("grasp/report"));
+  Collector reports(const std::string& topic = "grasp/report") {
+    dds::RawTopic raw = dds::raw_topic(dds::grasp_report);
+    raw.name = topic;
+    return Collector(hall_, raw);
   }
   /// `count` reports, one every `step` ms.
   std::filesystem::path tape_of_reports(int count, int step) {
@@ -183,10 +179,11 @@ class PlayerTest : public ::testing::Test {
 
   const testing::Scratch scratch_;
   const std::string rig_;
-  const types::Library types_ = types::load_idl(std::string(PREHEND_SOURCE) + "/idl").value();
+  const recording::types::Library types_ =
+      recording::types::load_idl(std::string(PREHEND_SOURCE) + "/idl").value();
   std::mutex mutex_;
   std::map<std::string, dds::TopicQos> offered_;  // by the player's writers
-  dds::Discovery discovery_{[this](const dds::Discovered& found) {
+  dds::Discovery discovery_{[this](const dds::DiscoveredWriter& found) {
     const std::scoped_lock lock(mutex_);
     if (!found.gone) offered_[found.topic.name] = found.topic.qos;
   }};
@@ -200,8 +197,7 @@ TEST_F(PlayerTest, PlaysBytesKeysEndsAndStampsAsRecorded) {
   for (std::uint32_t i = 0; i < 10; ++i) writing.detection(i % 2, i, 30 + static_cast<int>(i));
   writing.gone(1, 41);
   writing.close();
-  Ear reports = this->reports(),
-      detections = ear("object/detection", "prehend::v1::ObjectDetection");
+  Collector reports = this->reports(), detections = collect(dds::object_detection);
   auto player = this->player(path);
   const auto thread = run(*player, milliseconds(500));
   end(*player);
@@ -221,7 +217,7 @@ TEST_F(PlayerTest, PlaysBytesKeysEndsAndStampsAsRecorded) {
   EXPECT_EQ(count["grasp/report"], 30u);
   EXPECT_EQ(count["object/detection"], 11u);
   for (const char* topic : {"grasp/report", "object/detection"})
-    EXPECT_EQ(recording::to_text(offered_[topic]), recording::to_text(*dds::find_topic(topic)));
+    EXPECT_EQ(recording::to_text(offered_[topic]), recording::to_text(dds::find_topic(topic)->qos));
 }
 
 // Writers of robot/command let samples die 200 ms after their source time stamp. A recording of
@@ -246,19 +242,19 @@ TEST_F(PlayerTest, OldCommandsReachARobotWithTheirStamps) {
   }
   EXPECT_TRUE(numbers.contains(19)) << numbers.size();
   EXPECT_EQ(recording::to_text(offered_["robot/command"]),
-            recording::to_text(*dds::find_topic("robot/command")));
+            recording::to_text(dds::robot_command.qos));
 }
 
 TEST_F(PlayerTest, StampsOfNowKeepTheirDistances) {
   const auto path = tape_of_reports(40, 7);
   for (const double rate : {1.0, 2.0}) {
     const std::string topic = fmt::format("report/{}", rate);
-    Ear ear = reports(topic);
+    Collector collector = reports(topic);
     const Time before = system_now();
     auto player =
         this->player(path, {.rate = rate, .stamps_now = true, .remap = {{"grasp/report", topic}}});
     const auto thread = run(*player);
-    const auto heard = ear.wait(40);
+    const auto heard = collector.wait(40);
     const Time after = system_now();
     ASSERT_EQ(heard.size(), 40u);
     std::optional<std::int64_t> first;
@@ -288,14 +284,13 @@ TEST_F(PlayerTest, ImpossibleStampsAreLeftAlone) {
     v1::GraspReport report;
     report.hand("hand");
     report.stamp_ns(stamp);
-    writing.write(writing.source(dds::grasp_report, "prehend::v1::GraspReport"),
-                  dds::encode(dds::grasp_report, report), 0, 1);
+    writing.write(writing.source(dds::grasp_report), dds::encode(dds::grasp_report, report), 0, 1);
   }
   writing.close();
-  Ear ear = reports();
+  Collector collector = reports();
   auto player = this->player(path, {.rate = 0.01, .stamps_now = true});
   const auto thread = run(*player);
-  const auto heard = ear.wait(stamps.size());
+  const auto heard = collector.wait(stamps.size());
   ASSERT_EQ(heard.size(), stamps.size());
   for (std::size_t i = 0; i < stamps.size(); ++i) {
     v1::GraspReport report;
@@ -306,7 +301,7 @@ TEST_F(PlayerTest, ImpossibleStampsAreLeftAlone) {
 
 TEST_F(PlayerTest, PlaysTopicsUnderOtherNamesAndQos) {
   const auto path = tape_of_reports(5, 1);
-  Ear other = reports("trial/report"), own = reports();
+  Collector other = reports("trial/report"), own = reports();
   auto player = this->player(path, {.remap = {{"grasp/report", "trial/report"}},
                                     .qos = {{"grasp/*", "best_effort deadline_ms=300"},
                                             {"grasp/rep*", "reliable deadline_ms=400"},
@@ -330,7 +325,7 @@ TEST_F(PlayerTest, PlaysOnlyWantedTopics) {
   Writing writing(path);
   for (int i = 0; i < 4; ++i) writing.report(i, i), writing.detection(1, i, i);
   writing.close();
-  Ear reports = this->reports();
+  Collector reports = this->reports();
   auto player =
       this->player(path, {}, [](const std::string& topic) { return topic == "grasp/report"; });
   const auto thread = run(*player);
@@ -349,8 +344,7 @@ TEST_F(PlayerTest, ARangeBeginsWithWhatStandsThere) {
   writing.gone(2, 7);
   for (int i = 0; i < 10; ++i) writing.report(i, 10 * i);
   writing.close();
-  Ear reports = this->reports(),
-      detections = ear("object/detection", "prehend::v1::ObjectDetection");
+  Collector reports = this->reports(), detections = collect(dds::object_detection);
   auto player =
       this->player(path, {.from = from_ns(Writing::at(30)), .to = from_ns(Writing::at(60))});
   const auto thread = run(*player);
@@ -370,36 +364,48 @@ TEST_F(PlayerTest, ARangeBeginsWithWhatStandsThere) {
 
 TEST_F(PlayerTest, LoopsUntilItIsTold) {
   const auto path = tape_of_reports(3, 2);
-  Ear ear = reports();
+  Collector collector = reports();
   auto player = this->player(path, {.loop = true});
   const auto thread = run(*player);
-  const auto three_rounds = ear.numbers(9);
+  const auto three_rounds = collector.numbers(9);
   EXPECT_TRUE(player->figures().loops);
-  ASSERT_TRUE(player->obey("loop off"));
+  ASSERT_TRUE(player->execute("loop off"));
   end(*player);
   ASSERT_GE(three_rounds.size(), 9u);
-  const auto all = ear.numbers(9);
+  const auto all = collector.numbers(9);
   EXPECT_EQ(all.size() % 3, 0u);
   for (std::size_t i = 0; i < all.size(); ++i) EXPECT_EQ(all[i], i % 3);
   EXPECT_EQ(player->figures().rounds + 1, all.size() / 3);
 }
 
+/// The player's state as soon as it says `what`; what it says at last when it never does.
+std::string state_once(Player& player, const std::string& what) {
+  const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(20);
+  for (;;) {
+    const std::string state = player.execute("state").value();
+    if (state.find(what) != std::string::npos || std::chrono::steady_clock::now() > end)
+      return state;
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+}
+
 TEST_F(PlayerTest, StepsAndPlaysBursts) {
   const auto path = tape_of_reports(10, 1);
-  Ear ear = reports();
+  Collector collector = reports();
   auto player = this->player(path, {.paused = true});
   const auto thread = run(*player);
-  ASSERT_TRUE(player->obey("step"));
-  EXPECT_THAT(ear.numbers(1), ElementsAre(0));
-  ASSERT_TRUE(player->obey("burst 3"));
-  EXPECT_THAT(ear.numbers(4), ElementsAre(0, 1, 2, 3));
-  EXPECT_THAT(player->obey("state").value(),
+  ASSERT_TRUE(player->execute("step"));
+  EXPECT_THAT(collector.numbers(1), ElementsAre(0));
+  ASSERT_TRUE(player->execute("burst 3"));
+  EXPECT_THAT(collector.numbers(4), ElementsAre(0, 1, 2, 3));
+  // A reader in this process hears a message before the player has counted it.
+  EXPECT_THAT(state_once(*player, "4 messages"),
               HasSubstr("paused at 0.003 of 0.009 s, rate 1, 4 messages"));
   // A burst over the end is what is left, and it stays there: somebody may seek.
-  ASSERT_TRUE(player->obey("burst 100"));
-  EXPECT_EQ(ear.numbers(10).size(), 10u);
+  ASSERT_TRUE(player->execute("burst 100"));
+  EXPECT_EQ(collector.numbers(10).size(), 10u);
   EXPECT_FALSE(player->figures().ended);
-  ASSERT_TRUE(player->obey("resume"));
+  ASSERT_TRUE(player->execute("resume"));
   end(*player);
   EXPECT_EQ(player->figures().published, 10u);
 }
@@ -407,16 +413,16 @@ TEST_F(PlayerTest, StepsAndPlaysBursts) {
 // A pause that came before the start used to be forgotten at the start.
 TEST_F(PlayerTest, APauseBeforeTheStartHolds) {
   const auto path = tape_of_reports(5, 0);
-  Ear ear = reports();
+  Collector collector = reports();
   auto player = this->player(path);
-  ASSERT_TRUE(player->obey("pause"));
+  ASSERT_TRUE(player->execute("pause"));
   const auto thread = run(*player);
-  ASSERT_TRUE(player->obey("step"));
-  EXPECT_THAT(ear.numbers(1), ElementsAre(0));
-  ASSERT_TRUE(player->obey("step"));
-  EXPECT_THAT(ear.numbers(2), ElementsAre(0, 1));
-  ASSERT_TRUE(player->obey("start"));
-  EXPECT_EQ(ear.numbers(5).size(), 5u);
+  ASSERT_TRUE(player->execute("step"));
+  EXPECT_THAT(collector.numbers(1), ElementsAre(0));
+  ASSERT_TRUE(player->execute("step"));
+  EXPECT_THAT(collector.numbers(2), ElementsAre(0, 1));
+  ASSERT_TRUE(player->execute("start"));
+  EXPECT_EQ(collector.numbers(5).size(), 5u);
   end(*player);
 }
 
@@ -425,51 +431,51 @@ TEST_F(PlayerTest, SeeksForthAndBack) {
   Writing writing(path);
   for (int i = 0; i < 10; ++i) writing.detection(static_cast<std::uint32_t>(i), i, 1000 * i);
   writing.close();
-  Ear ear = this->ear("object/detection", "prehend::v1::ObjectDetection");
+  Collector collector = collect(dds::object_detection);
   auto player = this->player(path, {.paused = true});
   const auto thread = run(*player);
   const auto number = [&](std::size_t i) {
-    const auto heard = ear.wait(i + 1);
+    const auto heard = collector.wait(i + 1);
     v1::ObjectDetection detection;
     EXPECT_TRUE(heard.size() > i && dds::decode(dds::object_detection, heard[i], detection));
     return detection.sequence_number();
   };
   // What stands at 3.5 s are the detections 0 to 3.
-  EXPECT_EQ(player->obey("seek 3.5").value(), "at 3.500 s");
-  ASSERT_TRUE(player->obey("step"));
+  EXPECT_EQ(player->execute("seek 3.5").value(), "at 3.500 s");
+  ASSERT_TRUE(player->execute("step"));
   EXPECT_EQ(number(4), 4u);
-  EXPECT_EQ(player->obey("seek 0").value(), "at 0.000 s");
-  ASSERT_TRUE(player->obey("step"));
+  EXPECT_EQ(player->execute("seek 0").value(), "at 0.000 s");
+  ASSERT_TRUE(player->execute("step"));
   EXPECT_EQ(number(5), 0u);
-  EXPECT_EQ(player->obey("seek 99").value(), "at 9.000 s");
-  ASSERT_TRUE(player->obey("step"));
+  EXPECT_EQ(player->execute("seek 99").value(), "at 9.000 s");
+  ASSERT_TRUE(player->execute("step"));
   EXPECT_EQ(number(6 + 9), 9u);
   // While it plays: the hour between would never end.
-  EXPECT_EQ(player->obey("seek 0").value(), "at 0.000 s");
-  ASSERT_TRUE(player->obey("resume"));
-  ASSERT_TRUE(player->obey("seek 8.9"));
+  EXPECT_EQ(player->execute("seek 0").value(), "at 0.000 s");
+  ASSERT_TRUE(player->execute("resume"));
+  ASSERT_TRUE(player->execute("seek 8.9"));
   end(*player);
 }
 
 TEST_F(PlayerTest, TheRateChangesWhileItPlays) {
   const auto path = tape_of_reports(10, 3'600'000);  // an hour between them
-  Ear ear = reports();
+  Collector collector = reports();
   auto player = this->player(path);
   const auto thread = run(*player);
-  EXPECT_THAT(ear.numbers(1), ElementsAre(0));
+  EXPECT_THAT(collector.numbers(1), ElementsAre(0));
   for (const char* wrong : {"rate", "rate 0", "rate -1", "rate nan", "rate 1e9", "rate x"})
-    EXPECT_FALSE(player->obey(wrong)) << wrong;
-  ASSERT_TRUE(player->obey("rate 1000"));
+    EXPECT_FALSE(player->execute(wrong)) << wrong;
+  ASSERT_TRUE(player->execute("rate 1000"));
   // 3.6 s each now; then the rest is sought, not waited for.
-  EXPECT_THAT(ear.numbers(2), ElementsAre(0, 1));
+  EXPECT_THAT(collector.numbers(2), ElementsAre(0, 1));
   EXPECT_EQ(player->figures().rate, 1000);
   const double position = player->figures().position;
   EXPECT_GE(position, 3600);
   EXPECT_LT(position, 3600 + 1000 * 60);
-  player->obey("pause");
-  player->obey("burst 8");
-  EXPECT_EQ(ear.numbers(10).size(), 10u);
-  player->obey("resume");
+  player->execute("pause");
+  player->execute("burst 8");
+  EXPECT_EQ(collector.numbers(10).size(), 10u);
+  player->execute("resume");
   end(*player);
 }
 
@@ -477,7 +483,7 @@ TEST_F(PlayerTest, UnknownOrdersAreAnsweredWithThoseItKnows) {
   const auto path = tape_of_reports(1, 1);
   auto player = this->player(path, {.paused = true});
   for (const char* order : {"", "sing", "burst", "burst 0", "burst x", "seek", "loop", "loop 1"}) {
-    const auto answer = player->obey(order);
+    const auto answer = player->execute(order);
     ASSERT_FALSE(answer) << order;
     EXPECT_THAT(answer.error().message(), HasSubstr("burst N"));
   }
@@ -492,15 +498,15 @@ TEST_F(PlayerTest, SeveralStartedTogetherKeepTogether) {
   for (int i = 1; i < 6; i += 2) second.report(i, 100 * i, "b");
   first.close();
   second.close();
-  Ear ear = reports();
+  Collector collector = reports();
   const Time origin = from_ns(Writing::at(0));
   auto one = player(a, {.from = origin}), other = player(b, {.from = origin});
   const Time start = system_now() + milliseconds(200);
   const std::jthread of_one([&](const std::stop_token& stop) { one->play(stop, start); });
   const std::jthread of_other([&](const std::stop_token& stop) { other->play(stop, start); });
-  auto heard = ear.wait(6);
+  auto heard = collector.wait(6);
   ASSERT_EQ(heard.size(), 6u);
-  EXPECT_THAT(ear.numbers(6), ElementsAre(0, 1, 2, 3, 4, 5));
+  EXPECT_THAT(collector.numbers(6), ElementsAre(0, 1, 2, 3, 4, 5));
   // Not before they were due.
   for (int i = 0; i < 6; ++i) EXPECT_GE(heard[i].received, start + milliseconds(100 * i));
 }

@@ -1,14 +1,15 @@
 // What a recorder decides about samples: files, their splits and heads, rings, losses. Time is a
 // value here and files are small, so nothing waits.
+#include "services/recorder/service/recorder.hpp"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <prehend/mcap/reader.hpp>
-#include <prehend/recorder/recorder.hpp>
-#include <prehend/recorder/tape.hpp>
-#include <prehend/recorder/topic_filter.hpp>
 
-#include "scratch.hpp"
+#include "common/recording/mcap/reader.hpp"
+#include "services/recorder/core/topic_filter.hpp"
+#include "services/recorder/service/tape.hpp"
+#include "tests/unit/recording/scratch.hpp"
 
 namespace prehend::recorder {
 namespace {
@@ -21,14 +22,14 @@ const Time start = from_ns(1'700'000'000'000'000'000);
 struct Recording : ::testing::Test {
   prehend::testing::Scratch folder;
   Heading heading;
-  Source state{
-      {.name = "world/state", .type = "State", .qos = {.name = "", .transient_local = true}},
-      "rig"};
-  Source frame{{.name = "world/frame", .type = "Frame", .qos = {.name = ""}}, "rig"};
+  Source state{{.name = "world/state", .type = "State", .qos = {.transient_local = true}}, "rig"};
+  Source frame{{.name = "world/frame", .type = "Frame", .qos = {}}, "rig"};
   std::uint64_t count = 0;
 
   RecorderOptions options() {
-    return {.file = folder / "a.mcap", .keep_free = 0, .compression = mcap::Compression::none};
+    return {.file = folder / "a.mcap",
+            .keep_free = 0,
+            .compression = recording::mcap::Compression::none};
   }
   Recorder recorder(const RecorderOptions& options) {
     auto made = Recorder::create(options, heading, start);
@@ -63,12 +64,12 @@ struct Recording : ::testing::Test {
     return names;
   }
   static std::string lost_in(const std::filesystem::path& file, const std::string& topic) {
-    const auto reader = mcap::Reader::open(file);
+    const auto reader = recording::mcap::Reader::open(file);
     if (!reader) return "";
     std::string last;
     for (const auto& index : reader->contents().metadata)
       if (index.name == recording::losses_record)
-        last = mcap::find(reader->metadata(index)->metadata, topic);
+        last = recording::mcap::find(reader->metadata(index)->metadata, topic);
     return last;
   }
 };
@@ -217,7 +218,7 @@ TEST_F(Recording, EndsWhenLessIsFreeThanItMayLeave) {
   recorder.take(frame, sample(1));  // nothing happens
   EXPECT_FALSE(recorder.close());
   EXPECT_EQ(numbers("a.mcap", "world/frame"), (Numbers{1}));
-  EXPECT_TRUE(mcap::Reader::open(folder / "a.mcap")->contents().closed);
+  EXPECT_TRUE(recording::mcap::Reader::open(folder / "a.mcap")->contents().closed);
 }
 
 TEST_F(Recording, NothingThatIsThereIsWrittenOver) {

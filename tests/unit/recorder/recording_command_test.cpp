@@ -10,12 +10,12 @@
 
 #include <cstdlib>
 #include <nlohmann/json.hpp>
-#include <prehend/recorder/describe.hpp>
-#include <prehend/recorder/recording_file.hpp>
-#include <prehend/recorder/tape.hpp>
 #include <sstream>
 
-#include "scratch.hpp"
+#include "services/recorder/service/describe.hpp"
+#include "services/recorder/service/recording_file.hpp"
+#include "services/recorder/service/tape.hpp"
+#include "tests/unit/recording/scratch.hpp"
 
 namespace prehend::recorder {
 namespace {
@@ -56,13 +56,10 @@ class RecordingCommand : public ::testing::Test {
 
   void make(const std::string& name, const Changes& changes = {}) {
     const Heading heading{{{"lab.rig", "lab"}}, "a = 1\n", describe_types("ros2msg").value()};
-    auto file = RecordingFile::create(scratch_ / name, heading, mcap::Compression::zstd).value();
-    const Source detections{{"object/detection", "prehend::v1::ObjectDetection", true,
-                             *dds::find_topic("object/detection")},
-                            "lab"};
-    const Source commands{
-        {"robot/command", "prehend::v1::HandCommand", true, *dds::find_topic("robot/command")},
-        "lab"};
+    auto file =
+        RecordingFile::create(scratch_ / name, heading, recording::mcap::Compression::zstd).value();
+    const Source detections{dds::raw_topic(dds::object_detection), "lab"};
+    const Source commands{dds::raw_topic(dds::robot_command), "lab"};
     const auto write = [&](const Source& source, RawSample::Kind kind, std::uint8_t instance,
                            std::uint64_t number, int ms, std::vector<std::uint8_t> payload) {
       RawSample sample;

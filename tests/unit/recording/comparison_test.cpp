@@ -1,27 +1,30 @@
 // Two recordings are the same when every sample has a partner whose fields lie within the table's
 // tolerances. Checked on random values of every topic type: a copy is the same; a copy with one
 // number moved by less than the tolerance is the same, by more is different and the field is named.
+#include "common/recording/compare/comparison.hpp"
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
-#include <prehend/compare/comparison.hpp>
-#include <prehend/dds/topics.hpp>
-#include <prehend/types/idl.hpp>
 
-#include "random_message.hpp"
+#include "common/dds/topics.hpp"
+#include "common/recording/types/idl.hpp"
+#include "tests/unit/recording/random_message.hpp"
 
 namespace prehend::recording {
 namespace {
 
 using prehend::testing::encode;
 using prehend::testing::random_value;
+using recording::types::Value;
 using ::testing::HasSubstr;
-using types::Value;
+using ::testing::IsSupersetOf;
 
-const types::Library& contract() {
-  static const types::Library library =
-      types::load_idl(std::string(PREHEND_SOURCE) + "/idl").value();
+const recording::types::Library& contract() {
+  static const recording::types::Library library =
+      recording::types::load_idl(std::string(PREHEND_SOURCE) + "/idl").value();
   return library;
 }
 
@@ -37,21 +40,39 @@ Value& field(Value& message, std::string_view name) {
   return *const_cast<Value*>(message.find(name));
 }
 
-void add(Comparison& comparison, Side side, const types::Structure& type, const Value& value) {
+void add(Comparison& comparison, Side side, const recording::types::Structure& type,
+         const Value& value) {
   const auto bytes = encode(type, value);
   comparison.add(side, {"topic", &type, bytes, {}});
 }
 
-std::vector<const types::Structure*> topic_types() {
-  std::vector<const types::Structure*> result;
-  for (const auto& [name, type] : contract().structures())
-    if (type->find("stamp_ns")) result.push_back(type.get());
+/// Of all our topics.
+std::vector<const recording::types::Structure*> topic_types() {
+  std::vector<const recording::types::Structure*> result;
+  for (const dds::TopicInfo& topic : dds::topic_table)
+    result.push_back(contract().find(topic.type_name()));
   return result;
 }
 
+/// As the table names a type.
+std::string unscoped(const std::string& type) {
+  return type.substr(type.rfind(':') + 1);
+}
+
+/// Paths of the floating-point numbers in a type.
+std::vector<std::string> numbers_in(const recording::types::Structure& type) {
+  std::vector<std::string> paths;
+  for (const recording::types::Field& field : type.fields) {
+    if (field.type.kind == recording::types::Kind::float64) paths.push_back(field.name);
+    if (!field.type.structure) continue;
+    for (const std::string& path : numbers_in(*field.type.structure))
+      paths.push_back(field.name + "." + path);
+  }
+  return paths;
+}
+
 TEST(Comparison, ACopyInAnyOrderIsTheSame) {
-  ASSERT_EQ(topic_types().size(), std::size(dds::topic_table));
-  for (const types::Structure* type : topic_types()) {
+  for (const recording::types::Structure* type : topic_types()) {
     Random random(3);
     std::vector<Value> values;
     for (int i = 0; i < 30; ++i) {
@@ -94,9 +115,9 @@ std::optional<std::string> move_number(Value& value, const std::string& type, st
 }
 
 TEST(Comparison, EveryNumberIsHeldToItsTolerance) {
-  for (const types::Structure* type : topic_types()) {
+  for (const recording::types::Structure* type : topic_types()) {
     Random random(5);
-    const std::string name = type->name.substr(type->name.rfind(':') + 1);
+    const std::string name = unscoped(type->name);
     const Value value = random_value(*type, random);
     for (std::size_t n = 0;; ++n) {
       bool any = false;
@@ -124,7 +145,7 @@ TEST(Comparison, EveryNumberIsHeldToItsTolerance) {
 }
 
 TEST(Comparison, SamplesAreAlignedByOriginWhateverTheirStamp) {
-  const types::Structure& type = *contract().find("prehend::v1::HandCommand");
+  const recording::types::Structure& type = *contract().find("prehend::v1::HandCommand");
   Random random(2);
   Comparison comparison(defaults());
   Value value = random_value(type, random);
@@ -143,7 +164,7 @@ TEST(Comparison, SamplesAreAlignedByOriginWhateverTheirStamp) {
 }
 
 TEST(Comparison, TheFirstDifferencesAreTheEarliest) {
-  const types::Structure& type = *contract().find("prehend::v1::ObjectState");
+  const recording::types::Structure& type = *contract().find("prehend::v1::ObjectState");
   Random random(2);
   Comparison comparison(defaults(), 3);
   Value value = random_value(type, random);
@@ -164,7 +185,7 @@ TEST(Comparison, TheFirstDifferencesAreTheEarliest) {
 
 // Fuzzing found that a key of a damaged recording ended the program.
 TEST(Comparison, StringsThatAreNoTextAreToldAllTheSame) {
-  const types::Structure& type = *contract().find("prehend::v1::HandCommand");
+  const recording::types::Structure& type = *contract().find("prehend::v1::HandCommand");
   Random random(2);
   Comparison comparison(defaults());
   Value value = random_value(type, random);
@@ -200,20 +221,45 @@ TEST(Comparison, MessagesOfUnknownTypeAreComparedByTheirBytes) {
 
 TEST(ToleranceTable, NamesOnlyFieldsOfTheContract) {
   // A field that was renamed would silently lose its tolerance.
-  for (const types::Structure* type : topic_types()) {
-    const std::string name = type->name.substr(type->name.rfind(':') + 1);
+  for (const recording::types::Structure* type : topic_types()) {
+    const std::string name = unscoped(type->name);
     for (const std::string& path : defaults().fields(name)) {
-      const types::Structure* at = type;
+      const recording::types::Structure* at = type;
       std::string rest = path;
       while (at && !rest.empty()) {
         const std::string part = rest.substr(0, rest.find('.'));
-        const types::Field* found = at->find(part);
+        const recording::types::Field* found = at->find(part);
         EXPECT_TRUE(found) << name << "." << path;
         at = found ? found->type.structure : nullptr;
         rest = part.size() == rest.size() ? "" : rest.substr(part.size() + 1);
       }
     }
   }
+}
+
+TEST(ToleranceTable, NamesOnlyTypesOfTopics) {
+  std::vector<std::string> known{"any"};
+  for (const recording::types::Structure* type : topic_types())
+    known.push_back(unscoped(type->name));
+  EXPECT_THAT(known, IsSupersetOf(defaults().types()));
+}
+
+// Another libm or compiler rounds otherwise: a computed number that had to be equal to the last bit
+// would differ there.
+TEST(ToleranceTable, HasAToleranceForEveryNumberThatAServiceComputes) {
+  int numbers = 0;
+  for (const dds::TopicInfo& topic : dds::topic_table) {
+    if (std::ranges::none_of(dds::role_names,
+                             [&](const auto& role) { return is_output(role.first, topic); }))
+      continue;
+    for (const std::string& path : numbers_in(*contract().find(topic.type_name()))) {
+      const Tolerance tolerance = defaults().of(unscoped(topic.type_name()), path);
+      EXPECT_TRUE(tolerance.ignored || tolerance.absolute + tolerance.relative > 0)
+          << topic.name << " " << path;
+      ++numbers;
+    }
+  }
+  EXPECT_GT(numbers, 50);
 }
 
 TEST(ToleranceTable, TheLongestPathCounts) {

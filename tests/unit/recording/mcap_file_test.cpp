@@ -7,14 +7,14 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <prehend/base/random.hpp>
-#include <prehend/mcap/reader.hpp>
-#include <prehend/mcap/record_stream.hpp>
-#include <prehend/mcap/writer.hpp>
 
-#include "scratch.hpp"
+#include "common/base/random.hpp"
+#include "common/recording/mcap/reader.hpp"
+#include "common/recording/mcap/record_stream.hpp"
+#include "common/recording/mcap/writer.hpp"
+#include "tests/unit/recording/scratch.hpp"
 
-namespace prehend::mcap {
+namespace prehend::recording::mcap {
 namespace {
 
 using prehend::testing::Scratch;
@@ -347,4 +347,4 @@ TEST(McapFile, AFullDiskLeavesAWholeFile) {
 }
 
 }  // namespace
-}  // namespace prehend::mcap
+}  // namespace prehend::recording::mcap

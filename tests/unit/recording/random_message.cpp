@@ -1,4 +1,4 @@
-#include "random_message.hpp"
+#include "tests/unit/recording/random_message.hpp"
 
 #include <algorithm>
 #include <bit>
@@ -7,7 +7,7 @@
 namespace prehend::testing {
 namespace {
 
-using namespace types;
+using namespace prehend::recording::types;
 
 template <class Number>
 Number random_number(Random& random) {

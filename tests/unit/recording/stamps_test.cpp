@@ -1,15 +1,16 @@
 // Time stamps inside a message are moved and nothing else. Checked on random values of every topic
 // type by decoding before and after: all fields but those of 64 bits that end in _ns are the same,
 // those are moved by exactly the shift, and 0 (no time) stays 0.
+#include "common/recording/types/stamps.hpp"
+
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
-#include <prehend/types/idl.hpp>
-#include <prehend/types/stamps.hpp>
 
-#include "random_message.hpp"
+#include "common/recording/types/idl.hpp"
+#include "tests/unit/recording/random_message.hpp"
 
-namespace prehend::types {
+namespace prehend::recording::types {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -71,4 +72,4 @@ TEST(Stamps, OfWhatIsCutShortOrOfTheOtherByteOrderAreLeft) {
 }
 
 }  // namespace
-}  // namespace prehend::types
+}  // namespace prehend::recording::types

@@ -2,12 +2,11 @@
 // bit of a file: each byte is covered by a CRC or compared with what it describes.
 #include <gtest/gtest.h>
 
-#include <prehend/base/random.hpp>
-#include <prehend/mcap/writer.hpp>
-#include <prehend/recording_tool/copy.hpp>
-#include <prehend/recording_tool/verify.hpp>
-
-#include "scratch.hpp"
+#include "common/base/random.hpp"
+#include "common/recording/mcap/writer.hpp"
+#include "services/recorder/tools/recording/copy.hpp"
+#include "services/recorder/tools/recording/verify.hpp"
+#include "tests/unit/recording/scratch.hpp"
 
 namespace prehend::recorder {
 namespace {
@@ -15,7 +14,7 @@ namespace {
 using prehend::testing::file_bytes;
 using prehend::testing::Scratch;
 using prehend::testing::write_bytes;
-using namespace mcap;
+using namespace prehend::recording::mcap;
 
 /// `count` messages from `first` on, every `step` ns, on one topic, with all kinds of records.
 void make(const std::filesystem::path& path, std::uint64_t first, std::uint64_t step, int count,

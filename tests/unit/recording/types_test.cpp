@@ -5,19 +5,18 @@
 //
 // A description handed to others must say the same as the tree: a tree made from it decodes the
 // same.
-#include <fastdds/rtps/common/SerializedPayload.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
-#include <prehend/dds/topics.hpp>
-#include <prehend/types/idl.hpp>
-#include <prehend/types/schema_text.hpp>
-#include <prehend/types/value.hpp>
 
-#include "random_message.hpp"
+#include "common/dds/topics.hpp"
+#include "common/recording/types/idl.hpp"
+#include "common/recording/types/schema_text.hpp"
+#include "common/recording/types/value.hpp"
+#include "tests/unit/recording/random_message.hpp"
 
-namespace prehend::types {
+namespace prehend::recording::types {
 namespace {
 
 using prehend::testing::encode;
@@ -32,15 +31,15 @@ const Library& contract() {
 /// The bytes, read into the generated type and written again.
 template <class PubSub>
 std::vector<std::uint8_t> through_fast_dds(std::vector<std::uint8_t> bytes) {
-  using eprosima::fastrtps::rtps::SerializedPayload_t;
+  using dds::rtps::SerializedPayload_t;
   PubSub support;
   typename PubSub::type message;
   SerializedPayload_t in(static_cast<std::uint32_t>(bytes.size()));
   std::copy(bytes.begin(), bytes.end(), in.data);
   in.length = static_cast<std::uint32_t>(bytes.size());
-  EXPECT_TRUE(support.deserialize(&in, &message));
-  SerializedPayload_t out(support.getSerializedSizeProvider(&message)());
-  EXPECT_TRUE(support.serialize(&message, &out));
+  EXPECT_TRUE(dds::deserialize(support, in, &message));
+  SerializedPayload_t out(dds::serialized_size(support, &message));
+  EXPECT_TRUE(dds::serialize(support, &message, out));
   return {out.data, out.data + out.length};
 }
 
@@ -58,7 +57,7 @@ TYPED_TEST_SUITE(EveryTopic, TopicTypes);
 
 template <class PubSub>
 const Structure& type_of() {
-  const Structure* type = contract().find(PubSub().getName());
+  const Structure* type = contract().find(dds::name_of(PubSub()));
   if (!type) throw std::runtime_error("not in the contract");
   return *type;
 }
@@ -124,9 +123,8 @@ TEST(Types, AFingertipIsWhereItWasPut) {
   posture.fingertips()[2].p_HF().y(1.5);
   posture.joint_angles({1, 2});
   v1::HandPosturePubSubType support;
-  eprosima::fastrtps::rtps::SerializedPayload_t payload(
-      support.getSerializedSizeProvider(&posture)());
-  ASSERT_TRUE(support.serialize(&posture, &payload));
+  dds::rtps::SerializedPayload_t payload(dds::serialized_size(support, &posture));
+  ASSERT_TRUE(dds::serialize(support, &posture, payload));
   const auto json =
       to_json(decode(type_of<v1::HandPosturePubSubType>(), std::span(payload.data, payload.length))
                   .value());
@@ -252,4 +250,4 @@ TEST(Ros2Msg, RefusesTypesThatContainThemselvesOrAreMissing) {
 }
 
 }  // namespace
-}  // namespace prehend::types
+}  // namespace prehend::recording::types

@@ -10,14 +10,15 @@
 #include <filesystem>
 #include <limits>
 #include <map>
-#include <prehend/base/random.hpp>
-#include <prehend/retargeting/inverse_kinematics.hpp>
-#include <prehend/retargeting/retargeter.hpp>
-#include <prehend/retargeting/vector_matching.hpp>
-#include <prehend/test_support/hands.hpp>
 #include <stdexcept>
 
-namespace prehend::retargeting {
+#include "common/base/random.hpp"
+#include "services/mapping/core/retargeting/inverse_kinematics.hpp"
+#include "services/mapping/core/retargeting/retargeter.hpp"
+#include "services/mapping/core/retargeting/vector_matching.hpp"
+#include "tests/support/hands.hpp"
+
+namespace prehend::mapping {
 namespace {
 
 using Eigen::Matrix3Xd;
@@ -192,4 +193,4 @@ TEST(Retargeting, AHandWithoutFollowingFingersSaysSo) {
 }
 
 }  // namespace
-}  // namespace prehend::retargeting
+}  // namespace prehend::mapping

@@ -1,11 +1,12 @@
 // lab.toml: defaults, file, environment and overrides in this order; whatever is misspelt or of the
 // wrong type is an error that names the place.
+#include "common/service/config.hpp"
+
 #include <gtest/gtest.h>
 
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
-#include <prehend/service/config.hpp>
 
 namespace prehend::service {
 namespace {

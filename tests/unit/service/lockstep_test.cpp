@@ -4,10 +4,11 @@
 #include <unistd.h>
 
 #include <atomic>
-#include <prehend/service/conductor.hpp>
-#include <prehend/service/shell.hpp>
 #include <random>
 #include <thread>
+
+#include "common/service/conductor.hpp"
+#include "common/service/shell.hpp"
 
 namespace prehend::service {
 namespace {
@@ -22,7 +23,6 @@ struct Played {
 /// Plays `frames` postures and detections to an order-sensitive service; pauses vary with the seed.
 Played play(unsigned seed, int domain, const std::string& rig) {
   Played run;
-  int exit_code = 0;
   const std::string rig_setting = "lab.rig=" + rig;
   const std::string domain_setting = "lab.domain=" + std::to_string(domain);
   const char* arguments[] = {"test",
@@ -33,9 +33,10 @@ Played play(unsigned seed, int domain, const std::string& rig) {
                              rig_setting.c_str(),
                              "--set",
                              domain_setting.c_str()};
-  auto shell = Shell::create(8, const_cast<char**>(arguments), {"summing", "sums"}, exit_code);
-  EXPECT_TRUE(shell);
-  if (!shell) return run;
+  auto created = Shell::create(8, const_cast<char**>(arguments), {"summing", "sums"});
+  EXPECT_TRUE(created);
+  if (!created) return run;
+  const std::unique_ptr<Shell> shell = std::move(*created);
   double state = 1;
   auto output = shell->publish(dds::robot_state);
   shell->subscribe(dds::hand_posture, [&](const v1::HandPosture& posture, const dds::SampleInfo&) {
@@ -53,7 +54,7 @@ Played play(unsigned seed, int domain, const std::string& rig) {
     message.dof({state});
     output.publish(message);
   });
-  std::thread service([&] { shell->run(); });
+  std::thread service([&] { EXPECT_EQ(shell->run(), exit_done); });
 
   auto participant =
       dds::Participant::create({.name = "test", .domain = domain, .rig = rig, .lockstep = true});

@@ -1,8 +1,8 @@
 // Health of a service: totals never shrink, rates are per second, quantiles are those of the
 // window.
-#include <gtest/gtest.h>
+#include "common/service/status.hpp"
 
-#include <prehend/service/status.hpp>
+#include <gtest/gtest.h>
 
 namespace prehend::service {
 namespace {

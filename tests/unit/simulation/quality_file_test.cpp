@@ -1,12 +1,14 @@
 // Files for `prehend grasp quality`: contacts become the same wrenches as given ones, and whatever
 // is wrong in them is refused with the file and the place.
+#include "services/simulation/tools/grasp/quality_file.hpp"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <filesystem>
 #include <fstream>
-#include <prehend/analysis/wrench_space.hpp>
-#include <prehend/simulation/quality_file.hpp>
+
+#include "common/analysis/wrench_space.hpp"
 
 namespace {
 

@@ -1,11 +1,13 @@
 // The world behind the topics: what it refuses, how it follows the clock, when it holds still, and
 // a whole grasp: commands reach, close and lift; one closure is found and judged.
+#include "services/simulation/core/simulation.hpp"
+
 #include <gtest/gtest.h>
 
 #include <limits>
-#include <prehend/model/hand_model.hpp>
-#include <prehend/simulation/simulation.hpp>
-#include <prehend/test_support/hands.hpp>
+
+#include "common/model/hand_model.hpp"
+#include "tests/support/hands.hpp"
 
 namespace {
 
@@ -184,7 +186,7 @@ TEST(Simulation, AGraspIsFoundOnceJudgedAndReallyLifted) {
   Closure& closure = episode.closures.front();
   EXPECT_EQ(closure.object.name, "Talc");
   EXPECT_GE(closure.contacts.size(), 3u);
-  const Verdict verdict = judge(closure);
+  const GraspVerdict verdict = judge(closure);
   EXPECT_TRUE(verdict.hold.held) << verdict.hold.reason;
   EXPECT_TRUE(verdict.quality.force_closure);
   EXPECT_GT(verdict.quality.epsilon, 0.01);

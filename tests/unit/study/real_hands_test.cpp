@@ -8,8 +8,11 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <prehend/base/random.hpp>
-#include <prehend/study/parts.hpp>
+
+#include "common/base/random.hpp"
+#include "services/mapping/files/mapping_model_file.hpp"
+#include "services/mapping/tools/study/parts.hpp"
+#include "tests/support/shared_data.hpp"
 
 namespace prehend::mapping {
 namespace {
@@ -24,7 +27,7 @@ Model load(const std::string& name) {
   auto hand = model::HandModel::load(PREHEND_SOURCE "/common/models/hands/" + name).value();
   auto scheme =
       Scheme::load(PREHEND_SOURCE "/services/mapping/schemes/" + name + ".toml", hand).value();
-  auto mapping = MappingModel::load(PREHEND_TRAINED "/" + name + ".mapping", hand).value();
+  auto mapping = load_mapping_model(PREHEND_TRAINED "/" + name + ".mapping", hand).value();
   return {std::move(hand), std::move(scheme), std::move(mapping)};
 }
 
@@ -39,8 +42,7 @@ double closed_by(const Scheme& scheme, const char* finger, const Eigen::VectorXd
 class RealHands : public testing::TestWithParam<const char*> {
  protected:
   void SetUp() override {
-    auto loaded =
-        load_real_takes(std::filesystem::path(PREHEND_SHARED_DATA) / "leap_hand_recordings");
+    auto loaded = load_real_takes(shared_data() / "leap_hand_recordings");
     if (!loaded) GTEST_SKIP() << loaded.error().message();
     takes_ = std::move(*loaded);
   }
@@ -54,7 +56,7 @@ TEST_P(RealHands, LieWithinWhatPeopleHaveShownAndOpenTheRobot) {
     for (const RealTake::Frame& frame : take.frames) {
       const auto seen = features(frame.fingertips, take.hand_scale);
       ASSERT_TRUE(seen) << take.name;
-      const Answer answer = model.mapping.direct(*seen);
+      const NetworkAnswer answer = model.mapping.direct(*seen);
       ++frames;
       outside += answer.extrapolating;
       if (!take.name.starts_with("HandSplay")) continue;

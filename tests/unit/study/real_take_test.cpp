@@ -1,6 +1,8 @@
 // Recordings of real hands. The reader is held against the glove service's own, which was written
 // for another purpose: the same fingertips in H to 1e-6 m, what rounding of angles leaves. Bad
 // files are refused by name.
+#include "services/mapping/tools/study/real_take.hpp"
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -8,15 +10,15 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
-#include <prehend/glove/features.hpp>
-#include <prehend/glove/recording.hpp>
-#include <prehend/study/real_take.hpp>
+
+#include "services/glove/core/features.hpp"
+#include "services/glove/files/hand_recording.hpp"
+#include "tests/support/shared_data.hpp"
 
 namespace prehend::mapping {
 namespace {
 
-const std::filesystem::path folder =
-    std::filesystem::path(PREHEND_SHARED_DATA) / "leap_hand_recordings";
+const std::filesystem::path folder = shared_data() / "leap_hand_recordings";
 
 class RealTakes : public testing::TestWithParam<std::string> {};
 

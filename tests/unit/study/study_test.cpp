@@ -12,6 +12,8 @@
 #include <set>
 #include <sstream>
 
+#include "tests/support/shared_data.hpp"
+
 namespace {
 
 using Json = nlohmann::json;
@@ -94,7 +96,7 @@ TEST(Study, IsTheSameForASeedHoweverTheWorkIsDivided) {
 
 // The fingers of real hands, on which nobody was trained: the robot hand closes where they close.
 TEST(Study, FollowsRealFingers) {
-  const std::string recordings = PREHEND_SHARED_DATA "/leap_hand_recordings";
+  const std::string recordings = (prehend::shared_data() / "leap_hand_recordings").string();
   if (!std::filesystem::exists(recordings)) GTEST_SKIP() << "no " << recordings;
   const auto folder = scratch();
   const Answer answer =

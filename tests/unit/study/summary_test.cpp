@@ -2,7 +2,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <prehend/study/benchmark_summary.hpp>
+
+#include "services/mapping/tools/study/benchmark_summary.hpp"
 
 namespace prehend::mapping {
 namespace {

@@ -1,0 +1,130 @@
+#pragma once
+
+/// Fast DDS, as far as its releases differ: 2.9 of Debian 12 and 3.1 of Debian 13. What is written
+/// alike for both but called otherwise has one name here; nobody else asks for the release, but for
+/// the few places that say why.
+#if __has_include(<fastrtps/utils/md5.h>)
+#define PREHEND_FAST_DDS 2
+#include <fastdds/rtps/common/Guid.h>
+#include <fastdds/rtps/common/InstanceHandle.h>
+#include <fastdds/rtps/common/Locator.h>
+#include <fastdds/rtps/common/SerializedPayload.h>
+#include <fastdds/rtps/transport/ChainingTransport.h>
+#include <fastdds/rtps/transport/ChainingTransportDescriptor.h>
+#include <fastdds/rtps/transport/SocketTransportDescriptor.h>
+#include <fastdds/rtps/transport/TCPv4TransportDescriptor.h>
+#include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
+#include <fastrtps/config.h>
+#include <fastrtps/types/TypesBase.h>
+#include <fastrtps/utils/IPLocator.h>
+#include <fastrtps/utils/md5.h>
+#define PREHEND_FAST_DDS_RELEASE FASTRTPS_VERSION_STR
+#else
+#define PREHEND_FAST_DDS 3
+#include <fastdds/config.hpp>
+#include <fastdds/rtps/common/Guid.hpp>
+#include <fastdds/rtps/common/InstanceHandle.hpp>
+#include <fastdds/rtps/common/Locator.hpp>
+#include <fastdds/rtps/common/SerializedPayload.hpp>
+#include <fastdds/rtps/transport/ChainingTransport.hpp>
+#include <fastdds/rtps/transport/ChainingTransportDescriptor.hpp>
+#include <fastdds/rtps/transport/SocketTransportDescriptor.hpp>
+#include <fastdds/rtps/transport/TCPv4TransportDescriptor.hpp>
+#include <fastdds/rtps/transport/UDPv4TransportDescriptor.hpp>
+#include <fastdds/utils/IPLocator.hpp>
+#include <fastdds/utils/md5.hpp>
+#define PREHEND_FAST_DDS_RELEASE FASTDDS_VERSION_STR
+#endif
+
+#include <cstdint>
+#include <fastdds/dds/core/policy/QosPolicies.hpp>
+#include <fastdds/dds/topic/TopicDataType.hpp>
+#include <string>
+
+namespace prehend::dds {
+
+namespace fdds = eprosima::fastdds::dds;
+namespace transport = eprosima::fastdds::rtps;
+
+#if PREHEND_FAST_DDS == 2
+
+namespace rtps = eprosima::fastrtps::rtps;
+using DdsDuration = eprosima::fastrtps::Duration_t;
+using DdsTime = eprosima::fastrtps::Time_t;
+using DiscoveryProtocol = rtps::DiscoveryProtocol_t;
+using Md5 = ::MD5;
+inline const DdsDuration endless = eprosima::fastrtps::c_TimeInfinite;
+
+inline bool succeeded(bool written) {
+  return written;
+}
+inline bool succeeded(const eprosima::fastrtps::types::ReturnCode_t& code) {
+  return code == eprosima::fastrtps::types::ReturnCode_t::RETCODE_OK;
+}
+
+inline std::string name_of(fdds::TopicDataType&& type) {
+  return type.getName();
+}
+inline bool has_key(const fdds::TopicDataType& type) {
+  return type.m_isGetKeyDefined;
+}
+inline std::uint32_t serialized_size(fdds::TopicDataType& type, const void* message) {
+  return type.getSerializedSizeProvider(const_cast<void*>(message))();
+}
+inline bool serialize(fdds::TopicDataType& type, const void* message,
+                      rtps::SerializedPayload_t& payload) {
+  return type.serialize(const_cast<void*>(message), &payload);
+}
+inline bool deserialize(fdds::TopicDataType& type, rtps::SerializedPayload_t& payload,
+                        void* message) {
+  return type.deserialize(&payload, message);
+}
+inline bool find_key(fdds::TopicDataType& type, const void* message,
+                     rtps::InstanceHandle_t& handle) {
+  return type.getKey(const_cast<void*>(message), &handle, false);
+}
+
+#else
+
+namespace rtps = eprosima::fastdds::rtps;
+using DdsDuration = fdds::Duration_t;
+using DdsTime = fdds::Time_t;
+using DiscoveryProtocol = rtps::DiscoveryProtocol;
+using Md5 = eprosima::fastdds::MD5;
+inline const DdsDuration endless = fdds::c_TimeInfinite;
+inline constexpr auto LOCATOR_KIND_UDPv4 = rtps::LOCATOR_KIND_UDPv4;
+inline constexpr auto LOCATOR_KIND_TCPv4 = rtps::LOCATOR_KIND_TCPv4;
+
+/// Only this tells whether a call has succeeded: write() returned true then, now it returns 0.
+inline bool succeeded(bool) = delete;
+inline bool succeeded(fdds::ReturnCode_t code) {
+  return code == fdds::RETCODE_OK;
+}
+
+// Our structs are final: on the wire the first representation is what 2.9 writes.
+inline constexpr auto representation = fdds::XCDR_DATA_REPRESENTATION;
+inline std::string name_of(fdds::TopicDataType&& type) {
+  return type.get_name();
+}
+inline bool has_key(const fdds::TopicDataType& type) {
+  return type.is_compute_key_provided;
+}
+inline std::uint32_t serialized_size(fdds::TopicDataType& type, const void* message) {
+  return type.calculate_serialized_size(message, representation);
+}
+inline bool serialize(fdds::TopicDataType& type, const void* message,
+                      rtps::SerializedPayload_t& payload) {
+  return type.serialize(message, payload, representation);
+}
+inline bool deserialize(fdds::TopicDataType& type, rtps::SerializedPayload_t& payload,
+                        void* message) {
+  return type.deserialize(payload, message);
+}
+inline bool find_key(fdds::TopicDataType& type, const void* message,
+                     rtps::InstanceHandle_t& handle) {
+  return type.compute_key(message, handle, false);
+}
+
+#endif
+
+}  // namespace prehend::dds

@@ -1,0 +1,34 @@
+#pragma once
+
+#include "common/dds/fastdds.hpp"
+
+namespace prehend::dds {
+
+/// A transport around another one that changes nothing: what stands between Fast DDS and its
+/// transports begins with this.
+class PassThroughTransport : public transport::ChainingTransport {
+ public:
+  explicit PassThroughTransport(const transport::ChainingTransportDescriptor& descriptor)
+      : ChainingTransport(descriptor) {}
+
+  transport::TransportDescriptorInterface* get_configuration() override {
+    return low_level_transport_->get_configuration();
+  }
+  bool send(rtps::SenderResource* lower, const rtps::octet* bytes, std::uint32_t size,
+            rtps::LocatorsIterator* begin, rtps::LocatorsIterator* end,
+            const std::chrono::steady_clock::time_point& timeout) override {
+    return lower->send(bytes, size, begin, end, timeout);
+  }
+  void receive(transport::TransportReceiverInterface* next, const rtps::octet* bytes,
+               std::uint32_t size, const rtps::Locator_t& local,
+               const rtps::Locator_t& remote) override {
+    next->OnDataReceived(bytes, size, local, remote);
+  }
+  /// The lower transport's own resources, not wrapped: it looks for them to use a connection again.
+  bool OpenOutputChannel(transport::SendResourceList& senders,
+                         const rtps::Locator_t& remote) override {
+    return low_level_transport_->OpenOutputChannel(senders, remote);
+  }
+};
+
+}  // namespace prehend::dds

@@ -1,0 +1,100 @@
+#include "common/dds/serialized_transport.hpp"
+
+#include "common/dds/pass_through_transport.hpp"
+
+namespace prehend::dds {
+
+namespace {
+
+struct Serializers {
+  std::mutex mutex;
+  std::set<const SerializedTransport*> all;
+};
+Serializers& serializers() {
+  static auto* instance = new Serializers;  // outlives the threads that receive
+  return *instance;
+}
+
+/// Ports of samples are odd, those of discovery even (RTPS 2.2, 9.6.1.1).
+bool carries_samples(const rtps::Locator_t& local) {
+  return local.kind == LOCATOR_KIND_UDPv4 && local.port % 2 == 1;
+}
+
+class Transport final : public PassThroughTransport {
+ public:
+  Transport(const transport::ChainingTransportDescriptor& descriptor,
+            SerializedTransport& serializer)
+      : PassThroughTransport(descriptor), serializer_(serializer) {}
+  void receive(transport::TransportReceiverInterface* next, const rtps::octet* bytes,
+               std::uint32_t size, const rtps::Locator_t& local,
+               const rtps::Locator_t& remote) override {
+    const auto process = [&] { next->OnDataReceived(bytes, size, local, remote); };
+    if (carries_samples(local))
+      process();
+    else
+      serializer_.pass(process);
+  }
+
+ private:
+  SerializedTransport& serializer_;
+};
+
+struct Descriptor final : transport::ChainingTransportDescriptor {
+  Descriptor(std::shared_ptr<transport::TransportDescriptorInterface> lower,
+             SerializedTransport& one)
+      : ChainingTransportDescriptor(std::move(lower)), serializer(one) {}
+  transport::TransportInterface* create_transport() const override {
+    return new Transport(*this, serializer);
+  }
+  SerializedTransport& serializer;
+};
+
+}  // namespace
+
+SerializedTransport::SerializedTransport() {
+  const std::scoped_lock lock(serializers().mutex);
+  serializers().all.insert(this);
+}
+
+SerializedTransport::~SerializedTransport() {
+  const std::scoped_lock lock(serializers().mutex);
+  serializers().all.erase(this);
+}
+
+void SerializedTransport::enter() {
+  static std::atomic<std::uint64_t> count = 0;
+  packet_ = ++count;
+}
+
+void SerializedTransport::close() {
+  const std::scoped_lock lock(mutex_);
+  closed_ = true;
+}
+
+std::shared_ptr<transport::TransportDescriptorInterface> serialized(
+    std::shared_ptr<transport::TransportDescriptorInterface> lower,
+    SerializedTransport& serializer) {
+  return std::make_shared<Descriptor>(std::move(lower), serializer);
+}
+
+std::set<std::uint64_t> packets_in_process() {
+  const std::scoped_lock lock(serializers().mutex);
+  std::set<std::uint64_t> all;
+  for (const SerializedTransport* serializer : serializers().all)
+    if (const std::uint64_t packet = serializer->packet_; packet != 0) all.insert(packet);
+  return all;
+}
+
+bool DeadlockWatchdog::look() {
+  std::map<std::uint64_t, int> now;
+  bool deaf = false;
+  for (const std::uint64_t packet : packets_in_process()) {
+    const auto known = looks_.find(packet);
+    now[packet] = known == looks_.end() ? 1 : known->second + 1;
+    deaf = deaf || now[packet] >= max_looks;
+  }
+  looks_.swap(now);
+  return deaf;
+}
+
+}  // namespace prehend::dds

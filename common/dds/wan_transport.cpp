@@ -1,0 +1,321 @@
+#include "common/dds/wan_transport.hpp"
+
+#include <arpa/inet.h>
+#include <fmt/format.h>
+#include <linux/tcp.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
+#include <sys/un.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <condition_variable>
+#include <cstdlib>
+#include <filesystem>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <random>
+#include <set>
+#include <stop_token>
+#include <thread>
+#include <utility>
+
+#include "common/dds/pass_through_transport.hpp"
+#include "common/dds/security.hpp"
+
+namespace prehend::dds {
+
+using rtps::IPLocator;
+
+namespace {
+
+/// Where the processes of a listening site are found.
+constexpr std::uint16_t first_wan_port = 7420, wan_ports = 16;
+
+/// Logical port of who listens and of who dials: it tells them apart.
+constexpr std::uint16_t listens = 7410, dials = 7412;
+
+/// A connection that works carries two announcements a second. One over which nothing has been said
+/// for so long, and not more received than a greeting, has missed it.
+constexpr std::chrono::milliseconds max_silence{1200};
+constexpr std::uint64_t max_greeting = 4096;  // bytes, that of TLS as well
+constexpr std::uint8_t established = 1;       // the kernel's TCP_ESTABLISHED
+
+using Ip = std::array<std::uint8_t, 4>;
+using Dialled = std::set<std::pair<Ip, std::uint16_t>>;
+
+Ip ip_of(const rtps::octet* bytes) {
+  Ip ip;
+  std::copy_n(bytes, ip.size(), ip.begin());
+  return ip;
+}
+
+rtps::Locator_t locator(std::int32_t kind, const Ip& ip = {}) {
+  rtps::Locator_t made;
+  made.kind = kind;
+  made.port = 0;
+  made.set_Invalid_Address();
+  IPLocator::setIPv4(made, ip.data());
+  return made;
+}
+
+/// Cuts connections to these places that have stopped at the greeting.
+void cut_silent(const Dialled& dialled) {
+  std::error_code code;
+  for (const auto& entry : std::filesystem::directory_iterator("/proc/self/fd", code)) {
+    const int file = std::atoi(entry.path().filename().c_str());
+    sockaddr_in peer{};
+    socklen_t size = sizeof peer;
+    if (::getpeername(file, reinterpret_cast<sockaddr*>(&peer), &size) != 0 ||
+        peer.sin_family != AF_INET ||
+        !dialled.contains(
+            {ip_of(reinterpret_cast<const rtps::octet*>(&peer.sin_addr)), ntohs(peer.sin_port)}))
+      continue;
+    tcp_info info{};
+    size = sizeof info;
+    if (::getsockopt(file, IPPROTO_TCP, TCP_INFO, &info, &size) == 0 &&
+        info.tcpi_state == established && info.tcpi_bytes_received < max_greeting &&
+        info.tcpi_last_data_sent > max_silence.count())
+      ::shutdown(file, SHUT_RDWR);
+  }
+}
+
+class WanTransport final : public PassThroughTransport {
+ public:
+  WanTransport(const transport::ChainingTransportDescriptor& descriptor, Dialled dialled)
+      : PassThroughTransport(descriptor), dialled_(std::move(dialled)) {
+    if (dialled_.empty()) return;
+    watch_ = std::jthread([this](const std::stop_token& end) {
+      std::mutex mutex;
+      std::unique_lock lock(mutex);
+      std::condition_variable_any ended;
+      while (!ended.wait_for(lock, end, max_silence, [&] { return end.stop_requested(); }))
+        cut_silent(dialled_);
+    });
+  }
+  bool transform_remote_locator(const rtps::Locator_t& remote,
+                                rtps::Locator_t& result) const override {
+    const auto found = way(remote);
+    if (found) result = *found;
+    return found.has_value();
+  }
+  bool OpenOutputChannel(transport::SendResourceList& senders,
+                         const rtps::Locator_t& remote) override {
+    const auto found = way(remote);
+    return found && PassThroughTransport::OpenOutputChannel(senders, *found);
+  }
+
+ private:
+  /// The locator by which a remote one is reached; nothing: not by TCP.
+  std::optional<rtps::Locator_t> way(const rtps::Locator_t& remote) const {
+    if (remote.kind != LOCATOR_KIND_TCPv4) return std::nullopt;
+    // Who dials has made the connection itself.
+    if (dialled_.empty())
+      return IPLocator::getLogicalPort(remote) == dials ? std::optional(remote) : std::nullopt;
+    const Ip ip =
+        ip_of(IPLocator::hasWan(remote) ? IPLocator::getWan(remote) : IPLocator::getIPv4(remote));
+    if (!dialled_.contains({ip, IPLocator::getPhysicalPort(remote)})) return std::nullopt;
+    rtps::Locator_t there = locator(LOCATOR_KIND_TCPv4, ip);
+    there.port = remote.port;
+    return there;
+  }
+
+  Dialled dialled_;
+  std::jthread watch_;
+};
+
+bool is_free(std::uint16_t port) {
+  const int socket = ::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_port = htons(port);
+  const int on = 1;
+  ::setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &on, sizeof on);
+  const bool free =
+      ::bind(socket, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0;
+  ::close(socket);
+  return free;
+}
+
+/// Keeps a port of this host for one process of the lab, from before it looks whether the port is
+/// free until it ends: another may look before it listens. A name of the kernel's, which goes with
+/// the process.
+class PortLock {
+ public:
+  /// Nothing: another process has it or listens there.
+  static std::shared_ptr<const PortLock> of(std::uint16_t port) {
+    auto claim = std::make_shared<PortLock>();
+    sockaddr_un name{};
+    name.sun_family = AF_UNIX;
+    const std::string text = fmt::format("prehend-port-{}", port);
+    std::ranges::copy(text, name.sun_path + 1);  // after a zero: not a file
+    const auto size = static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + 1 + text.size());
+    const bool ours = ::bind(claim->socket_, reinterpret_cast<const sockaddr*>(&name), size) == 0;
+    return ours && is_free(port) ? claim : nullptr;
+  }
+  PortLock() : socket_(::socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0)) {}
+  PortLock(const PortLock&) = delete;
+  PortLock& operator=(const PortLock&) = delete;
+  ~PortLock() { ::close(socket_); }
+
+ private:
+  int socket_;
+};
+
+/// As long as the participant has it, the port is its own.
+struct BetweenSitesDescriptor final : transport::ChainingTransportDescriptor {
+  BetweenSitesDescriptor(std::shared_ptr<transport::TransportDescriptorInterface> lower,
+                         Dialled dialled, std::shared_ptr<const PortLock> port)
+      : ChainingTransportDescriptor(std::move(lower)),
+        dialled_(std::move(dialled)),
+        port_(std::move(port)) {}
+  transport::TransportInterface* create_transport() const override {
+    return new WanTransport(*this, dialled_);
+  }
+  Dialled dialled_;
+  std::shared_ptr<const PortLock> port_;
+};
+
+/// Our own address on the way to another; 0.0.0.0: there is no way yet.
+Ip address_towards(const Address& other) {
+  const int socket = ::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_port = htons(first_wan_port);
+  std::copy(other.ip.begin(), other.ip.end(), reinterpret_cast<std::uint8_t*>(&address.sin_addr));
+  socklen_t size = sizeof address;
+  Ip own{};
+  if (::connect(socket, reinterpret_cast<const sockaddr*>(&address), size) == 0 &&
+      ::getsockname(socket, reinterpret_cast<sockaddr*>(&address), &size) == 0)
+    own = ip_of(reinterpret_cast<const rtps::octet*>(&address.sin_addr));
+  ::close(socket);
+  return own;
+}
+
+void use_tls(transport::TCPv4TransportDescriptor& tcp, const std::filesystem::path& keys) {
+  using Tls = transport::TCPTransportDescriptor::TLSConfig;
+  tcp.apply_security = true;
+  tcp.tls_config.verify_file = keys / key_files::authority;
+  tcp.tls_config.cert_chain_file = keys / key_files::certificate;
+  tcp.tls_config.private_key_file = keys / key_files::key;
+  tcp.tls_config.add_verify_mode(Tls::VERIFY_PEER);
+  tcp.tls_config.add_verify_mode(Tls::VERIFY_FAIL_IF_NO_PEER_CERT);
+  for (const auto old : {Tls::NO_SSLV2, Tls::NO_SSLV3, Tls::NO_TLSV1, Tls::NO_TLSV1_1})
+    tcp.tls_config.add_option(old);
+}
+
+struct Listening {
+  rtps::Locator_t announced;
+  std::shared_ptr<const PortLock> port;
+};
+
+Expected<Listening> listen(transport::TCPv4TransportDescriptor& tcp, const Network& network) {
+  std::uint16_t port = 0;
+  std::shared_ptr<const PortLock> ours;
+  if (!network.listen.empty()) {
+    const auto gateway = resolve(network.listen);
+    if (!gateway) return tl::unexpected(gateway.error());
+    port = gateway->port;
+    ours = PortLock::of(port);
+    if (!ours)
+      return fail(fmt::format("port {} is taken", port), "lab.listen",
+                  "each process of a site has a port of its own");
+    tcp.set_WAN_address(gateway->ip[0], gateway->ip[1], gateway->ip[2], gateway->ip[3]);
+  } else {
+    for (port = first_wan_port; !(ours = PortLock::of(port)); ++port)
+      if (port + 1 == first_wan_port + wan_ports)
+        return fail("all ports from 7420 to 7435 are taken", "lab.network = wan",
+                    "end other processes of the lab on this machine");
+  }
+  tcp.add_listener_port(port);
+  rtps::Locator_t own = locator(LOCATOR_KIND_TCPv4);
+  IPLocator::setPhysicalPort(own, port);
+  IPLocator::setLogicalPort(own, listens);
+  return Listening{own, std::move(ours)};
+}
+
+/// Dials all peers, and returns them with our own addresses on the way there.
+Expected<std::pair<Dialled, std::set<Ip>>> dial(rtps::LocatorList_t& initial,
+                                                const std::vector<std::string>& peers) {
+  Dialled all;
+  std::set<Ip> own;
+  for (const std::string& text : peers) {
+    const auto places = dialled(text);
+    if (!places) return tl::unexpected(places.error());
+    own.insert(address_towards(places->front()));
+    for (const Address& place : *places) {
+      if (!all.emplace(place.ip, place.port).second) continue;
+      rtps::Locator_t peer = locator(LOCATOR_KIND_TCPv4, place.ip);
+      IPLocator::setPhysicalPort(peer, place.port);
+      IPLocator::setLogicalPort(peer, listens);
+      initial.push_back(peer);
+    }
+  }
+  return std::pair(std::move(all), std::move(own));
+}
+
+}  // namespace
+
+Expected<std::vector<Address>> dialled(const std::string& peer) {
+  const auto address = resolve(peer, std::uint16_t{0});
+  if (!address) return tl::unexpected(address.error());
+  if (address->port != 0) return std::vector{*address};
+  std::vector<Address> all;
+  for (int n = 0; n < wan_ports; ++n)
+    all.push_back({address->ip, static_cast<std::uint16_t>(first_wan_port + n)});
+  return all;
+}
+
+Expected<void> join_sites(eprosima::fastdds::dds::DomainParticipantQos& qos,
+                          const Network& network) {
+  auto& all = qos.transport().user_transports;
+  const auto found = std::find_if(all.begin(), all.end(), [](const auto& one) {
+    return dynamic_cast<transport::TCPv4TransportDescriptor*>(one.get()) != nullptr;
+  });
+  if (found == all.end()) return fail("has no TCPv4 transport", "profile wan");
+  auto& tcp = dynamic_cast<transport::TCPv4TransportDescriptor&>(**found);
+  if (!network.keys.empty()) use_tls(tcp, network.keys);
+
+  auto& wire = qos.wire_protocol();
+  const rtps::Locator_t group = locator(LOCATOR_KIND_UDPv4, {239, 255, 0, 1});
+  wire.builtin.metatrafficMulticastLocatorList.push_back(group);
+  wire.builtin.metatrafficUnicastLocatorList.push_back(locator(LOCATOR_KIND_UDPv4));
+  wire.default_unicast_locator_list.push_back(locator(LOCATOR_KIND_UDPv4));
+  const auto announce = [&](const rtps::Locator_t& own) {
+    wire.builtin.metatrafficUnicastLocatorList.push_back(own);
+    wire.default_unicast_locator_list.push_back(own);
+  };
+  Dialled places;
+  std::shared_ptr<const PortLock> port;
+  if (network.peers.empty()) {
+    const auto own = listen(tcp, network);
+    if (!own) return tl::unexpected(own.error());
+    announce(own->announced);
+    port = own->port;
+  } else {
+    if (!network.listen.empty())
+      return fail("a process listens or dials, not both", "lab.listen",
+                  "empty lab.listen where lab.peers names somebody");
+    // Who names peers is no longer given the group of its own site.
+    wire.builtin.initialPeersList.push_back(group);
+    auto called = dial(wire.builtin.initialPeersList, network.peers);
+    if (!called) return tl::unexpected(called.error());
+    places = std::move(called->first);
+    // Of the loopback's addresses: whoever takes it for one to dial is refused at once.
+    std::random_device random;
+    std::uniform_int_distribution<int> any(0, 255);
+    const auto byte = [&] { return static_cast<rtps::octet>(any(random)); };
+    tcp.set_WAN_address(127, byte(), byte(), byte());
+    for (const Ip& ip : called->second) {
+      rtps::Locator_t own = locator(LOCATOR_KIND_TCPv4, ip);
+      IPLocator::setLogicalPort(own, dials);  // Fast DDS adds its process number
+      announce(own);
+    }
+  }
+  *found = std::make_shared<BetweenSitesDescriptor>(*found, std::move(places), std::move(port));
+  return {};
+}
+
+}  // namespace prehend::dds

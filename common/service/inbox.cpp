@@ -1,0 +1,29 @@
+#include "common/service/inbox.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace prehend::service {
+
+Input& Inbox::add(std::string_view topic) {
+  const auto place = std::find_if(inputs_.begin(), inputs_.end(),
+                                  [&](const auto& input) { return input->topic > topic; });
+  return **inputs_.insert(place, std::make_unique<Input>(Input{topic, {}, 0}));
+}
+
+std::vector<Arrival> Inbox::take_all() {
+  std::vector<Arrival> taken;
+  for (const auto& input : inputs_) {
+    for (Arrival& arrival : input->waiting) taken.push_back(std::move(arrival));
+    input->waiting.clear();
+  }
+  return taken;
+}
+
+void deliver(std::vector<Arrival>& due) {
+  std::stable_sort(due.begin(), due.end(),
+                   [](const auto& a, const auto& b) { return a.stamp_ns < b.stamp_ns; });
+  for (Arrival& arrival : due) arrival.deliver();
+}
+
+}  // namespace prehend::service

@@ -1,0 +1,78 @@
+#include "common/service/lockstep_loop.hpp"
+
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "common/dds/topics.hpp"
+
+namespace prehend::service {
+namespace {
+
+/// How many samples of the topic the clock has counted.
+std::uint64_t counted(const v1::LabClock& cycle, std::string_view topic) {
+  for (const auto& count : cycle.published())
+    if (topic == std::string_view(count.topic().c_str())) return count.count();
+  return 0;
+}
+
+bool all_has_come(const v1::LabClock& cycle, const Inbox& inbox) {
+  for (const auto& input : inbox.inputs())
+    if (input->received < counted(cycle, input->topic)) return false;
+  return true;
+}
+
+}  // namespace
+
+LockstepLoop::LockstepLoop(dds::Writer<v1::LabProgress> writer, std::string service)
+    : writer_(std::move(writer)), service_(std::move(service)) {}
+
+Expected<LockstepLoop> LockstepLoop::create(dds::Participant& participant,
+                                            const std::string& service) {
+  auto writer = participant.writer(dds::lab_progress);
+  if (!writer) return tl::unexpected(writer.error());
+  return LockstepLoop(std::move(*writer), service);
+}
+
+bool LockstepLoop::run_cycle(Inbox& inbox, const std::function<void(Time)>& tick,
+                             const Published& published) {
+  if (cycles_.empty() || !all_has_come(cycles_.front(), inbox)) return false;
+  const v1::LabClock& cycle = cycles_.front();
+  now_ = from_ns(cycle.stamp_ns());
+  // Of each topic only as many as the clock has counted: later ones belong to later cycles.
+  std::vector<Arrival> due;
+  std::uint32_t waiting = 0;
+  for (const auto& input : inbox.inputs()) {
+    std::vector<Arrival> kept;
+    for (Arrival& arrival : input->waiting) {
+      const bool is_due =
+          arrival.index < counted(cycle, input->topic) && arrival.stamp_ns <= cycle.stamp_ns();
+      (is_due ? due : kept).push_back(std::move(arrival));
+    }
+    waiting += static_cast<std::uint32_t>(kept.size());
+    input->waiting = std::move(kept);
+  }
+  deliver(due);
+  if (tick) tick(now_);
+  answer(cycle, waiting, published);
+  cycles_.pop_front();
+  return true;
+}
+
+void LockstepLoop::answer(const v1::LabClock& cycle, std::uint32_t waiting,
+                          const Published& published) {
+  v1::LabProgress progress;
+  progress.service(service_.c_str());
+  progress.cycle(cycle.cycle());
+  progress.stamp_ns(cycle.stamp_ns());
+  progress.waiting(waiting);
+  for (const auto& [topic, count] : published) {
+    v1::TopicCount entry;
+    entry.topic(topic.c_str());
+    entry.count(count);
+    progress.published().push_back(entry);
+  }
+  writer_.write(progress);
+}
+
+}  // namespace prehend::service

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/base/error.hpp"
+
+/// What every command of `prehend` shares: arguments, messages, exit codes.
+namespace prehend::tool {
+
+/// Says what is wrong, on one line, and returns the exit code. An error without words has been
+/// told.
+int complain(const Error& error);
+int complain(const Error& error, int exit_code);
+
+/// Parses; on --help or wrong use it says what there is to say and returns the exit code.
+std::optional<int> parse(CLI::App& app, const std::vector<std::string>& arguments);
+std::optional<int> parse(CLI::App& app, int argc, char** argv);
+
+/// A program of several subcommands, one of which is run: `prehend NAME COMMAND ...`.
+class Program {
+ public:
+  Program(const std::string& name, const std::string& description);
+
+  /// Where subcommands are added.
+  CLI::App& app() { return app_; }
+  /// What a subcommand does once it is parsed; it returns the exit code.
+  void on(CLI::App& command, std::function<int()> run);
+  /// Parses and runs; returns the exit code of the process.
+  int run(int argc, char** argv);
+
+ private:
+  CLI::App app_;
+  int exit_code_ = exit_done;
+};
+
+}  // namespace prehend::tool

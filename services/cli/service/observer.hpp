@@ -1,0 +1,60 @@
+#pragma once
+
+#include <deque>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/model/scene.hpp"
+#include "idl/Glove.h"
+#include "idl/Operation.h"
+#include "idl/Perception.h"
+#include "idl/Robot.h"
+#include "idl/World.h"
+#include "services/cli/service/outcome.hpp"
+
+namespace prehend::cli {
+
+/// Watches a lab and says what its demonstration came to. Pure: is handed what the topics say.
+class Observer {
+ public:
+  /// truth: what really stands on the table, where that is known.
+  explicit Observer(std::optional<model::Scene> truth = std::nullopt);
+
+  void hear(const v1::GloveFrame& frame);
+  void hear(const v1::ObjectDetection& detection);
+  void hear(const v1::HandCommand& command);
+  void hear(const v1::GraspReport& report);
+  void hear(const v1::ServiceStatus& status);
+  void lost_service(const std::string& key);
+
+  /// The service says of itself that it works.
+  bool is_up(std::string_view service) const;
+  /// A command that follows the hand (not: hold) has been heard.
+  bool commanded() const;
+  /// The first grasp has been judged.
+  bool judged() const { return report_.has_value(); }
+  /// The simulation has told its latency since the grasp closed.
+  bool latency_is_in() const;
+  std::uint64_t frames() const { return frames_; }
+  const std::map<std::string, v1::ServiceStatus>& services() const { return services_; }
+
+  /// What goes on, in a few words.
+  std::string progress() const;
+  Outcome outcome() const;
+
+ private:
+  const v1::ObjectDetection* recognised() const;
+  const v1::ServiceStatus* service(std::string_view name) const;
+
+  std::optional<model::Scene> truth_;
+  std::map<std::string, v1::ServiceStatus> services_;                  // by key
+  std::map<std::string, std::deque<v1::ObjectDetection>> detections_;  // by name, in order of stamp
+  std::optional<v1::HandCommand> command_;
+  std::optional<v1::GraspReport> report_;
+  std::string device_;
+  std::uint64_t frames_ = 0;
+};
+
+}  // namespace prehend::cli

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "services/cli/service/outcome.hpp"
+#include "services/cli/tools/arguments.hpp"
+
+namespace prehend::cli {
+
+/// What is demonstrated, and with what.
+struct DemoOptions {
+  LabArguments lab;
+  std::uint64_t seed = 1;
+  std::string object;                // empty: drawn by the seed
+  std::string hand;                  // empty: the configuration's
+  std::vector<std::string> without;  // services that are left out
+  std::string glove;                 // DEVICE[:FILE or port]; empty: the first emulated one
+  std::string camera;                // SOURCE[:PATH]; empty: the first
+  bool direct = false;               // recognition runs, but the mapping does not use it
+  bool attach = false;               // starts nothing, judges a lab that runs
+  bool keep = false;                 // keeps the folder with scene and logs
+  double timeout = 45;               // s
+  std::string record;                // file that takes all topics; empty: none
+};
+
+/// A demonstration that could not be given.
+struct Failure {
+  Error error;
+  int exit_code = exit_broken;
+};
+
+/// Says how it goes: a few words, several times a second.
+using Progress = std::function<void(const std::string&)>;
+
+/// Runs one demonstration with the services as processes of their own.
+tl::expected<Outcome, Failure> demonstrate(const DemoOptions& options, const Progress& progress);
+
+/// `prehend demo`. Returns the exit code.
+int demo_command(const std::vector<std::string>& arguments);
+
+}  // namespace prehend::cli

@@ -1,0 +1,42 @@
+#include "services/cli/tools/dispatch.hpp"
+
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+
+#include "common/base/paths.hpp"
+#include "services/cli/tools/arguments.hpp"
+
+namespace prehend::cli {
+
+const std::vector<Tool>& tools() {
+  static const std::vector<Tool> table{
+      {"record", "prehend-record", "topics into a file"},
+      {"replay", "prehend-replay", "a file back to topics"},
+      {"check", "prehend-check", "do services still answer as recorded"},
+      {"recording", "prehend-recording", "what is in recordings, parts of them, comparisons"},
+      {"glove", "prehend-glove-tool", "calibrate, register and watch a glove; decode, emulate"},
+      {"camera", "prehend-camera", "calibrate a camera with a chessboard"},
+      {"objects", "prehend-objects", "train, detect and evaluate object models"},
+      {"teach", "prehend-teach", "show postures to learn a mapping from"},
+      {"train", "prehend-train", "train a mapping model for a robot hand"},
+      {"study", "prehend-study", "repeat the thesis's experiments and the grasp benchmark"},
+      {"hand", "prehend-hand", "is this URDF a usable hand; make it one"},
+      {"grasp", "prehend-grasp", "plan grasps, export them, quality of given contacts"},
+  };
+  return table;
+}
+
+int become(const Tool& tool, const std::vector<std::string>& arguments) {
+  std::vector<std::string> command{(program_directory() / tool.program).string()};
+  command.insert(command.end(), arguments.begin(), arguments.end());
+  std::vector<char*> pointers;
+  for (std::string& argument : command) pointers.push_back(argument.data());
+  pointers.push_back(nullptr);
+  ::execv(pointers.front(), pointers.data());
+  return complain({std::strerror(errno), command.front(), "is it built and installed?"},
+                  exit_broken);
+}
+
+}  // namespace prehend::cli

@@ -1,0 +1,124 @@
+#include "services/cli/tools/status/status_command.hpp"
+
+#include <poll.h>
+#include <sys/ioctl.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <csignal>
+#include <iostream>
+#include <thread>
+
+#include "common/base/clock.hpp"
+#include "common/dds/participant.hpp"
+#include "common/service/arguments.hpp"
+#include "common/service/membership.hpp"
+#include "services/cli/tools/status/status_view.hpp"
+
+namespace prehend::cli {
+namespace {
+
+volatile std::sig_atomic_t ended = 0;
+extern "C" void on_end(int) {
+  ended = 1;
+}
+
+/// The last character that was entered on standard input; 0: none. Does not wait.
+char entered_key() {
+  pollfd input{STDIN_FILENO, POLLIN, 0};
+  char key = 0, next = 0;
+  while (::poll(&input, 1, 0) == 1 && (input.revents & POLLIN) &&
+         ::read(STDIN_FILENO, &next, 1) == 1)
+    if (next != '\n') key = next;
+  return key;
+}
+
+/// The page written over the one before, as far as the terminal reaches.
+void show(const std::string& page) {
+  winsize size{};
+  if (::ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) != 0 || size.ws_row < 2) size.ws_row = 50;
+  std::string text = "\x1b[H";
+  std::size_t begin = 0;
+  for (int row = 1; row < size.ws_row && begin < page.size(); ++row) {
+    const std::size_t end = page.find('\n', begin);
+    text += page.substr(begin, end - begin) + "\x1b[K\n";
+    begin = end + 1;
+  }
+  std::cout << text << "\x1b[J" << (begin < page.size() ? "(more than fits; --once shows all)" : "")
+            << std::flush;
+}
+
+}  // namespace
+
+int status_command(const std::vector<std::string>& arguments) {
+  CLI::App app{
+      "Who is there and how they fare. On a terminal the table is renewed until q and Enter or "
+      "Ctrl-C.",
+      "prehend status"};
+  service::LabArguments lab;
+  std::vector<std::string> awaited;
+  bool json = false, once = false;
+  double timeout = 1.5;
+  lab.add_to(app);
+  app.add_option("--wait", awaited,
+                 "ends as soon as this service is up, with exit code 1 when it is not in time; "
+                 "repeatable")
+      ->type_size(1)
+      ->allow_extra_args(false);
+  app.add_option("--timeout", timeout, "s to listen, where the table is not renewed")
+      ->capture_default_str()
+      ->check(CLI::Range(0.1, 3600.0));
+  app.add_flag("--once", once, "one table, also on a terminal");
+  app.add_flag("--json", json, "one JSON document on standard output");
+  if (const auto code = service::parse(app, arguments)) return *code;
+
+  const auto config = lab.load();
+  if (!config) return service::complain(config.error(), exit_wrong_use);
+  auto participant = dds::Participant::create(service::membership(*config, "prehend", "viewer"));
+  if (!participant) return service::complain(participant.error(), exit_broken);
+  auto statuses = participant->reader(dds::service_status);
+  if (!statuses) return service::complain(statuses.error(), exit_broken);
+  auto beacons = participant->reader(dds::lab_beacon);
+  if (!beacons) return service::complain(beacons.error(), exit_broken);
+
+  StatusView view(config->names("lab.services"));
+  const auto all_up = [&] {
+    return std::all_of(awaited.begin(), awaited.end(),
+                       [&](const std::string& name) { return view.is_up(name, process_now()); });
+  };
+  const bool live = !json && !once && awaited.empty() && ::isatty(STDOUT_FILENO) == 1;
+  if (live) {
+    struct sigaction action {};
+    action.sa_handler = on_end;
+    sigaction(SIGTERM, &action, nullptr);
+    sigaction(SIGINT, &action, nullptr);
+    std::cout << "\x1b[2J";
+  }
+  const Time begin = process_now();
+  Time next_page = begin + std::chrono::milliseconds(500);
+  while (ended == 0) {
+    const Time now = process_now();
+    if (!live && now - begin > prehend::seconds(timeout)) break;
+    if (!awaited.empty() && all_up()) break;
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    for (const auto& sample : statuses->take())
+      if (sample.info.gone)
+        view.lose(sample.data.service().to_string(), now);
+      else
+        view.hear(sample.data, now);
+    for (const auto& sample : beacons->take())
+      if (!sample.info.gone) view.hear(sample.data, now);
+    if (!live) continue;
+    if (entered_key() == 'q') break;
+    if (now < next_page) continue;
+    next_page = now + std::chrono::milliseconds(500);
+    show("rig " + config->text("lab.rig") + ": " + view.page(now));
+  }
+  const Time now = process_now();
+  if (!live) std::cout << (json ? view.json(now) + "\n" : view.page(now));
+  if (!awaited.empty()) return all_up() ? exit_done : exit_no;
+  return view.empty() ? exit_no : exit_done;
+}
+
+}  // namespace prehend::cli

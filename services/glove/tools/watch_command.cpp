@@ -1,0 +1,100 @@
+#include <unistd.h>
+
+#include <csignal>
+#include <iostream>
+#include <memory>
+#include <thread>
+
+#include "common/dds/participant.hpp"
+#include "common/service/arguments.hpp"
+#include "common/service/membership.hpp"
+#include "services/glove/tools/commands.hpp"
+#include "services/glove/tools/frame_input.hpp"
+#include "services/glove/tools/watch_view.hpp"
+
+namespace prehend::glove {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+struct WatchArguments {
+  service::LabArguments lab;
+  double duration = 0;  // s; 0: until somebody ends it
+  bool json = false;
+};
+
+volatile std::sig_atomic_t ended = 0;
+extern "C" void on_end(int) {
+  ended = 1;
+}
+
+Time now() {
+  return std::chrono::time_point_cast<Duration>(std::chrono::system_clock::now());
+}
+
+int watch(const WatchArguments& arguments) {
+  const auto config = arguments.lab.load();
+  if (!config) return service::complain(config.error(), exit_wrong_use);
+  auto participant =
+      dds::Participant::create(service::membership(*config, "glove-watch", "viewer"));
+  if (!participant) return service::complain(participant.error(), exit_broken);
+  auto frames = participant->reader(dds::glove_frame);
+  auto postures = participant->reader(dds::hand_posture);
+  auto statuses = participant->reader(dds::service_status);
+  if (!frames) return service::complain(frames.error(), exit_broken);
+  if (!postures) return service::complain(postures.error(), exit_broken);
+  if (!statuses) return service::complain(statuses.error(), exit_broken);
+  struct sigaction action {};
+  action.sa_handler = on_end;
+  sigaction(SIGTERM, &action, nullptr);
+  sigaction(SIGINT, &action, nullptr);
+
+  constexpr double snapshot_after = 2;  // s, in which every topic says something
+  const double duration =
+      arguments.duration > 0 ? arguments.duration : (arguments.json ? snapshot_after : 1e9);
+  const bool terminal = !arguments.json && ::isatty(STDOUT_FILENO) == 1;
+  const auto pause = std::chrono::milliseconds(terminal ? 250 : 1000);
+  WatchView view(config->text("glove.name"));
+  const Clock::time_point begin = Clock::now();
+  Clock::time_point shown = begin;
+  if (terminal) std::cout << "\x1b[2J";
+  while (ended == 0 && std::chrono::duration<double>(Clock::now() - begin).count() < duration) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    for (const auto& sample : frames->take())
+      if (!sample.info.gone) view.hear(sample.data, now());
+    for (const auto& sample : postures->take())
+      if (!sample.info.gone) view.hear(sample.data, now());
+    for (const auto& sample : statuses->take())
+      if (sample.info.gone)
+        view.lost_service(sample.data.service().to_string());
+      else
+        view.hear(sample.data);
+    if (terminal && entered_key() == 'q') break;
+    if (arguments.json || Clock::now() - shown < pause) continue;
+    shown = Clock::now();
+    // Written over the page before: each line's and the page's old rest is erased.
+    std::string page = view.page(now());
+    if (terminal) {
+      std::string lines;
+      for (const char c : page) lines += c == '\n' ? std::string("\x1b[K\n") : std::string(1, c);
+      page = "\x1b[H" + lines + "\x1b[J";
+    }
+    std::cout << page << std::flush;
+  }
+  if (arguments.json) std::cout << view.json(now()) << '\n';
+  return view.heard_something() ? exit_done : exit_no;
+}
+
+}  // namespace
+
+void add_watch(tool::Program& program) {
+  auto* command = program.app().add_subcommand(
+      "watch", "what the glove says: sensors, rates, rejections, fingertips; q and Enter ends");
+  const auto a = std::make_shared<WatchArguments>();
+  a->lab.add_to(*command);
+  command->add_option("--for", a->duration, "s after which it ends")->check(CLI::Range(0.1, 1e9));
+  command->add_flag("--json", a->json, "one snapshot as a JSON document, after 2 s");
+  program.on(*command, [a] { return watch(*a); });
+}
+
+}  // namespace prehend::glove

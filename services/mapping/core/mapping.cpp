@@ -1,0 +1,202 @@
+#include "services/mapping/core/mapping.hpp"
+
+#include <utility>
+
+#include "common/model/human_hand.hpp"
+
+namespace prehend::mapping {
+
+namespace {
+
+/// Two fingers of a hand at X_WB with this posture reach into the object.
+bool closes_on(const FingerDistances& fingers, const Eigen::VectorXd& dof, const Pose& X_WB,
+               const Detection& object) {
+  const Eigen::VectorXd distances =
+      fingers.distances(dof, object.shape, X_WB.inverse() * object.X_WO);
+  return (distances.array() < 0.002).count() >= 2;
+}
+
+}  // namespace
+
+Expected<Mapping> Mapping::create(const model::HandModel& hand, const MappingModel& model,
+                                  const MappingOptions& options) {
+  Mapping made(hand, model, options);
+  if (auto used = made.use(options.modes); !used) return tl::unexpected(used.error());
+  return made;
+}
+
+Mapping::Mapping(const model::HandModel& hand, const MappingModel& model,
+                 const MappingOptions& options)
+    : hand_(hand),
+      model_(model),
+      options_(options),
+      distances_(hand),
+      tracks_(options.tracks),
+      targets_(hand, model, options.target),
+      arbitration_(options.ramp),
+      trust_(options.trust, options.ramp),
+      direct_(hand, options.ramp),
+      placement_(hand, options.placement),
+      follow_through_(hand),
+      grip_(hand, options.grip),
+      motion_(hand, options.motion),
+      hold_(options.hold) {}
+
+Expected<void> Mapping::use(const MappingModes& modes) {
+  if (auto used = direct_.use(modes.fingers); !used) return used;
+  options_.modes = modes;
+  return {};
+}
+
+Expected<void> Mapping::on_state(const RobotState& state) {
+  const auto dofs = static_cast<Eigen::Index>(hand_.dofs().size());
+  const auto joints = static_cast<Eigen::Index>(hand_.joints().size());
+  if (state.dof.size() != dofs || state.velocity.size() != joints || state.torque.size() != joints)
+    return fail("robot state of another hand");
+  if (!state.dof.allFinite() || !state.velocity.allFinite() || !state.torque.allFinite() ||
+      !is_finite(state.X_WB))
+    return fail("robot state not finite");
+  grip_.observe(state, command_.dof);
+  state_ = state;
+  return {};
+}
+
+Expected<Command> Mapping::on_posture(const Posture& posture, Time now) {
+  const auto features = features_of(posture, now);
+  if (!features) return tl::unexpected(features.error());
+  const Pose X_WG = posture.X_WH * model::HumanHand(posture.hand_scale).X_HG();
+  if (command_.dof.size() == 0 && !start(X_WG, posture.stamp, now))
+    return fail("no robot state yet");
+  const Duration elapsed = motion_.step(posture.stamp - time_);
+  time_ = std::max(time_, posture.stamp);
+
+  const auto seen = select_target(X_WG, posture.stamp);
+  weigh(seen, elapsed);
+  const auto fingers = answer(posture, *features, elapsed);
+  if (!fingers) return tl::unexpected(fingers.error());
+  const GraspType grasp =
+      grasp_type(mean_closing(hand_, fingers->dof), X_WG, model_.is_precision(*features));
+  place(X_WG, seen, elapsed);
+  const Eigen::VectorXd dof = grip_.squeeze(follow_through(fingers->dof, elapsed));
+  move_toward(dof, placement_.X_WB(X_WG), elapsed);
+
+  command_.stamp = posture.stamp;
+  command_.origin = posture.origin;
+  command_.mode = known_object() != nullptr ? Mode::intelligent : Mode::direct;
+  command_.weight = weight();
+  command_.object = known_object() != nullptr ? known_object()->object.detection.name : "";
+  command_.grasp_type = grasp;
+  command_.extrapolating = fingers->extrapolating;
+  hold_.answered(now);
+  return command_;
+}
+
+/// What is seen of a posture that can be answered.
+Expected<Features> Mapping::features_of(const Posture& posture, Time now) const {
+  auto features = mapping::features(posture.fingertips, posture.hand_scale);
+  if (!features) return features;
+  if (!is_finite(posture.X_WH)) return fail("pose of the hand not finite");
+  if (std::chrono::abs(now - posture.stamp) > options_.max_posture_age)
+    return fail("posture stale");
+  return features;
+}
+
+/// Where the first command begins: where the robot hand is; without word from it, where it shall
+/// be. False: not yet.
+bool Mapping::start(const Pose& X_WG, Time stamp, Time now) {
+  if (!first_posture_) first_posture_ = now;
+  if (!state_ && now - *first_posture_ < options_.state_wait) return false;
+  time_ = stamp;
+  if (!state_) {
+    command_.dof = hand_.clamp(hand_.postures().at("open"));
+    command_.X_WB = X_WG * hand_.X_BG().inverse();
+    return true;
+  }
+  // A hand that presses on something does so with a squeeze and perhaps a corrected placement: both
+  // stay.
+  command_.dof = grip_.squeeze(hand_.clamp(state_->dof));
+  command_.X_WB = state_->X_WB;
+  if (grip_.touching()) placement_.start(X_WG, state_->X_WB);
+  return true;
+}
+
+/// The object to reach for, as it is seen now.
+std::optional<GraspTarget> Mapping::select_target(const Pose& X_WG, Time now) {
+  if (!options_.modes.intelligent && !options_.modes.placement) return std::nullopt;
+  tracks_.forget_old(now);
+  return targets_.select(tracks_, X_WG);
+}
+
+/// Moves the weight of the intelligent answer.
+void Mapping::weigh(const std::optional<GraspTarget>& seen, Duration elapsed) {
+  const Phase before = arbitration_.phase();
+  arbitration_.step(seen.has_value(), grip_.touching(), elapsed);
+  targets_.update(seen, before, arbitration_.phase());
+  trust_.step(seen ? &seen->object : nullptr, arbitration_.phase(), elapsed);
+}
+
+const GraspTarget* Mapping::known_object() const {
+  return targets_.engaged() && weight() > 0 ? &*targets_.engaged() : nullptr;
+}
+
+/// The fingers' answer: the direct one, and by its weight that of the object's network.
+Expected<NetworkAnswer> Mapping::answer(const Posture& posture, const Features& features,
+                                        Duration elapsed) {
+  const NetworkAnswer joints = model_.direct(features);
+  auto direct = direct_.answer(posture, joints.dof, command_.dof, command_.grasp_type, elapsed);
+  if (!direct) return tl::unexpected(direct.error());
+  NetworkAnswer made{std::move(*direct), joints.extrapolating};
+  const GraspTarget* target = known_object();
+  if (target != nullptr && options_.modes.intelligent) {
+    // select() lets through only shapes that have a network.
+    const NetworkAnswer known =
+        *model_.intelligent(features, target->object.detection.shape, target->X_OG);
+    made.dof += weight() * (known.dof - made.dof);
+    made.extrapolating = known.extrapolating || (joints.extrapolating && weight() < 1);
+  }
+  made.dof = model_.limited(made.dof);
+  return made;
+}
+
+/// Corrects where the hand goes.
+void Mapping::place(const Pose& X_WG, const std::optional<GraspTarget>& seen, Duration elapsed) {
+  // In a grip, the object moves with the hand: what was corrected stays.
+  if (phase() == Phase::gripping) return;
+  if (phase() == Phase::direct || !options_.modes.placement) {
+    placement_.release();
+  } else if (seen && phase() != Phase::leaving) {
+    if (options_.modes.intelligent)
+      placement_.yield(*seen, targets_.engaged()->object.detection, distances_, command_.dof);
+    placement_.aim(X_WG, *seen);
+  }
+  placement_.follow(weight(), elapsed);
+}
+
+/// Fingers that have closed on an object whose answer counts fully go on.
+Eigen::VectorXd Mapping::follow_through(const Eigen::VectorXd& dof, Duration elapsed) {
+  const GraspTarget* target = known_object();
+  if (target == nullptr || !options_.modes.intelligent || weight() <= 0.99) {
+    follow_through_.reset();
+    return dof;
+  }
+  const bool closed = closes_on(distances_, dof, command_.X_WB, target->object.detection);
+  return model_.limited(follow_through_.go_on(dof, closed, grip_.touching(), elapsed));
+}
+
+/// As far as the hand may go in this time.
+void Mapping::move_toward(const Eigen::VectorXd& dof, const Pose& X_WB, Duration elapsed) {
+  const double together = options_.modes.intelligent ? weight() : 0;
+  command_.dof = motion_.fingers(command_.dof, model_.limited(dof), together, elapsed);
+  command_.X_WB = motion_.base(command_.X_WB, X_WB, elapsed);
+}
+
+std::optional<Command> Mapping::tick(Time now) {
+  if (!hold_.due(now)) return std::nullopt;
+  time_ = std::max(time_, now);
+  command_.stamp = now;
+  command_.origin.reset();
+  command_.mode = Mode::hold;
+  return command_;
+}
+
+}  // namespace prehend::mapping

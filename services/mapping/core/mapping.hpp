@@ -1,0 +1,136 @@
+#pragma once
+
+#include <algorithm>
+#include <optional>
+#include <string>
+
+#include "common/base/error.hpp"
+#include "common/base/pose.hpp"
+#include "common/base/time.hpp"
+#include "common/model/hand_model.hpp"
+#include "services/mapping/core/arbitration.hpp"
+#include "services/mapping/core/direct_fingers.hpp"
+#include "services/mapping/core/features.hpp"
+#include "services/mapping/core/finger_distances.hpp"
+#include "services/mapping/core/follow_through.hpp"
+#include "services/mapping/core/grasp_type.hpp"
+#include "services/mapping/core/grip_controller.hpp"
+#include "services/mapping/core/hold_timer.hpp"
+#include "services/mapping/core/mapping_model.hpp"
+#include "services/mapping/core/mapping_modes.hpp"
+#include "services/mapping/core/motion_limits.hpp"
+#include "services/mapping/core/object_tracks.hpp"
+#include "services/mapping/core/placement.hpp"
+#include "services/mapping/core/posture.hpp"
+#include "services/mapping/core/target_selector.hpp"
+#include "services/mapping/core/trust.hpp"
+
+namespace prehend::mapping {
+
+enum class Mode { hold, direct, intelligent };
+
+/// What the robot hand shall do, as robot/command says it.
+struct Command {
+  Time stamp;                  // of the posture; of the tick when holding
+  std::optional<Time> origin;  // of the glove frame; none when holding
+  Eigen::VectorXd dof;         // rad, or m of what slides
+  Pose X_WB = Pose::Identity();
+  Mode mode = Mode::hold;
+  double weight = 0;   // of the intelligent answer
+  std::string object;  // empty: none
+  GraspType grasp_type = GraspType::none;
+  bool extrapolating = false;
+};
+
+struct MappingOptions {
+  /// How it answers at first; use() changes it.
+  MappingModes modes;
+  /// Which detections are known objects, and for how long.
+  ObjectTrackOptions tracks;
+  /// Which known object is within reach.
+  TargetOptions target;
+  /// How exact a detection must be to count fully.
+  TrustOptions trust;
+  /// How far and how fast a known object corrects where the hand goes.
+  PlacementOptions placement;
+  /// How the hand squeezes what stops its fingers.
+  GripOptions grip;
+  /// How far one command goes from the one before.
+  MotionLimitOptions motion;
+  /// When the hand is told to stay.
+  HoldTimerOptions hold;
+  /// What is blended (the intelligent answer, the trust in it, and the fingertips' share of the
+  /// combined mode) goes from 0 to 1 in this time.
+  Duration ramp = std::chrono::milliseconds(300);
+  /// A posture that is older than this time, or as far in the future, is not answered.
+  Duration max_posture_age = std::chrono::milliseconds(500);
+  /// Without robot/state for this time from the first posture, it starts with an open hand.
+  Duration state_wait = std::chrono::seconds(1);
+};
+
+/// From postures, detections and robot states to commands. Pure and deterministic; time comes as
+/// values. Every command keeps the velocity limits relative to the one before, whatever happens;
+/// the first one starts from where the robot hand is. Keeps references to the hand and the model.
+class Mapping {
+ public:
+  /// Fails when the hand does not allow the mode of the fingers.
+  static Expected<Mapping> create(const model::HandModel& hand, const MappingModel& model,
+                                  const MappingOptions& options);
+
+  /// Changes how it answers from now on; the hand goes there no faster than it may. Fails, and
+  /// leaves all as it was, when the hand does not allow the mode of the fingers.
+  Expected<void> use(const MappingModes& modes);
+
+  /// The answer to a posture; call tick() too. The error's `what` is a short reason to count: bad
+  /// postures are not answered, so the hand holds still. now: when the posture arrived.
+  Expected<Command> on_posture(const Posture& posture, Time now);
+  /// Refuses what ObjectTracks::observe does.
+  Expected<void> on_detection(const Detection& detection) { return tracks_.observe(detection); }
+  void on_detection_gone(std::uint32_t track) { tracks_.remove(track); }
+  /// Refuses what has not this hand's sizes or is not finite.
+  Expected<void> on_state(const RobotState& state);
+  /// A command to stay, once no posture has been answered for a while (HoldTimerOptions).
+  std::optional<Command> tick(Time now);
+
+  Phase phase() const { return arbitration_.phase(); }
+
+ private:
+  Mapping(const model::HandModel& hand, const MappingModel& model, const MappingOptions& options);
+
+  // The steps of a posture, in order; numbers are those of README.md.
+  Expected<Features> features_of(const Posture& posture, Time now) const;  // 1, 2
+  bool start(const Pose& X_WG, Time stamp, Time now);                      // 3
+  std::optional<GraspTarget> select_target(const Pose& X_WG, Time now);    // 4
+  void weigh(const std::optional<GraspTarget>& seen, Duration elapsed);    // 5, 6
+  Expected<NetworkAnswer> answer(const Posture& posture, const Features& features,
+                                 Duration elapsed);                                        // 7, 8
+  void place(const Pose& X_WG, const std::optional<GraspTarget>& seen, Duration elapsed);  // 10, 11
+  Eigen::VectorXd follow_through(const Eigen::VectorXd& dof, Duration elapsed);            // 12
+  void move_toward(const Eigen::VectorXd& dof, const Pose& X_WB, Duration elapsed);  // 14 to 16
+
+  /// Of the intelligent answer, 0 to 1.
+  double weight() const { return std::min(arbitration_.weight(), trust_.bound()); }
+  /// The object that counts at all; nullptr: none.
+  const GraspTarget* known_object() const;
+
+  const model::HandModel& hand_;
+  const MappingModel& model_;
+  MappingOptions options_;
+  FingerDistances distances_;
+  ObjectTracks tracks_;
+  TargetSelector targets_;
+  Arbitration arbitration_;
+  Trust trust_;
+  DirectFingers direct_;
+  Placement placement_;
+  FollowThrough follow_through_;
+  GripController grip_;
+  MotionLimits motion_;
+  HoldTimer hold_;
+  std::optional<RobotState> state_;
+  std::optional<Time> first_posture_;
+  Time time_{};      // that the last command is for
+  Command command_;  // the last one; dof empty before the first
+};
+
+}  // namespace prehend::mapping

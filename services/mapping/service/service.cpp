@@ -1,0 +1,266 @@
+#include "services/mapping/service/service.hpp"
+
+#include <algorithm>
+#include <map>
+#include <optional>
+
+#include "common/base/log.hpp"
+#include "common/base/paths.hpp"
+#include "common/convert/convert.hpp"
+#include "common/dds/topics.hpp"
+#include "services/mapping/core/mapping.hpp"
+#include "services/mapping/core/mapping_model.hpp"
+#include "services/mapping/core/mapping_modes.hpp"
+#include "services/mapping/files/mapping_model_file.hpp"
+#include "services/mapping/service/posture_message.hpp"
+
+namespace prehend::mapping {
+
+namespace {
+
+constexpr Duration patience = std::chrono::milliseconds(300);  // with a silent glove
+constexpr Duration start_up = std::chrono::seconds(3);         // until one is there
+constexpr Duration camera_patience = std::chrono::seconds(2);  // with objects that are not seen
+constexpr std::size_t max_tracks = 1000;
+
+v1::MappingMode to_message(Mode mode) {
+  switch (mode) {
+    case Mode::direct:
+      return v1::MODE_DIRECT;
+    case Mode::intelligent:
+      return v1::MODE_INTELLIGENT;
+    case Mode::hold:
+      break;
+  }
+  return v1::MODE_HOLD;
+}
+
+v1::GraspType to_message(GraspType type) {
+  switch (type) {
+    case GraspType::power_wrap:
+      return v1::GRASP_POWER_WRAP;
+    case GraspType::circular_sphere:
+      return v1::GRASP_CIRCULAR_SPHERE;
+    case GraspType::precision:
+      return v1::GRASP_PRECISION;
+    case GraspType::none:
+      break;
+  }
+  return v1::GRASP_NONE;
+}
+
+Expected<Detection> from_message(const v1::ObjectDetection& message) {
+  auto X_WO = convert::from_message(message.X_WO());
+  if (!X_WO) return fail("pose of a detection not usable");
+  return Detection{message.track(),
+                   message.name().to_string(),
+                   {convert::from_message(message.shape()), convert::from_message(message.size())},
+                   *X_WO,
+                   message.probability(),
+                   from_ns(message.stamp_ns()),
+                   Eigen::Matrix4d::Map(message.covariance().data())};
+}
+
+Expected<RobotState> from_message(const v1::HandState& message) {
+  auto X_WB = convert::from_message(message.X_WB());
+  if (!X_WB) return fail("pose of the robot not usable");
+  return RobotState{from_ns(message.stamp_ns()), convert::from_message(message.dof()),
+                    convert::from_message(message.velocity()),
+                    convert::from_message(message.torque()), *X_WB};
+}
+
+/// What the mapping is told: to the operator, «direct» leaves the placement alone as well.
+MappingModes effective(MappingModes modes) {
+  modes.placement = modes.placement && modes.intelligent;
+  return modes;
+}
+
+}  // namespace
+
+class Service::Topics {
+ public:
+  Topics(service::Shell& shell, std::unique_ptr<const model::HandModel> hand,
+         std::unique_ptr<const MappingModel> model, Mapping mapping, MappingModes modes)
+      : shell_(shell),
+        hand_(std::move(hand)),
+        model_(std::move(model)),
+        mapping_(std::move(mapping)),
+        modes_(modes),
+        hand_name_(shell.config().text("mapping.hand_name")),
+        output_(shell.publish(dds::robot_command)),
+        replies_(shell.publish(dds::operator_reply)),
+        last_posture_(shell.now() + start_up) {
+    message_.hand(hand_name_);
+    message_.model(hand_->name());
+    shell.subscribe(dds::hand_posture,
+                    Handler<v1::HandPosture>([this](auto& s, auto& i) { on_posture(s, i); }));
+    shell.subscribe(dds::object_detection,
+                    Handler<v1::ObjectDetection>([this](auto& s, auto& i) { on_detection(s, i); }));
+    shell.subscribe(dds::robot_state,
+                    Handler<v1::HandState>([this](auto& s, auto& i) { on_state(s, i); }));
+    shell.subscribe(dds::operator_command,
+                    Handler<v1::OperatorCommand>([this](auto& s, auto& i) { on_order(s, i); }));
+    shell.on_tick(std::chrono::milliseconds(20), [this](Time now) {
+      if (const auto command = mapping_.tick(now)) {
+        shell_.status().count("hold commands");
+        publish(*command);
+      }
+      if (!shell_.lockstep()) look_around(now);
+    });
+  }
+
+ private:
+  template <class T>
+  using Handler = std::function<void(const T&, const dds::SampleInfo&)>;
+
+  void on_posture(const v1::HandPosture& message, const dds::SampleInfo& info) {
+    if (info.gone) return;
+    const Time now = shell_.now();
+    service::Status& status = shell_.status();
+    const auto posture = posture_from_message(message);
+    const auto command =
+        posture.and_then([&](const Posture& value) { return mapping_.on_posture(value, now); });
+    if (!command) {
+      status.drop(command.error().what);
+      last_reject_ = command.error().what;
+      return;
+    }
+    publish(*command);
+    last_posture_ = now;
+    last_reject_.clear();
+    status.latency("posture hop", now - info.sent);
+    status.latency("glove to command", shell_.now() - from_ns(message.origin_ns()));
+  }
+
+  void on_detection(const v1::ObjectDetection& message, const dds::SampleInfo& info) {
+    if (info.gone) {
+      mapping_.on_detection_gone(message.track());
+      seen_.erase(message.track());
+      return;
+    }
+    if (seen_.size() < max_tracks) seen_[message.track()] = shell_.now();
+    const auto taken = from_message(message).and_then(
+        [&](const Detection& detection) { return mapping_.on_detection(detection); });
+    if (!taken) shell_.status().drop(taken.error().what);
+  }
+
+  void on_state(const v1::HandState& message, const dds::SampleInfo& info) {
+    if (info.gone || message.hand() != hand_name_) return;
+    const auto taken = from_message(message).and_then(
+        [&](const RobotState& state) { return mapping_.on_state(state); });
+    if (!taken) shell_.status().drop(taken.error().what);
+  }
+
+  /// «Set mode», for us or for all; other orders are not ours.
+  void on_order(const v1::OperatorCommand& message, const dds::SampleInfo& info) {
+    const std::string target = message.target().to_string();
+    if (info.gone || message.action() != v1::ACTION_SET_MODE) return;
+    if (!target.empty() && target != "mapping") return;
+    const auto executed =
+        changed(modes_, message.argument().to_string()).and_then([this](const MappingModes& modes) {
+          return use(modes);
+        });
+    if (!executed) shell_.status().drop("order not understood");
+    v1::OperatorReply reply;
+    reply.id(message.id());
+    reply.stamp_ns(to_ns(shell_.now()));
+    reply.service("mapping");
+    reply.done(executed.has_value());
+    // Long enough for every reason that there is.
+    reply.message((executed ? to_string(modes_) : executed.error().message()).substr(0, 255));
+    replies_.publish(reply);
+  }
+
+  Expected<void> use(const MappingModes& modes) {
+    auto used = mapping_.use(effective(modes));
+    if (!used) return used;
+    modes_ = modes;
+    log::info("mode: {}", to_string(modes));
+    return {};
+  }
+
+  /// Says what is missing; that the hand holds still then is the mapping's own doing.
+  void look_around(Time now) {
+    std::string missing;
+    if (now - last_posture_ > patience)
+      missing = last_reject_.empty() ? "nobody sends hand/posture; the hand stays as it is"
+                                     : "no hand/posture is usable: " + last_reject_;
+    // A recognition that works says of each object that it is gone.
+    else if (std::any_of(seen_.begin(), seen_.end(),
+                         [&](const auto& track) { return now - track.second > camera_patience; }))
+      missing = "recognition has fallen silent; objects are no longer known";
+    if (missing == missing_) return;
+    missing_ = missing;
+    if (missing.empty()) {
+      log::info("nothing is missing any more");
+      return shell_.status().running();
+    }
+    log::warning("{}", missing);
+    shell_.status().degraded(missing);
+  }
+
+  void publish(const Command& command) {
+    message_.sequence_number(sequence_number_++);
+    message_.stamp_ns(to_ns(command.stamp));
+    message_.origin_ns(command.origin ? to_ns(*command.origin) : 0);
+    message_.dof(convert::to_message(command.dof));
+    message_.X_WB(convert::to_message(command.X_WB));
+    message_.mode(to_message(command.mode));
+    message_.weight(command.weight);
+    message_.object(command.object);
+    message_.grasp_type(to_message(command.grasp_type));
+    message_.extrapolating(command.extrapolating);
+    output_.publish(message_);
+  }
+
+  service::Shell& shell_;
+  std::unique_ptr<const model::HandModel> hand_;  // the mapping refers to both
+  std::unique_ptr<const MappingModel> model_;
+  Mapping mapping_;
+  MappingModes modes_;
+  std::string hand_name_;
+  service::Shell::Output<v1::HandCommand> output_;
+  service::Shell::Output<v1::OperatorReply> replies_;
+  v1::HandCommand message_;  // reused, so that a command costs no allocation
+  std::uint64_t sequence_number_ = 0;
+  Time last_posture_;  // that was answered
+  std::string last_reject_, missing_;
+  std::map<std::uint32_t, Time> seen_;  // tracks, when they last came
+};
+
+Service::Service(std::unique_ptr<Topics> topics) : topics_(std::move(topics)) {}
+Service::~Service() = default;
+
+Expected<std::unique_ptr<Service>> Service::create(service::Shell& shell) {
+  const service::Config& config = shell.config();
+  const std::string& hand_kind = config.text("mapping.hand");
+  if (hand_kind.empty()) return fail("is no hand", "mapping.hand", model::hand_hint());
+  auto loaded = model::HandModel::load(model::hand_directory(hand_kind));
+  if (!loaded) return tl::unexpected(loaded.error());
+  auto hand = std::make_unique<const model::HandModel>(std::move(*loaded));
+  std::filesystem::path file = config.path("mapping.model");
+  if (file.empty()) file = share_directory() / "trained" / (hand->name() + ".mapping");
+  auto trained = load_mapping_model(file, *hand);
+  if (!trained) return tl::unexpected(trained.error());
+  auto model = std::make_unique<const MappingModel>(std::move(*trained));
+  MappingModes modes;
+  const std::string& mode = config.text("mapping.mode");
+  const auto fingers =
+      mode.empty() ? std::optional(finger_modes.rows.front().value) : finger_modes.value(mode);
+  if (!fingers) return wrong_use("there is no «" + mode + "»", "mapping.mode", finger_modes.list());
+  modes.fingers = *fingers;
+  modes.intelligent = config.flag("mapping.intelligent");
+  modes.placement = config.flag("mapping.placement");
+  MappingOptions options;
+  options.modes = effective(modes);
+  auto mapping = Mapping::create(*hand, *model, options);
+  if (!mapping) return tl::unexpected(mapping.error());
+
+  log::info("{}, {}, {}", hand->name(), model->traits().scheme, to_string(modes));
+  std::unique_ptr<Service> made(new Service(std::make_unique<Topics>(
+      shell, std::move(hand), std::move(model), std::move(*mapping), modes)));
+  shell.status().running();
+  return made;
+}
+
+}  // namespace prehend::mapping

@@ -1,0 +1,90 @@
+#include "services/mapping/tools/study/real_take.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <fstream>
+#include <iterator>
+#include <optional>
+#include <string>
+
+#include "common/base/csv_rows.hpp"
+
+namespace prehend::mapping {
+
+namespace {
+
+using Eigen::Vector3d;
+
+/// Fastest that frames are kept, a tracker's rate.
+constexpr double period = 1 / 30.;  // s
+
+/// A frame whose fingertips are taken from the middle knuckle, along the axes of H.
+std::optional<RealTake::Frame> read(CsvRow& row) {
+  constexpr double mm = 1e-3;
+  static const std::array<std::string, model::finger_count> fingers{"thumb", "index", "middle",
+                                                                    "ring", "pinky"};
+  RealTake::Frame frame;
+  frame.time = 1e-6 * row.number("t_us");
+  frame.grab = row.number("grabStrength");
+  frame.pinch = row.number("pinchStrength");
+  const Vector3d forward = row.vector("dir"), out = -row.vector("normal");
+  const Vector3d knuckle = row.vector("middle_mcp");
+  const Vector3d y = out.cross(forward);
+  if (row.bad() || row.text("hand") != "right" || y.norm() < 1e-3) return std::nullopt;
+  Eigen::Matrix3d R_RH;
+  R_RH.col(0) = forward.normalized();
+  R_RH.col(1) = y.normalized();
+  R_RH.col(2) = R_RH.col(0).cross(R_RH.col(1));
+  for (std::size_t f = 0; f < fingers.size(); ++f)
+    frame.fingertips[f] = {true,
+                           mm * (R_RH.transpose() * (row.vector(fingers[f] + "_tip") - knuckle))};
+  if (row.bad()) return std::nullopt;
+  return frame;
+}
+
+/// How much further this finger reaches from the knuckle than that of an average open hand.
+double scale_of(const RealTake& take, model::Finger finger, const Vector3d& p_HKnuckle) {
+  const auto f = static_cast<std::size_t>(finger);
+  double furthest = 0;
+  for (const RealTake::Frame& frame : take.frames)
+    furthest = std::max(furthest, frame.fingertips[f].p_HF.norm());
+  const auto open = model::HumanHand(1).fingertip_poses(model::HumanHand::open_posture());
+  return furthest / (open[f].translation() - p_HKnuckle).norm();
+}
+
+}  // namespace
+
+Expected<RealTake> load_real_take(const std::filesystem::path& csv) {
+  std::ifstream file(csv, std::ios::binary);
+  if (!file || std::filesystem::is_directory(csv))
+    return fail("the recording cannot be read", csv.string());
+  const std::string text{std::istreambuf_iterator<char>(file), {}};
+  CsvRows rows(text);
+  if (rows.empty()) return fail("the recording cannot be read", csv.string());
+  RealTake take{csv.stem().string(), 1, {}};
+  double last = -period;
+  std::optional<double> first;
+  while (auto row = rows.next()) {
+    auto frame = read(*row);
+    if (!frame) continue;
+    if (!first) first = frame->time;
+    frame->time -= *first;
+    constexpr double rounding = 1e-6;  // s
+    if (frame->time < last + period - rounding) continue;
+    last = frame->time;
+    take.frames.push_back(*frame);
+  }
+  constexpr std::size_t least = 10;
+  if (take.frames.size() < least)
+    return fail(fmt::format("has {} good rows of a right hand", take.frames.size()), csv.string(),
+                "choose a Leap recording");
+  const Vector3d p_HKnuckle(0.0557, 0.0, -0.013);  // of an average hand, as the glove has it
+  take.hand_scale = 0.5 * (scale_of(take, model::Finger::index, p_HKnuckle) +
+                           scale_of(take, model::Finger::little, p_HKnuckle));
+  for (RealTake::Frame& frame : take.frames)
+    for (Fingertip& tip : frame.fingertips) tip.p_HF += take.hand_scale * p_HKnuckle;
+  return take;
+}
+
+}  // namespace prehend::mapping

@@ -1,0 +1,247 @@
+// prehend-teach: a person shows postures, and a training set is made of them.
+#include <fmt/format.h>
+#include <poll.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <iostream>
+#include <nlohmann/json.hpp>
+
+#include "common/base/log.hpp"
+#include "common/base/paths.hpp"
+#include "common/dds/topics.hpp"
+#include "common/service/arguments.hpp"
+#include "common/service/shell.hpp"
+#include "services/mapping/service/posture_message.hpp"
+#include "services/mapping/tools/teach/teach_recording.hpp"
+#include "services/mapping/tools/training/teach.hpp"
+
+namespace prehend::mapping {
+namespace {
+
+struct Arguments {
+  service::LabArguments lab;
+  std::string hand, scheme, user = "someone", output, from;
+  std::vector<std::string> labels;  // POSTURE@SECONDS
+  int takes = 1, postures = 7;
+  double limit = 600;
+  bool grasps = false, json = false;
+
+  void add_to(CLI::App& app) {
+    lab.add_to(app);
+    app.add_option("--hand", hand, "kind of robot hand; default: the lab's");
+    app.add_option("--scheme", scheme, "a name in schemes/ or a file; default: HAND");
+    app.add_option("--user", user, "who shows the postures")->capture_default_str();
+    app.add_option("-o,--output", output, "training set to write")->required();
+    app.add_option("--takes", takes, "how often everything is shown")
+        ->check(CLI::Range(1, 100))
+        ->capture_default_str();
+    app.add_option("--postures", postures, "basic postures: 4, 7, 10 or 13")
+        ->check(CLI::IsMember({4, 7, 10, 13}))
+        ->capture_default_str();
+    app.add_flag("--grasps", grasps, "also ask for each grasp of trained/HAND.grasps");
+    app.add_option("--from", from, "a recording (prehend record) instead of a glove");
+    app.add_option("--label", labels,
+                   "with --from: what was shown when, POSTURE@SECONDS; repeatable")
+        ->type_size(1)
+        ->allow_extra_args(false);
+    app.add_option("--limit", limit, "s after which it gives up")->check(CLI::Range(1.0, 1e6));
+    app.add_flag("--json", json, "print the outcome as one JSON document");
+  }
+};
+
+/// A session with a glove: prompts, takes, and tells the lab what was shown.
+class Session {
+ public:
+  Session(service::Shell& shell, Teacher& teacher, double limit_s)
+      : shell_(shell),
+        teacher_(teacher),
+        begun_(shell.now()),
+        limit_(seconds(limit_s)),
+        orders_(shell.publish(dds::operator_command)) {
+    shell.subscribe(dds::hand_posture,
+                    std::function<void(const v1::HandPosture&, const dds::SampleInfo&)>(
+                        [this](const auto& message, const auto& info) {
+                          if (!info.gone) see(message);
+                        }));
+    shell.on_tick(std::chrono::milliseconds(100), [this](Time now) { tick(now); });
+    log::info("keys, each with Enter: r shows the last one again, q gives up");
+    prompt();
+  }
+
+ private:
+  void prompt() {
+    const auto* asked = teacher_.asked();
+    if (!asked) return shell_.stop();
+    log::info("{}: show «{}»", teacher_.shown().size() + 1, label_of(*asked));
+  }
+
+  void see(const v1::HandPosture& message) {
+    const auto hand = posture_from_message(message);
+    if (!hand) return shell_.status().drop(hand.error().what);
+    const auto seen = features(hand->fingertips, hand->hand_scale);
+    if (!seen) return shell_.status().drop(seen.error().what);
+    const auto shown = teacher_.see(*seen, hand->stamp);
+    if (!shown) return hint();
+    log::info(
+        "   taken: quality {:.0f} %, moved {:.1f} mm{}", 100 * shown->quality, 1000 * shown->wobble,
+        shown->nearest_name.empty()
+            ? std::string()
+            : fmt::format(", {:.0f} mm from «{}»", 1000 * shown->separation, shown->nearest_name));
+    tell(*shown, hand->stamp);
+    prompt();
+  }
+
+  /// So that a recording of the session can be used instead of it.
+  void tell(const Shown& shown, Time stamp) {
+    v1::OperatorCommand order;
+    order.id(fmt::format("teach-{}-{}", ::getpid(), ++told_));
+    order.stamp_ns(to_ns(stamp));
+    order.action(v1::ACTION_TEACH);
+    order.target("teach");
+    order.argument(label_of(shown.pair));
+    orders_.publish(order);
+  }
+
+  /// Each reason once, when it has lasted.
+  void hint() {
+    const std::string& reason = teacher_.waiting_for();
+    if (reason != reason_) {
+      reason_ = reason;
+      since_ = shell_.now();
+      hinted_ = false;
+    } else if (!hinted_ && shell_.now() - since_ > std::chrono::seconds(3)) {
+      log::info("   {}", reason);
+      hinted_ = true;
+    }
+  }
+
+  void tick(Time now) {
+    if (now - begun_ > limit_) {
+      log::error("gave up after {:.0f} s, at «{}»", to_seconds(limit_),
+                 teacher_.asked() ? label_of(*teacher_.asked()) : "the end");
+      return shell_.stop(exit_no);
+    }
+    pollfd input{STDIN_FILENO, POLLIN, 0};
+    if (closed_ || ::poll(&input, 1, 0) <= 0) return;
+    char key = 0;
+    if (::read(STDIN_FILENO, &key, 1) <= 0) {
+      closed_ = true;
+    } else if (key == 'q') {
+      shell_.stop(exit_no);
+    } else if (key == 'r' && teacher_.redo()) {
+      prompt();
+    }
+  }
+
+  service::Shell& shell_;
+  Teacher& teacher_;
+  Time begun_;
+  Duration limit_;
+  service::Shell::Output<v1::OperatorCommand> orders_;
+  int told_ = 0;
+  std::string reason_;
+  Time since_{};
+  bool hinted_ = false, closed_ = false;
+};
+
+/// Exit code of the session; 0 when all was shown.
+int teach(const Arguments& arguments, Teacher& teacher) {
+  const auto shell = service::Shell::create(
+      arguments.lab.for_service(), {"teach", "Learns postures from a person.", "operator", false});
+  if (!shell) return service::complain(shell.error());
+  const Session session(**shell, teacher, arguments.limit);
+  (*shell)->status().running();
+  const auto ended = (*shell)->run();
+  return ended ? *ended : service::complain(ended.error());
+}
+
+/// «POSTURE@SECONDS»
+Expected<std::multimap<std::string, double>> parse_labels(const std::vector<std::string>& texts) {
+  std::multimap<std::string, double> labels;
+  for (const std::string& text : texts) {
+    const auto at = text.rfind('@');
+    char* end = nullptr;
+    const double time = at == std::string::npos ? 0 : std::strtod(text.c_str() + at + 1, &end);
+    if (at == std::string::npos || end == text.c_str() + at + 1 || *end != 0)
+      return fail("a label is not POSTURE@SECONDS", text);
+    labels.emplace(text.substr(0, at), time);
+  }
+  return labels;
+}
+
+int run(Arguments arguments) {
+  const auto share = share_directory();
+  const auto broken = [](const Error& error) { return service::complain(error, exit_broken); };
+  const auto labels = parse_labels(arguments.labels);
+  if (!labels) return service::complain(labels.error(), exit_wrong_use);
+  if (arguments.hand.empty()) {
+    const auto config = arguments.lab.load();
+    if (!config) return service::complain(config.error(), exit_wrong_use);
+    arguments.hand = config->text("mapping.hand");
+  }
+  if (arguments.hand.empty())
+    return service::complain({"is no hand", "--hand", model::hand_hint()}, exit_wrong_use);
+  const auto hand = model::HandModel::load(model::hand_directory(arguments.hand));
+  if (!hand) return broken(hand.error());
+  const auto scheme = Scheme::load(
+      scheme_path(arguments.scheme.empty() ? arguments.hand : arguments.scheme), *hand);
+  if (!scheme) return broken(scheme.error());
+  std::vector<RobotGrasp> grasps;
+  if (arguments.grasps) {
+    auto loaded = load_robot_grasps(share / "trained" / (arguments.hand + ".grasps"), *hand);
+    if (!loaded) return broken(loaded.error());
+    for (RobotGrasp& grasp : *loaded)
+      if (grasp.held) grasps.push_back(std::move(grasp));
+  }
+  const auto asked =
+      curriculum(*hand, *scheme, arguments.user, arguments.takes, arguments.postures, grasps);
+
+  std::vector<Shown> shown;
+  const auto begin = std::chrono::steady_clock::now();
+  if (arguments.from.empty()) {
+    Teacher teacher(asked, {});
+    if (const int code = teach(arguments, teacher); code != 0) return code;
+    if (teacher.asked()) return exit_no;  // interrupted
+    shown = teacher.shown();
+  } else {
+    auto found = shown_in(arguments.from, *labels, asked, {});
+    if (!found) return broken(found.error());
+    shown = std::move(*found);
+  }
+  const double took =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+
+  const learning::TrainingSet set = taught_set(*hand, *scheme, shown);
+  if (auto ok = learning::check(set); !ok) return broken(ok.error());
+  if (auto ok = check_consistent(set); !ok) return broken(ok.error());
+  if (auto saved = learning::save(arguments.output, set); !saved) return broken(saved.error());
+  if (arguments.json) {
+    nlohmann::json document{{"output", arguments.output}, {"seconds", took}};
+    for (const Shown& one : shown)
+      document["postures"].push_back({{"posture", label_of(one.pair)},
+                                      {"take", one.pair.take},
+                                      {"quality", one.quality},
+                                      {"wobble_m", one.wobble}});
+    std::cout << document.dump(2) << '\n';
+  } else {
+    log::info("{} postures in {:.0f} s, {}", shown.size(), took, arguments.output);
+  }
+  return exit_done;
+}
+
+}  // namespace
+}  // namespace prehend::mapping
+
+int main(int argc, char** argv) {
+  prehend::log::set_name("teach");
+  CLI::App app{
+      "Asks a person with a glove for one posture after the other and takes each when the hand\n"
+      "keeps still. `prehend train --set FILE` learns from what was shown. A recording of the\n"
+      "session (prehend record) can be used again by --from.",
+      "prehend teach"};
+  prehend::mapping::Arguments arguments;
+  arguments.add_to(app);
+  if (const auto code = prehend::service::parse(app, {argv + 1, argv + argc})) return *code;
+  return prehend::mapping::run(arguments);
+}

@@ -1,0 +1,321 @@
+#include "services/mapping/tools/training/robot_grasps.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <optional>
+
+#include "common/grasping/closing.hpp"
+#include "common/grasping/hold_test.hpp"
+#include "common/grasping/world.hpp"
+#include "common/model/placement.hpp"
+#include "common/proto/pose_numbers.hpp"
+#include "common/proto/robot_grasps.pb.h"
+#include "common/proto/sealed_file.hpp"
+
+namespace prehend::mapping {
+
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr std::string_view kind = "robot-grasps";
+constexpr double max_closing = 3;      // s, until the fingers must have stopped
+constexpr double closing_speed = 1.0;  // rad/s, of the fingers that close as the mapping does
+constexpr double aside = 0.012, nearer = 0.015;  // m, where else the hand is tried
+constexpr double unsure = 0.008;  // m, beside its place where a grasp shall hold as well
+
+template <class Repeated>
+Eigen::VectorXd to_vector(const Repeated& values) {
+  Eigen::VectorXd vector(values.size());
+  std::copy(values.begin(), values.end(), vector.begin());
+  return vector;
+}
+
+Expected<RobotGrasp> read(const messages::RobotGrasp& from, const model::HandModel& hand) {
+  RobotGrasp grasp;
+  grasp.object = from.object();
+  const auto type = grasp_type_from_string(from.type());
+  const auto shape = model::shape_from_string(from.shape());
+  if (!type || !shape || from.size_size() != 3) return fail("a grasp without type or shape");
+  grasp.type = *type;
+  grasp.shape = {*shape, to_vector(from.size())};
+  if (!is_valid(grasp.shape)) return fail("a grasp of what has no size");
+  auto X_OG = proto::pose_from_numbers({from.grasp_frame().begin(), from.grasp_frame().end()});
+  if (!X_OG) return tl::unexpected(X_OG.error());
+  grasp.X_OG = *X_OG;
+  grasp.preshape = to_vector(from.preshape());
+  grasp.dof = to_vector(from.dof());
+  grasp.closing = to_vector(from.closing());
+  const auto dofs = static_cast<Eigen::Index>(hand.dofs().size());
+  if (grasp.preshape.size() != dofs || grasp.dof.size() != dofs || grasp.closing.size() != dofs)
+    return fail("a grasp with another number of DoF");
+  if (!grasp.preshape.allFinite() || !grasp.dof.allFinite()) return fail("a grasp is not finite");
+  if (from.place_size() != 3) return fail("a grasp without a place");
+  grasp.p_GR = Eigen::Vector3d::Map(from.place().data());
+  if (!grasp.p_GR.allFinite()) return fail("a grasp is not finite");
+  grasp.epsilon = from.epsilon();
+  grasp.held = from.held();
+  return grasp;
+}
+
+/// True if no part of the hand is below the table, z = bottom in O, anywhere between the two
+/// postures. Parts count as boxes; the palm is where the reach of the hand allows it to be.
+bool above_table(const model::HandModel& hand, const Pose& X_OB, const Eigen::VectorXd& from,
+                 const Eigen::VectorXd& to, double bottom) {
+  constexpr int steps = 8;
+  for (int step = 0; step <= steps; ++step) {
+    const Eigen::VectorXd dof = from + (to - from) * (static_cast<double>(step) / steps);
+    const std::vector<Pose> X_BL = hand.link_poses(hand.joint_angles(dof));
+    for (std::size_t link = 1; link < X_BL.size(); ++link)
+      for (const model::CollisionShape& part : hand.links()[link].collision) {
+        const Pose X_OS = X_OB * X_BL[link] * part.X_LS;
+        const double below =
+            X_OS.linear().row(2).cwiseAbs().dot(model::half_extents(part.shape).transpose());
+        if (X_OS.translation().z() - below < bottom) return false;
+      }
+  }
+  return true;
+}
+
+/// Whether the object is held when it stands on the table and the fingers close as the mapping has
+/// them close: from the open hand, in proportion, so that they arrive together, then squeezed. The
+/// hand stands `beside` its place, m, in the direction in which it closes.
+bool survives(const model::HandModel& hand, const Eigen::VectorXd& open,
+              const grasping::Body& object, const RobotGrasp& grasp, double beside) {
+  const Pose X_WO = make_pose(Vector3d(0, 0, model::half_extents(object.shape).z()));
+  const Pose X_WB =
+      X_WO * grasp.X_OR() * Eigen::Translation3d(0, beside, 0) * hand.X_BG().inverse();
+  auto world = grasping::World::create(hand, X_WB, open);
+  if (!world || !(*world)->add_body(object, X_WO)) return false;
+  if ((*world)->distance_to_hand(0, 0.01) < 0) return false;
+  Eigen::VectorXd squeezed = grasp.dof;
+  for (Eigen::Index i = 0; i < squeezed.size(); ++i)
+    squeezed[i] += grasp.closing[i] * hand.dofs()[static_cast<std::size_t>(i)].squeeze;
+  const Eigen::VectorXd way = hand.clamp(squeezed) - open;
+  double closing = 0;  // s
+  for (Eigen::Index i = 0; i < way.size(); ++i)
+    closing = std::max(
+        closing, std::abs(way[i]) /
+                     (closing_speed * model::radian_of(hand.dofs()[static_cast<std::size_t>(i)])));
+  constexpr double settling = 0.4;  // s
+  const double dt = (*world)->time_step();
+  for (double t = 0; t < closing + settling; t += dt) {
+    if (!(*world)->command(X_WB, open + std::min(1.0, t / closing) * way)) return false;
+    (*world)->step();
+  }
+  grasping::HoldOptions hold{.shake = true};
+  if (beside != 0) hold.hold = 0.5;  // drops what it drops at once
+  // Shoved or toppled by its fingers, it is not grasped where it stood.
+  const Pose X_WO_after = (*world)->body_motion(0).X_WO;
+  if ((X_WO_after.translation() - X_WO.translation()).norm() > hold.max_slip ||
+      angle_between(X_WO_after.linear(), X_WO.linear()) > hold.max_turn)
+    return false;
+  return grasping::hold_test(**world, 0, hold).held;
+}
+
+/// Closes the hand from a preshape on the object where it stands; fills in what comes of it.
+Expected<void> close(const model::HandModel& hand, const grasping::Body& object,
+                     const Preshape& preshape, RobotGrasp& grasp) {
+  const Pose X_BO = hand.X_BG() * grasp.X_OR().inverse();
+  const double table = -model::half_extents(object.shape).z();
+  const auto reaches_into_table = [&](const Eigen::VectorXd& dof) {
+    return !above_table(hand, X_BO.inverse(), preshape.robot, dof, table);
+  };
+  const auto refused = [&] { return fail("fingers would reach into the table", object.name); };
+  if (reaches_into_table(preshape.robot)) return refused();
+  grasping::ClosingOptions options;
+  options.volume = false;
+  options.fixed_object = true;
+  options.longest = max_closing;
+  options.resting = preshape.resting;
+  const auto closed = grasping::close_hand(hand, object, X_BO, preshape.robot, options);
+  if (!closed) return tl::unexpected(closed.error());
+  if (reaches_into_table(closed->dof)) return refused();
+  grasp.preshape = preshape.robot;
+  grasp.dof = hand.clamp(closed->dof);  // what pushes bends a joint a little past its end
+  grasp.epsilon = closed->quality.epsilon;
+  grasp.closing.resize(grasp.dof.size());
+  for (std::size_t i = 0; i < hand.dofs().size(); ++i)
+    grasp.closing[static_cast<Eigen::Index>(i)] = preshape.resting[i] ? 0 : hand.dofs()[i].closing;
+  return {};
+}
+
+}  // namespace
+
+std::vector<Pose> approaches(const model::Shape& shape, const model::Reach& reach) {
+  const Vector3d x = Vector3d::UnitX(), y = Vector3d::UnitY(), z = Vector3d::UnitZ();
+  std::vector<Pose> seeds{make_pose(Vector3d::Zero(), model::grasp_axes(-z, y)),
+                          make_pose(Vector3d::Zero(), model::grasp_axes(x, y))};
+  // Turning about the axis of what is round or square is nothing new.
+  if (shape.kind == model::ShapeKind::box && shape.size.x() != shape.size.y()) {
+    seeds.push_back(make_pose(Vector3d::Zero(), model::grasp_axes(-z, x)));
+    seeds.push_back(make_pose(Vector3d::Zero(), model::grasp_axes(y, x)));
+  }
+  std::vector<Pose> found;
+  for (const Pose& seed : seeds) {
+    const auto grasp = model::nearest_grasp(shape, seed, reach);
+    const auto same = [&](const Pose& other) {
+      return angle_between(other.linear(), grasp->linear()) < 0.1;
+    };
+    // What came out far from what was asked answers another approach.
+    if (grasp && angle_between(seed.linear(), grasp->linear()) < 0.1 &&
+        std::none_of(found.begin(), found.end(), same))
+      found.push_back(*grasp);
+  }
+  return found;
+}
+
+std::vector<GraspType> types_from(const Pose& X_OG) {
+  if (X_OG.linear()(2, 2) > -0.7) return {GraspType::power_wrap};
+  return {GraspType::circular_sphere, GraspType::precision};
+}
+
+Eigen::VectorXd past_contact(const model::HandModel& hand, const RobotGrasp& grasp,
+                             const Eigen::VectorXd& open, double angle) {
+  constexpr double least = 0.1;  // rad, so that every finger presses
+  Eigen::VectorXd unit(grasp.dof.size());
+  for (Eigen::Index i = 0; i < unit.size(); ++i)
+    unit[i] = model::radian_of(hand.dofs()[static_cast<std::size_t>(i)]);
+  const Eigen::ArrayXd way =
+      ((grasp.dof - open).array() * grasp.closing.array() / unit.array()).max(0.0);
+  const double longest = std::max(way.maxCoeff(), 1e-9);
+  const Eigen::ArrayXd further = (angle * way / longest).max(std::min(least, angle));
+  return hand.clamp(grasp.dof + (further * grasp.closing.array() * unit.array()).matrix());
+}
+
+std::vector<Vector3d> places_to_try() {
+  return {{0, 0, 0}, {0, aside, 0}, {0, -aside, 0}, {0, 0, nearer}, {0, 0, -nearer}};
+}
+
+Expected<RobotGrasp> robot_grasp(const model::HandModel& hand, const Scheme& scheme,
+                                 const model::CatalogueObject& object, const Pose& X_OG,
+                                 GraspType type, const std::vector<Vector3d>& places) {
+  const grasping::Body body{object.name, object.shape, object.mass, object.material, {}};
+  Error last{"no preshape is for this grasp", object.name, ""};
+  std::optional<RobotGrasp> best;
+  int most = -1;
+  for (const Vector3d& place : places) {
+    std::vector<RobotGrasp> closed;
+    for (const Preshape& preshape : scheme.preshapes) {
+      if (std::find(preshape.types.begin(), preshape.types.end(), type) == preshape.types.end())
+        continue;
+      RobotGrasp made;
+      made.object = object.name;
+      made.type = type;
+      made.shape = object.shape;
+      made.X_OG = X_OG;
+      made.p_GR = place;
+      if (auto ok = close(hand, body, preshape, made); ok)
+        closed.push_back(std::move(made));
+      else
+        last = ok.error();
+    }
+    std::stable_sort(closed.begin(), closed.end(), [](const RobotGrasp& a, const RobotGrasp& b) {
+      return a.epsilon > b.epsilon;
+    });
+    for (RobotGrasp& candidate : closed) {
+      candidate.held = survives(hand, scheme.open.robot, body, candidate, 0);
+      int survived = candidate.held ? 1 : 0;
+      if (candidate.held)
+        for (const double beside : {unsure, -unsure})
+          survived += survives(hand, scheme.open.robot, body, candidate, beside);
+      if (survived <= most) continue;
+      most = survived;
+      best = std::move(candidate);
+      if (most == 3) return *best;
+    }
+  }
+  if (!best) return tl::unexpected(last);
+  return *best;
+}
+
+std::vector<RobotGrasp> close_on_catalogue(const model::HandModel& hand, const Scheme& scheme,
+                                           const model::Catalogue& catalogue,
+                                           const grasping::ForEach& for_each,
+                                           const std::function<void(const Error&)>& report) {
+  struct Task {
+    const model::CatalogueObject* object;
+    Pose X_OG;
+    GraspType type;
+    std::optional<Expected<RobotGrasp>> grasp;
+  };
+  // What is approached in the same way; its types go one after the other.
+  std::vector<std::vector<Task>> approached;
+  for (const model::CatalogueObject& object : catalogue.objects()) {
+    const auto ways = approaches(object.shape, hand.reach());
+    if (ways.empty()) report({"does not fit into the hand", object.name, "left out"});
+    for (const Pose& X_OG : ways) {
+      auto& tasks = approached.emplace_back();
+      for (const GraspType type : types_from(X_OG)) tasks.push_back({&object, X_OG, type, {}});
+    }
+  }
+  for_each(approached.size(), [&](std::size_t i) {
+    // Until its fingers close, a hand cannot know the type: all of them from one place.
+    std::vector<Vector3d> from = places_to_try();
+    for (Task& task : approached[i]) {
+      task.grasp = robot_grasp(hand, scheme, *task.object, task.X_OG, task.type, from);
+      if (*task.grasp && (*task.grasp)->held) from = {(*task.grasp)->p_GR};
+    }
+  });
+  std::vector<RobotGrasp> grasps;
+  for (auto& tasks : approached)
+    for (Task& task : tasks) {
+      if (*task.grasp)
+        grasps.push_back(std::move(**task.grasp));
+      else
+        report({task.grasp->error().what,
+                fmt::format("{}, {}", task.object->name, to_string(task.type)),
+                "this grasp is left out"});
+    }
+  return grasps;
+}
+
+Expected<void> save_robot_grasps(const std::filesystem::path& file, const model::HandModel& hand,
+                                 const std::vector<RobotGrasp>& grasps) {
+  messages::RobotGrasps message;
+  message.set_hand(hand.name());
+  for (const model::HandDof& dof : hand.dofs()) message.add_dof_names(dof.name);
+  for (const RobotGrasp& grasp : grasps) {
+    messages::RobotGrasp& to = *message.add_grasps();
+    to.set_object(grasp.object);
+    to.set_type(std::string(to_string(grasp.type)));
+    to.set_shape(std::string(model::to_string(grasp.shape.kind)));
+    to.mutable_size()->Add(grasp.shape.size.begin(), grasp.shape.size.end());
+    const auto X_OG = proto::pose_numbers(grasp.X_OG);
+    to.mutable_grasp_frame()->Add(X_OG.begin(), X_OG.end());
+    to.mutable_preshape()->Add(grasp.preshape.begin(), grasp.preshape.end());
+    to.mutable_dof()->Add(grasp.dof.begin(), grasp.dof.end());
+    for (const double closing : grasp.closing)
+      to.add_closing(closing > 0 ? 1 : closing < 0 ? -1 : 0);
+    to.set_epsilon(grasp.epsilon);
+    to.mutable_place()->Add(grasp.p_GR.begin(), grasp.p_GR.end());
+    to.set_held(grasp.held);
+  }
+  return proto::write_sealed(file, kind, message.SerializeAsString());
+}
+
+Expected<std::vector<RobotGrasp>> load_robot_grasps(const std::filesystem::path& file,
+                                                    const model::HandModel& hand) {
+  const std::string hint = "make them again: prehend train --hand " + hand.name();
+  const auto bytes = proto::read_sealed(file, kind);
+  if (!bytes) return fail(bytes.error().what, file.string(), hint);
+  messages::RobotGrasps message;
+  if (!message.ParseFromString(*bytes)) return fail("holds no grasps", file.string(), hint);
+  bool same = message.dof_names_size() == static_cast<int>(hand.dofs().size());
+  for (int i = 0; same && i < message.dof_names_size(); ++i)
+    same = message.dof_names(i) == hand.dofs()[static_cast<std::size_t>(i)].name;
+  if (message.hand() != hand.name() || !same)
+    return fail(
+        fmt::format("holds grasps of the hand «{}», not of this «{}»", message.hand(), hand.name()),
+        file.string(), hint);
+  std::vector<RobotGrasp> grasps;
+  for (const messages::RobotGrasp& from : message.grasps()) {
+    auto grasp = read(from, hand);
+    if (!grasp) return fail(grasp.error().what, file.string(), hint);
+    grasps.push_back(std::move(*grasp));
+  }
+  return grasps;
+}
+
+}  // namespace prehend::mapping

@@ -1,0 +1,13 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "common/model/catalogue.hpp"
+
+namespace prehend::recognition {
+
+/// Things that no model knows, of sizes and patterns like the objects'. Another seed, other things.
+std::vector<model::CatalogueObject> strangers(int count, std::uint64_t seed);
+
+}  // namespace prehend::recognition

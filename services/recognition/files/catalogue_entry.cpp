@@ -1,0 +1,71 @@
+#include "services/recognition/files/catalogue_entry.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <fstream>
+#include <iterator>
+
+namespace prehend::recognition {
+
+model::CatalogueObject described_by(const std::string& name, const model::Shape& shape, double mass,
+                                    const std::vector<TrainingView>& views) {
+  std::vector<Eigen::Vector3f> samples;
+  Random random(1);
+  for (const TrainingView& view : views)
+    for (int i = 0; i < 400; ++i) {
+      const std::size_t p = random.index(view.picture.pixels());
+      const std::uint8_t* rgb = &view.picture.rgb[3 * p];
+      if (view.mask.values[p]) samples.push_back(Eigen::Vector3f(rgb[0], rgb[1], rgb[2]) / 255.f);
+    }
+  model::CatalogueObject made;
+  made.name = name;
+  made.shape = shape;
+  made.mass = mass;
+  made.material = "plastic";
+  made.appearance.pattern = "blobs";
+  made.appearance.seed = 1;
+  const Palette main = Palette::learn({}, samples, 3, 1);
+  for (const Eigen::Vector3f& colour : main.centres())
+    made.appearance.colours.push_back(colour.cast<double>());
+  return made;
+}
+
+Expected<void> append_to_catalogue(const std::filesystem::path& file,
+                                   const model::CatalogueObject& object) {
+  const auto before = model::Catalogue::load(file);
+  if (!before) return tl::unexpected(before.error());
+  if (before->find(object.name))
+    return fail(object.name + " is there already", file.string(), "choose another name");
+  std::ifstream in(file);
+  std::string text{std::istreambuf_iterator<char>(in), {}};
+  const Eigen::Vector3d& size = object.shape.size;
+  text += fmt::format(
+      "\n[[object]]\nname = \"{}\"\nshape = \"{}\"\nsize = [{:.4f}, {:.4f}, {:.4f}]\n"
+      "mass = {:.3f}\nmaterial = \"{}\"\n[object.appearance]\ncolours = [",
+      object.name, model::to_string(object.shape.kind), size.x(), size.y(), size.z(), object.mass,
+      object.material);
+  for (std::size_t i = 0; i < object.appearance.colours.size(); ++i) {
+    const Eigen::Vector3d& c = object.appearance.colours[i];
+    text += fmt::format("{}[{:.2f}, {:.2f}, {:.2f}]", i == 0 ? "" : ", ", c.x(), c.y(), c.z());
+  }
+  text += fmt::format("]\npattern = \"{}\"\nseed = {}\n", object.appearance.pattern,
+                      object.appearance.seed);
+  // Beside the real file, which may be reached through a link.
+  std::error_code error;
+  const auto real = std::filesystem::canonical(file, error);
+  const std::filesystem::path fresh = real.string() + ".new";
+  std::ofstream out(fresh);
+  out << text;
+  out.close();
+  if (!out) return fail("cannot be written", fresh.string(), "is the place writable?");
+  if (const auto after = model::Catalogue::load(fresh); !after) {
+    std::filesystem::remove(fresh, error);
+    return fail(after.error().what, object.name);
+  }
+  std::filesystem::rename(fresh, real, error);
+  if (error) return fail(error.message(), real.string(), "is the place writable?");
+  return {};
+}
+
+}  // namespace prehend::recognition

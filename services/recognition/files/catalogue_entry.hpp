@@ -1,0 +1,19 @@
+#pragma once
+
+#include <filesystem>
+
+#include "common/model/catalogue.hpp"
+#include "services/recognition/core/learning/training.hpp"
+
+namespace prehend::recognition {
+
+/// An object as the views show it: its three main colours for rendering, no pattern.
+model::CatalogueObject described_by(const std::string& name, const model::Shape& shape, double mass,
+                                    const std::vector<TrainingView>& views);
+
+/// The object's [[object]] at the end of a catalogue file; whoever reads it meanwhile sees the old
+/// one or the new one. Fails when it is there already or the catalogue could not be read then.
+Expected<void> append_to_catalogue(const std::filesystem::path& file,
+                                   const model::CatalogueObject& object);
+
+}  // namespace prehend::recognition

@@ -1,0 +1,150 @@
+#include "services/simulation/core/simulation.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace prehend::simulation {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double far_off = 10;         // m: no hand works there
+constexpr double noticed = 0.005;      // m, by which a sighting must differ to move a body
+constexpr double noticed_turn = 0.05;  // rad
+constexpr int max_bodies = 32;
+const Duration max_jump = std::chrono::seconds(60);  // of the lockstep clock
+
+/// Behind and above the table's middle, where nothing stands.
+const Pose resting_place = make_pose(Vector3d(0, -0.4, 0.6));
+
+/// Objects stand upright on the table; of a sighting only place and turn about z are taken.
+Pose standing(const model::Shape& shape, const Pose& X_WO) {
+  const Vector3d x = X_WO.linear().col(0);
+  const double yaw = std::hypot(x.x(), x.y()) > 1e-6 ? std::atan2(x.y(), x.x()) : 0.0;
+  const Vector3d& p = X_WO.translation();
+  return make_pose(Vector3d(p.x(), p.y(), model::half_extents(shape).z()),
+                   Eigen::AngleAxisd(yaw, Vector3d::UnitZ()).toRotationMatrix());
+}
+
+}  // namespace
+
+grasping::Body body_of(const model::CatalogueObject& object) {
+  return {object.name, object.shape, object.mass, object.material, std::nullopt};
+}
+
+Expected<std::unique_ptr<Simulation>> Simulation::create(const model::HandModel& hand,
+                                                         const Options& options) {
+  auto world = grasping::World::create(hand, resting_place, hand.postures().at("open"),
+                                       {.rate = options.rate});
+  if (!world) return tl::unexpected(world.error());
+  return std::unique_ptr<Simulation>(new Simulation(hand, options, std::move(*world)));
+}
+
+Simulation::Simulation(const model::HandModel& hand, const Options& options,
+                       std::unique_ptr<grasping::World> world)
+    : hand_(hand),
+      options_(options),
+      world_(std::move(world)),
+      detector_(world_->time_step()),
+      period_(seconds(world_->time_step())) {}
+
+Expected<void> Simulation::build(const model::Scene& scene, const model::Catalogue& catalogue) {
+  for (const model::PlacedObject& placed : scene.objects) {
+    const model::CatalogueObject* object = catalogue.find(placed.name);
+    if (!object) return fail("is not in the catalogue", placed.name);
+    if (auto added = world_->add_body(body_of(*object), placed.X_WO); !added)
+      return tl::unexpected(added.error());
+  }
+  return {};
+}
+
+Expected<bool> Simulation::see(const grasping::Body& body, const Pose& X_WO) {
+  if (!model::is_valid(body.shape)) return fail("has no valid shape", body.name);
+  if (!is_finite(X_WO) || X_WO.translation().norm() > far_off)
+    return fail("is not on the table", body.name);
+  const Pose place = standing(body.shape, X_WO);
+  for (int i = 0; i < world_->body_count(); ++i) {
+    if (world_->body(i).name != body.name) continue;
+    const Pose now = world_->body_motion(i).X_WO;
+    const bool differs = (now.translation() - place.translation()).norm() > noticed ||
+                         angle_between(now.linear(), place.linear()) > noticed_turn;
+    if (differs && world_->distance_to_hand(i, options_.far_away) >= options_.far_away)
+      world_->move_body(i, place);
+    return false;
+  }
+  if (world_->body_count() >= max_bodies) return fail("too many objects", body.name);
+  if (auto added = world_->add_body(body, place); !added) return tl::unexpected(added.error());
+  return true;
+}
+
+Expected<void> Simulation::accept(const Command& command, Time now) {
+  if (command.model != hand_.name()) return fail("command for another model");
+  if (command.dof.size() != static_cast<Eigen::Index>(hand_.dofs().size()))
+    return fail("command of wrong length");
+  if (!command.dof.allFinite() || !is_finite(command.X_WB)) return fail("command not finite");
+  if (command.X_WB.translation().norm() > far_off) return fail("command far away");
+  if (!command_) approach(command);
+  if (auto taken = world_->command(command.X_WB, command.dof); !taken)
+    return fail("command outside limits", taken.error().where, taken.error().hint);
+  command_ = command;
+  accepted_ = now;
+  holding_ = false;
+  return {};
+}
+
+void Simulation::approach(const Command& command) {
+  if (world_->hand_touches_anything()) return;
+  const grasping::HandMotion before = world_->hand_motion();
+  world_->place_hand(command.X_WB, before.dof);
+  const double margin = 0.02;
+  bool free = command.X_WB.translation().z() > 0;
+  for (int i = 0; i < world_->body_count(); ++i)
+    free = free && world_->distance_to_hand(i, margin) >= margin;
+  if (!free) world_->place_hand(before.X_WB, before.dof);
+}
+
+Duration Simulation::follow(Time now, bool lockstep) {
+  const Duration behind = now - time_;
+  if (time_ == Time{}) {
+    time_ = now;
+  } else if (const Duration most = lockstep ? max_jump : options_.max_behind; behind > most) {
+    // Live, the newest of what is behind is stepped; after a jump of the recording nothing is.
+    time_ = lockstep ? now : now - most;
+    goal_ = now;
+    return lockstep ? behind : behind - most;
+  }
+  goal_ = now;
+  return Duration::zero();
+}
+
+bool Simulation::step() {
+  if (time_ + period_ > goal_) return false;
+  time_ += period_;
+  if (!holding_ && time_ - accepted_ > options_.stale) {
+    world_->hold_still();
+    holding_ = true;
+  }
+  world_->step();
+  if (const auto body = detector_.update(*world_); body && command_) {
+    const grasping::HandMotion motion = world_->hand_motion();
+    Closure closure;
+    closure.number = closures_++;
+    closure.time = time_;
+    closure.command = *command_;
+    closure.body = *body;
+    closure.object = world_->body(*body);
+    closure.dof = motion.dof;
+    closure.X_BO = motion.X_WB.inverse() * world_->body_motion(*body).X_WO;
+    closure.contacts = world_->contacts(*body);
+    closure.world = world_->clone();
+    closure_ = std::move(closure);
+  }
+  return true;
+}
+
+std::optional<Closure> Simulation::take_closure() {
+  return std::exchange(closure_, std::nullopt);
+}
+
+}  // namespace prehend::simulation

@@ -1,0 +1,80 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/base/error.hpp"
+#include "common/base/time.hpp"
+#include "common/grasping/world.hpp"
+#include "common/model/catalogue.hpp"
+#include "common/model/scene.hpp"
+#include "services/simulation/core/closure.hpp"
+#include "services/simulation/core/command.hpp"
+
+namespace prehend::simulation {
+
+struct Options {
+  double rate = 500;                                    // Hz, physics steps
+  Duration stale = std::chrono::milliseconds(200);      // without commands: the hand holds still
+  Duration max_behind = std::chrono::milliseconds(50);  // the world catches up at most this much
+  double far_away = 0.10;  // m, of the hand from an object that sightings may still move
+};
+
+/// The body that stands for an object of the catalogue.
+grasping::Body body_of(const model::CatalogueObject& object);
+
+/// The world behind the topics: a hand that follows commands, objects from a scene or from
+/// sightings, closures found. Deterministic; asks no clock. Keeps a reference to the hand.
+class Simulation {
+ public:
+  static Expected<std::unique_ptr<Simulation>> create(const model::HandModel& hand,
+                                                      const Options& options = {});
+
+  /// Objects as the scene says. Fails on what cannot be simulated.
+  Expected<void> build(const model::Scene& scene, const model::Catalogue& catalogue);
+
+  /// An object was recognised: the first sight places it on the table, later ones move it while the
+  /// hand is far. True if the bodies of the world have changed. Fails when it cannot be placed.
+  Expected<bool> see(const grasping::Body& body, const Pose& X_WO);
+
+  /// Follows a command from now on. The first one puts the hand there at once, unless it would
+  /// touch something. Refuses commands for another model, of wrong length or not finite, and far
+  /// away ones.
+  Expected<void> accept(const Command& command, Time now);
+
+  /// Lets the world follow the clock: drops what it is behind by more than max_behind (live) or
+  /// nothing (lockstep) and returns the time dropped. The first call sets the world's time.
+  Duration follow(Time now, bool lockstep);
+  /// One step, if the world has not yet reached the time given to follow().
+  bool step();
+  /// The hand has closed since the last call.
+  std::optional<Closure> take_closure();
+
+  Time time() const { return time_; }
+  const std::optional<Command>& command() const { return command_; }
+  bool is_holding_still() const { return holding_; }
+  const grasping::World& world() const { return *world_; }
+
+ private:
+  Simulation(const model::HandModel& hand, const Options& options,
+             std::unique_ptr<grasping::World> world);
+  void approach(const Command& command);
+
+  const model::HandModel& hand_;
+  Options options_;
+  std::unique_ptr<grasping::World> world_;
+  ClosureDetector detector_;
+  Duration period_;
+  Time time_{}, goal_{};
+  std::optional<Command> command_;  // the last accepted one
+  Time accepted_{};
+  bool holding_ = true;
+  std::optional<Closure> closure_;
+  std::uint64_t closures_ = 0;
+};
+
+}  // namespace prehend::simulation

@@ -1,0 +1,110 @@
+#include "services/simulation/service/messages.hpp"
+
+#include <algorithm>
+
+#include "common/convert/convert.hpp"
+
+namespace prehend::simulation {
+Expected<Command> from_message(const v1::HandCommand& message) {
+  const auto X_WB = convert::from_message(message.X_WB());
+  if (!X_WB) return fail("command not finite");
+  Command command;
+  command.stamp = from_ns(message.stamp_ns());
+  command.origin = from_ns(message.origin_ns());
+  command.model = message.model().to_string();
+  command.dof = convert::from_message(message.dof());
+  command.X_WB = *X_WB;
+  command.mode = static_cast<int>(message.mode());
+  command.weight = message.weight();
+  command.object = message.object().to_string();
+  command.grasp_type = static_cast<int>(message.grasp_type());
+  return command;
+}
+
+Expected<Sighting> from_message(const v1::ObjectDetection& message,
+                                const model::Catalogue& catalogue) {
+  const auto X_WO = convert::from_message(message.X_WO());
+  if (!X_WO) return tl::unexpected(X_WO.error());
+  Sighting sighting;
+  sighting.X_WO = *X_WO;
+  grasping::Body& body = sighting.body;
+  body.name = message.name().to_string();
+  body.shape = {convert::from_message(message.shape()), convert::from_message(message.size())};
+  if (const model::CatalogueObject* known = catalogue.find(body.name)) {
+    body.mass = known->mass;
+    body.material = known->material;
+  } else {
+    body.mass = 0.2;
+    body.material = "wood";
+  }
+  return sighting;
+}
+
+v1::HandState to_message(const grasping::HandMotion& motion) {
+  v1::HandState message;
+  message.dof(convert::to_message(motion.dof));
+  message.joint(convert::to_message(motion.joint));
+  message.velocity(convert::to_message(motion.velocity));
+  message.torque(convert::to_message(motion.torque));
+  message.X_WB(convert::to_message(motion.X_WB));
+  return message;
+}
+
+v1::ObjectState to_message(const grasping::Body& body, const grasping::BodyMotion& motion) {
+  v1::ObjectState message;
+  message.body(body.name);
+  message.X_WO(convert::to_message(motion.X_WO));
+  message.velocity(convert::to_message(motion.velocity));
+  message.angular_velocity(convert::to_message(motion.angular_velocity));
+  return message;
+}
+
+v1::BodyDescription to_message(const grasping::Body& body) {
+  v1::BodyDescription message;
+  message.name(body.name);
+  message.shape(convert::to_message(body.shape.kind));
+  message.size(convert::to_message(body.shape.size));
+  message.mass(body.mass);
+  message.material(body.material);
+  return message;
+}
+
+v1::GraspReport to_message(const Closure& closure, const GraspVerdict& verdict) {
+  v1::GraspReport message;
+  message.sequence_number(closure.number);
+  message.stamp_ns(to_ns(closure.time));
+  message.origin_ns(to_ns(closure.command.origin));
+  message.object(closure.object.name);
+  message.X_BO(convert::to_message(closure.X_BO));
+  message.dof(convert::to_message(closure.dof));
+  message.mode(static_cast<v1::MappingMode>(closure.command.mode));
+  message.weight(closure.command.weight);
+  message.grasp_type(static_cast<v1::GraspType>(closure.command.grasp_type));
+  message.believed_object(closure.command.object);
+  const std::size_t most = 64;  // of the message
+  for (const analysis::Contact& contact : analysis::spread_contacts(closure.contacts, most)) {
+    v1::Contact entry;
+    entry.link(contact.link);
+    entry.p_OC(convert::to_message(contact.p_OC));
+    entry.normal_O(convert::to_message(contact.normal_O));
+    entry.friction(contact.friction);
+    entry.force(contact.force);
+    entry.depth(contact.depth);
+    message.contacts().push_back(entry);
+  }
+  message.epsilon(verdict.quality.epsilon);
+  message.volume(verdict.quality.volume);
+  message.force_closure(verdict.quality.force_closure);
+  const Eigen::VectorXd& weakest = verdict.quality.weakest_direction;
+  for (std::size_t i = 0; i < 6; ++i)
+    message.weakest_direction()[i] =
+        weakest.size() == 6 ? weakest[static_cast<Eigen::Index>(i)] : 0.0;
+  message.penetration(verdict.penetration);
+  message.held(verdict.hold.held);
+  message.slip(verdict.hold.slip);
+  message.turn(verdict.hold.turn);
+  message.reason(verdict.hold.reason);
+  return message;
+}
+
+}  // namespace prehend::simulation

@@ -1,0 +1,31 @@
+#pragma once
+
+#include "common/base/error.hpp"
+#include "common/grasping/world.hpp"
+#include "common/model/catalogue.hpp"
+#include "idl/Perception.h"
+#include "idl/Robot.h"
+#include "idl/World.h"
+#include "services/simulation/core/closure.hpp"
+#include "services/simulation/core/command.hpp"
+
+/// Between the topics and the values of the core.
+namespace prehend::simulation {
+
+Expected<Command> from_message(const v1::HandCommand& message);
+
+/// An object as it was seen. What the catalogue knows is taken from there, except the size, which
+/// was seen; anything else is taken for a light thing of wood.
+struct Sighting {
+  grasping::Body body;
+  Pose X_WO;
+};
+Expected<Sighting> from_message(const v1::ObjectDetection& message,
+                                const model::Catalogue& catalogue);
+
+v1::HandState to_message(const grasping::HandMotion& motion);
+v1::ObjectState to_message(const grasping::Body& body, const grasping::BodyMotion& motion);
+v1::BodyDescription to_message(const grasping::Body& body);
+v1::GraspReport to_message(const Closure& closure, const GraspVerdict& verdict);
+
+}  // namespace prehend::simulation

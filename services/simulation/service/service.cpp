@@ -1,0 +1,224 @@
+#include "services/simulation/service/service.hpp"
+
+#include <algorithm>
+#include <memory>
+#include <utility>
+
+#include "common/base/log.hpp"
+#include "common/base/paths.hpp"
+#include "common/dds/topics.hpp"
+#include "services/simulation/service/messages.hpp"
+
+namespace prehend::simulation {
+namespace {
+
+constexpr std::size_t max_waiting = 4;                         // closures for the judge
+constexpr Duration patience = std::chrono::milliseconds(300);  // with silent commands
+constexpr Duration start_up = std::chrono::seconds(3);         // until some come
+
+constexpr const char* unled = "nobody sends robot/command; the hand stays as it is";
+
+}  // namespace
+
+Expected<std::unique_ptr<Service>> Service::create(service::Shell& shell) {
+  const service::Config& config = shell.config();
+  const std::string& kind = config.text("simulation.hand");
+  if (kind.empty()) return wrong_use("is no hand", "simulation.hand", model::hand_hint());
+  if (!(config.number("simulation.state_rate") > 0))
+    return wrong_use("must be positive", "simulation.state_rate");
+  auto hand = model::HandModel::load(model::hand_directory(kind));
+  if (!hand) return tl::unexpected(hand.error());
+  auto catalogue = model::Catalogue::load(config.path("lab.catalogue"));
+  if (!catalogue) return tl::unexpected(catalogue.error());
+  std::unique_ptr<Service> made(new Service(shell, std::move(*hand), std::move(*catalogue)));
+  if (auto started = made->start(); !started) return tl::unexpected(started.error());
+  return made;
+}
+
+Service::Service(service::Shell& shell, model::HandModel hand, model::Catalogue catalogue)
+    : shell_(shell),
+      hand_(std::move(hand)),
+      catalogue_(std::move(catalogue)),
+      hand_name_(shell.config().text("simulation.hand_name")),
+      hand_state_(shell.publish(dds::robot_state)),
+      object_state_(shell.publish(dds::object_state)),
+      scene_state_(shell.publish(dds::scene_state)),
+      reports_(shell.publish(dds::grasp_report)),
+      state_period_(seconds(1.0 / shell.config().number("simulation.state_rate"))) {}
+
+Service::~Service() {
+  {
+    const std::scoped_lock lock(mutex_);
+    stopping_ = true;
+  }
+  waiting_.notify_all();
+  if (judge_.joinable()) judge_.join();
+}
+
+Expected<void> Service::start() {
+  const service::Config& config = shell_.config();
+  const double rate = config.number("simulation.rate");
+  auto simulation = Simulation::create(hand_, {.rate = rate});
+  if (!simulation) return tl::unexpected(simulation.error());
+  simulation_ = std::move(*simulation);
+  if (const auto file = config.path("lab.scene"); !file.empty()) {
+    const auto scene = model::load_scene(file, catalogue_);
+    if (!scene) return tl::unexpected(scene.error());
+    if (auto built = simulation_->build(*scene, catalogue_); !built) return built;
+    from_scene_ = true;
+  }
+
+  shell_.subscribe(dds::robot_command, std::function([this](const v1::HandCommand& message,
+                                                            const dds::SampleInfo& info) {
+                     on_command(message, info);
+                   }));
+  if (!from_scene_)
+    shell_.subscribe(dds::object_detection, std::function([this](const v1::ObjectDetection& message,
+                                                                 const dds::SampleInfo& info) {
+                       if (!info.gone) on_detection(message);
+                     }));
+  shell_.on_tick(seconds(1.0 / rate), [this](Time now) { on_tick(now); });
+  if (!shell_.lockstep()) judge_ = std::thread([this] { judge_queued(); });
+  last_command_ = shell_.now() + start_up;
+  shell_.status().running();
+  return {};
+}
+
+void Service::on_command(const v1::HandCommand& message, const dds::SampleInfo& info) {
+  // Whoever commanded is gone: the hand will hold still once its last command is stale.
+  if (info.gone) return;
+  if (message.hand().to_string() != hand_name_) {
+    shell_.status().drop("unknown hand");
+    return;
+  }
+  const auto command = from_message(message);
+  if (!command) {
+    shell_.status().drop(command.error().what);
+    return;
+  }
+  const Time now = shell_.now();
+  if (auto accepted = simulation_->accept(*command, now); !accepted) {
+    shell_.status().drop(accepted.error().what);
+    return;
+  }
+  last_command_ = now;
+  shell_.status().count("commands");
+  if (command->origin != Time{})  // a hand that is told to hold still answers no glove frame
+    shell_.status().latency("glove to accepted", now - command->origin);
+  shell_.status().latency("command hop", now - info.sent);
+}
+
+void Service::on_detection(const v1::ObjectDetection& message) {
+  const auto sighting = from_message(message, catalogue_);
+  if (!sighting) {
+    shell_.status().drop("detection not finite");
+    return;
+  }
+  const auto changed = simulation_->see(sighting->body, sighting->X_WO);
+  if (!changed) {
+    shell_.status().drop("detection: " + changed.error().what);
+    return;
+  }
+  scene_changed_ |= *changed;
+}
+
+void Service::on_tick(Time now) {
+  if (const Duration dropped = simulation_->follow(now, shell_.lockstep()); dropped.count() > 0)
+    shell_.status().drop("time (ms)",
+                         static_cast<std::uint64_t>(std::max(1.0, 1e3 * to_seconds(dropped))));
+  if (!shell_.lockstep()) look_around(now);
+  if (scene_changed_) publish_scene();
+  while (simulation_->step()) {
+    shell_.status().count("steps");
+    if (auto closure = simulation_->take_closure()) judge_soon(std::move(*closure));
+    if (simulation_->time() >= next_state_) publish_state();
+  }
+}
+
+/// Says that nobody commands; that the hand holds still then is the world's own doing.
+void Service::look_around(Time now) {
+  const bool led = now - last_command_ <= patience;
+  if (led == led_) return;
+  led_ = led;
+  if (led) return shell_.status().running();
+  log::warning("{}", unled);
+  shell_.status().degraded(unled);
+}
+
+void Service::publish_state() {
+  const Time time = simulation_->time();
+  // On a grid of its own, but never trying to make up for time that was dropped.
+  next_state_ = std::max(next_state_ + state_period_, time + state_period_ / 2);
+  v1::HandState state = to_message(simulation_->world().hand_motion());
+  state.hand(hand_name_);
+  state.model(hand_.name());
+  state.sequence_number(sequence_);
+  state.stamp_ns(to_ns(time));
+  if (simulation_->command()) state.origin_ns(to_ns(simulation_->command()->origin));
+  hand_state_.publish(state);
+  for (int i = 0; i < simulation_->world().body_count(); ++i) {
+    v1::ObjectState object =
+        to_message(simulation_->world().body(i), simulation_->world().body_motion(i));
+    object.sequence_number(sequence_);
+    object.stamp_ns(to_ns(time));
+    object_state_.publish(object);
+  }
+  ++sequence_;
+}
+
+void Service::publish_scene() {
+  v1::SceneState scene;
+  scene.scene("table");
+  scene.sequence_number(scene_sequence_++);
+  scene.stamp_ns(to_ns(simulation_->time()));
+  for (int i = 0; i < simulation_->world().body_count(); ++i)
+    scene.bodies().push_back(to_message(simulation_->world().body(i)));
+  scene_state_.publish(scene);
+  scene_changed_ = false;
+}
+
+void Service::judge_soon(Closure closure) {
+  shell_.status().count("closures");
+  if (shell_.lockstep()) {
+    const GraspVerdict verdict = judge(closure);
+    publish_report(closure, verdict);
+    return;
+  }
+  {
+    const std::scoped_lock lock(mutex_);
+    if (queue_.size() >= max_waiting) {
+      shell_.status().drop("closure not judged");
+      return;
+    }
+    queue_.push_back(std::move(closure));
+  }
+  waiting_.notify_one();
+}
+
+void Service::judge_queued() {
+  std::unique_lock lock(mutex_);
+  while (true) {
+    waiting_.wait(lock, [this] { return stopping_ || !queue_.empty(); });
+    if (stopping_) return;
+    // A task must be copyable, a closure is not.
+    const auto closure = std::make_shared<Closure>(std::move(queue_.front()));
+    queue_.pop_front();
+    lock.unlock();
+    const GraspVerdict verdict = judge(*closure);
+    shell_.post([this, closure, verdict] { publish_report(*closure, verdict); });
+    lock.lock();
+  }
+}
+
+void Service::publish_report(const Closure& closure, const GraspVerdict& verdict) {
+  v1::GraspReport report = to_message(closure, verdict);
+  report.hand(hand_name_);
+  reports_.publish(report);
+  log::info("{}: {} contacts, epsilon {:.4f}, {}", closure.object.name, closure.contacts.size(),
+            verdict.quality.epsilon, verdict.hold.held ? "held" : verdict.hold.reason);
+  if (verdict.blocking.empty()) return;
+  shell_.status().count("fingers_blocked");
+  log::warning("fingers keep each other from opening: {}", verdict.blocking);
+}
+
+}  // namespace prehend::simulation

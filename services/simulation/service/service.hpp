@@ -1,0 +1,60 @@
+#pragma once
+
+#include <condition_variable>
+#include <deque>
+#include <memory>
+#include <mutex>
+#include <thread>
+
+#include "common/base/error.hpp"
+#include "common/service/shell.hpp"
+#include "services/simulation/core/simulation.hpp"
+
+namespace prehend::simulation {
+
+/// The shell around a Simulation: topics in, topics out, and the judge in a thread of its own, so
+/// that the world goes on while a grasp is judged. In lockstep the judge answers in the same cycle.
+class Service {
+ public:
+  static Expected<std::unique_ptr<Service>> create(service::Shell& shell);
+  ~Service();
+  Service(const Service&) = delete;
+  Service& operator=(const Service&) = delete;
+
+ private:
+  Service(service::Shell& shell, model::HandModel hand, model::Catalogue catalogue);
+  Expected<void> start();
+  void on_command(const v1::HandCommand& message, const dds::SampleInfo& info);
+  void on_detection(const v1::ObjectDetection& message);
+  void on_tick(Time now);
+  void look_around(Time now);
+  void publish_state();
+  void publish_scene();
+  void judge_soon(Closure closure);
+  void publish_report(const Closure& closure, const GraspVerdict& verdict);
+  void judge_queued();
+
+  service::Shell& shell_;
+  model::HandModel hand_;
+  model::Catalogue catalogue_;
+  std::string hand_name_;
+  bool from_scene_ = false;
+  std::unique_ptr<Simulation> simulation_;
+  service::Shell::Output<v1::HandState> hand_state_;
+  service::Shell::Output<v1::ObjectState> object_state_;
+  service::Shell::Output<v1::SceneState> scene_state_;
+  service::Shell::Output<v1::GraspReport> reports_;
+  std::uint64_t sequence_ = 0, scene_sequence_ = 0;
+  Duration state_period_{};
+  Time next_state_{}, last_command_{};
+  bool led_ = true;  // commands come
+  bool scene_changed_ = true;
+
+  std::mutex mutex_;
+  std::condition_variable waiting_;
+  std::deque<Closure> queue_;  // for the judge
+  bool stopping_ = false;
+  std::thread judge_;
+};
+
+}  // namespace prehend::simulation

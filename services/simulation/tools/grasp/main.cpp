@@ -1,0 +1,13 @@
+#include "services/simulation/tools/grasp/commands.hpp"
+#include "services/simulation/tools/grasp/planning_commands.hpp"
+
+int main(int argc, char** argv) {
+  using namespace prehend::simulation;
+  prehend::tool::Program program("grasp", "What can be said of a grasp.");
+  add_quality(program);
+  add_plan(program);
+  add_export(program);
+  add_picture(program);
+  add_table(program);
+  return program.run(argc, argv);
+}

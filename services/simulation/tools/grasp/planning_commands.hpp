@@ -1,0 +1,13 @@
+#pragma once
+
+#include "common/tool/program.hpp"
+
+namespace prehend::simulation {
+
+/// Subcommands of `prehend grasp` about planned grasps; see tool.hpp.
+void add_plan(tool::Program& program);
+void add_export(tool::Program& program);
+void add_picture(tool::Program& program);
+void add_table(tool::Program& program);
+
+}  // namespace prehend::simulation

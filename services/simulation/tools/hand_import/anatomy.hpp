@@ -1,0 +1,37 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "common/base/error.hpp"
+#include "common/model/hand_model.hpp"
+#include "services/simulation/tools/hand_import/robot.hpp"
+
+namespace prehend::simulation {
+
+/// What a hand.toml says of a hand, found from its URDF alone.
+struct Anatomy {
+  struct Dof {
+    std::string joint;
+    int closing = 0;
+    double open = 0, fist = 0;
+  };
+  struct Fingertip {
+    std::string name, link;
+    Eigen::Vector3d p_LT;
+  };
+  std::vector<Dof> dofs;  // one a joint that does not mimic, in the order of the tree
+  std::vector<Fingertip> fingertips;
+  Pose X_BG = Pose::Identity();
+  model::Reach reach;
+  bool opposed = true;  // false: no fingers that move towards each other were found
+};
+
+/// Fingers are the chains that end in a leaf; of several leaves that the same DoFs move, those that
+/// reach almost as far as the farthest. A tip is the end of the last link along its bone. A DoF
+/// closes if its joints turn about about the same axis as the last joint of a finger (else it is
+/// abduction), towards the side on which the tips come nearer to the palm, or slides tips towards
+/// each other. robot: as mend() made it.
+Expected<Anatomy> find_anatomy(const Robot& robot);
+
+}  // namespace prehend::simulation

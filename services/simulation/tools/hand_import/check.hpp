@@ -1,0 +1,16 @@
+#pragma once
+
+#include <vector>
+
+#include "services/simulation/tools/hand_import/mesh.hpp"
+#include "services/simulation/tools/hand_import/robot.hpp"
+
+namespace prehend::simulation {
+
+/// All that is missing or suspicious in a robot that shall be a hand, errors first. Without an
+/// error `prehend hand add` can make a hand of it.
+std::vector<UrdfFinding> check(const Robot& robot, const MeshReader& meshes);
+
+bool is_usable(const std::vector<UrdfFinding>& findings);
+
+}  // namespace prehend::simulation

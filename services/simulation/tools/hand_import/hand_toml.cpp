@@ -1,0 +1,60 @@
+#include "services/simulation/tools/hand_import/hand_toml.hpp"
+
+#include <fmt/format.h>
+
+namespace prehend::simulation {
+namespace {
+
+/// Numbers of a TOML array, with as many digits as measuring a hand can mean.
+template <class Numbers>
+std::string row(const Numbers& numbers) {
+  std::string text;
+  for (const double number : numbers)
+    text += fmt::format("{}{:.9g}", text.empty() ? "" : ", ", number + 0.0);
+  return "[" + text + "]";
+}
+
+}  // namespace
+
+std::string toml_text(const std::string& text) {
+  std::string quoted = "\"";
+  for (const char c : text) {
+    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f)
+      quoted += fmt::format("\\u{:04x}", static_cast<unsigned>(c));
+    else if (c == '"' || c == '\\')
+      (quoted += '\\') += c;
+    else
+      quoted += c;
+  }
+  return quoted + "\"";
+}
+
+std::string write_toml(const Anatomy& anatomy, const std::string& name, const Robot& robot) {
+  const Eigen::Quaterniond q(anatomy.X_BG.linear());
+  std::string text = fmt::format(
+      "# Found by `prehend hand add` from the URDF; correct what it guessed wrong.\n"
+      "# Frames: B the base, metres, radians.\nname = {}\n\n"
+      "# z out of the palm, y from the thumb's side to the fingers'\n"
+      "[grasp_frame]\nposition = {}\norientation = {}  # w, x, y, z\n\n"
+      "[reach]\nopening = {:.4f}\nengage = {:.4f}\nclearance = {:.4f}\nhalf_width = {:.4f}\n",
+      toml_text(name), row(anatomy.X_BG.translation()),
+      row(std::vector<double>{q.w(), q.x(), q.y(), q.z()}), anatomy.reach.opening,
+      anatomy.reach.engage, anatomy.reach.clearance, anatomy.reach.half_width);
+  std::vector<double> open, fist;
+  for (const Anatomy::Dof& dof : anatomy.dofs) {
+    text += fmt::format("\n[[dof]]\nname = {0}\njoint = {0}\nclosing = {1}\n", toml_text(dof.joint),
+                        dof.closing);
+    open.push_back(dof.open);
+    fist.push_back(dof.fist);
+  }
+  for (const Anatomy::Fingertip& tip : anatomy.fingertips)
+    text += fmt::format("\n[[fingertip]]\nname = {}\nlink = {}\nposition = {}\n",
+                        toml_text(tip.name), toml_text(tip.link), row(tip.p_LT));
+  text += fmt::format(
+      "\n# Torque limits are those of the URDF; [torque] overrides them.\n[materials]\n"
+      "default = \"rubber\"\n{} = \"plastic\"\n\n[postures]\nopen = {}\nfist = {}\n",
+      toml_text(robot.links[0].name), row(open), row(fist));
+  return text;
+}
+
+}  // namespace prehend::simulation

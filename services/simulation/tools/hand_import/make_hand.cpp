@@ -1,0 +1,38 @@
+#include "services/simulation/tools/hand_import/make_hand.hpp"
+
+#include <fmt/format.h>
+
+#include "services/simulation/tools/hand_import/anatomy.hpp"
+#include "services/simulation/tools/hand_import/hand_toml.hpp"
+
+namespace prehend::simulation {
+
+Expected<MadeHand> make_hand(const Robot& robot, const std::string& name,
+                             const MeshReader& meshes) {
+  auto findings = check(robot, meshes);
+  if (!is_usable(findings)) {
+    const UrdfFinding& first = findings.front();
+    return fail(first.what, fmt::format("line {}: {}", first.line, first.element), first.repair);
+  }
+  auto mended = repair(robot, meshes);
+  if (!mended) return tl::unexpected(mended.error());
+  mended->robot.name = name;
+  // Meshes that became primitives and shapes that were made up may overlap too.
+  std::erase_if(findings, [](const UrdfFinding& f) { return f.code == "self-collision"; });
+  for (UrdfFinding& finding : check(mended->robot, meshes))
+    if (finding.code == "self-collision") findings.push_back(std::move(finding));
+  const auto anatomy = find_anatomy(mended->robot);
+  if (!anatomy) return tl::unexpected(anatomy.error());
+  std::string urdf = write_robot(mended->robot, "Made by `prehend hand add`.");
+  std::string toml = write_toml(*anatomy, name, mended->robot);
+  auto model = model::HandModel::parse(urdf, toml);
+  if (!model) return tl::unexpected(model.error());
+  return MadeHand{std::move(urdf),
+                  std::move(toml),
+                  std::move(*model),
+                  std::move(findings),
+                  std::move(mended->changes),
+                  anatomy->opposed};
+}
+
+}  // namespace prehend::simulation

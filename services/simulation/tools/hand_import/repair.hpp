@@ -1,0 +1,21 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "services/simulation/tools/hand_import/mesh.hpp"
+#include "services/simulation/tools/hand_import/robot.hpp"
+
+namespace prehend::simulation {
+
+/// A robot made simple enough for a hand, and what was done to it, a line each.
+struct Mended {
+  Robot robot;
+  std::vector<std::string> changes;
+};
+
+/// Joins fixed links to their parents, replaces meshes by primitives, and fills in what is missing:
+/// limits, masses, inertia, collision shapes. The robot has passed check() without an error.
+Expected<Mended> repair(const Robot& robot, const MeshReader& meshes);
+
+}  // namespace prehend::simulation

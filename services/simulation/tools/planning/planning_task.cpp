@@ -1,0 +1,83 @@
+#include "services/simulation/tools/planning/planning_task.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+#include "common/base/paths.hpp"
+#include "common/base/progress.hpp"
+#include "common/base/workers.hpp"
+#include "common/model/catalogue.hpp"
+
+namespace prehend::simulation {
+namespace {
+
+using grasping::Body;
+
+std::filesystem::path hands_directory() {
+  return share_directory() / "models" / "hands";
+}
+
+}  // namespace
+
+std::vector<std::string> hand_names() {
+  std::vector<std::string> names;
+  std::error_code error;
+  for (const auto& entry : std::filesystem::directory_iterator(hands_directory(), error))
+    if (std::filesystem::exists(entry.path() / "hand.toml", error))
+      names.push_back(entry.path().filename().string());
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+Expected<model::HandModel> find_hand(const std::string& name) {
+  if (name.find('/') != std::string::npos) return model::HandModel::load(name);
+  const auto names = hand_names();
+  if (std::find(names.begin(), names.end(), name) == names.end())
+    return fail("there is no such hand", name,
+                fmt::format("one of {}, or the path of a folder", fmt::join(names, ", ")));
+  return model::HandModel::load(hands_directory() / name);
+}
+
+Expected<std::vector<Body>> catalogue_bodies() {
+  const auto catalogue =
+      model::Catalogue::load(share_directory() / "models" / "objects" / "catalogue.toml");
+  if (!catalogue) return tl::unexpected(catalogue.error());
+  std::vector<Body> bodies;
+  for (const model::CatalogueObject& object : catalogue->objects())
+    bodies.push_back({object.name, object.shape, object.mass, object.material, {}});
+  return bodies;
+}
+
+Expected<Body> find_body(const std::string& name) {
+  const auto bodies = catalogue_bodies();
+  if (!bodies) return tl::unexpected(bodies.error());
+  std::vector<std::string> names;
+  for (const Body& body : *bodies) {
+    if (body.name == name) return body;
+    names.push_back(body.name);
+  }
+  return fail("there is no such object", name, fmt::format("one of {}", fmt::join(names, ", ")));
+}
+
+Expected<grasping::Plan> plan_with_progress(const model::HandModel& hand, const Body& object,
+                                            const grasping::PlanOptions& options,
+                                            unsigned threads) {
+  int round = 0;
+  return grasping::plan_grasps(hand, object, options, [&](std::size_t count, const auto& work) {
+    Progress progress(fmt::format("{} on {}: {}", hand.name(), object.name,
+                                  round++ == 0 ? "closing" : "lifting"));
+    share_work(count, threads, work, [&](std::size_t done) { progress.show(done, count); });
+  });
+}
+
+std::string describe(const grasping::HoldResult& hold) {
+  if (hold.held) return "lift, shake, turn";
+  std::string survived;
+  if (hold.lift.value_or(false)) survived = "lift";
+  if (hold.shake.value_or(false)) survived += ", shake";
+  return (survived.empty() ? "no: " : survived + "; then ") + hold.reason;
+}
+
+}  // namespace prehend::simulation

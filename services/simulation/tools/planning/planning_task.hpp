@@ -1,0 +1,29 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "common/base/error.hpp"
+#include "common/grasping/planner.hpp"
+#include "common/model/hand_model.hpp"
+
+namespace prehend::simulation {
+
+/// A hand of the lab by name, or of the folder of that path. The error lists those that there are.
+Expected<model::HandModel> find_hand(const std::string& name);
+std::vector<std::string> hand_names();
+
+/// The catalogue's objects as bodies, all or one by name. The error lists those that there are.
+Expected<std::vector<grasping::Body>> catalogue_bodies();
+Expected<grasping::Body> find_body(const std::string& name);
+
+/// plan_grasps() in so many threads (0: one a core), with progress on standard error.
+Expected<grasping::Plan> plan_with_progress(const model::HandModel& hand,
+                                            const grasping::Body& object,
+                                            const grasping::PlanOptions& options, unsigned threads);
+
+/// «lift, shake, turn» as far as it was survived, or «no: » and why.
+std::string describe(const grasping::HoldResult& hold);
+
+}  // namespace prehend::simulation

@@ -1,0 +1,115 @@
+#pragma once
+
+#include <array>
+#include <span>
+#include <string_view>
+
+namespace prehend::architecture {
+
+/// Sources in `from` may include headers of `to`.
+struct Edge {
+  std::string_view from, to;
+};
+
+/// What is let pass, and why.
+struct Exception {
+  std::string_view file;
+  std::string_view what;  // the header, the word or the function; rules say which
+  std::string_view reason;
+};
+
+/// What the rules leave to the house to say. An entry that nothing needs breaks its rule.
+struct Agreed {
+  std::span<const Edge> edges;                // between folders of common; idl is one, too
+  std::span<const Exception> impure_cores;    // what: the header
+  std::span<const Exception> long_functions;  // what: a piece of the signature; may only shrink
+  std::span<const Exception> ends;            // what: the function that ends the process
+  std::span<const Exception> commands;        // what: the function that adds a subcommand
+  std::span<const Exception> raw_targets;     // what: the name of the target
+};
+
+/// Where these tables stand.
+inline constexpr std::string_view agreed_file = "tests/architecture/agreed.hpp";
+
+inline constexpr std::array common_edges{
+    Edge{"common/analysis", "common/base"},
+    Edge{"common/analysis", "common/model"},
+    Edge{"common/clock", "common/base"},
+    Edge{"common/clock", "idl"},
+    Edge{"common/convert", "common/base"},
+    Edge{"common/convert", "common/model"},
+    Edge{"common/convert", "idl"},
+    Edge{"common/dds", "common/base"},
+    Edge{"common/dds", "common/keys"},
+    Edge{"common/dds", "idl"},
+    Edge{"common/grasping", "common/analysis"},
+    Edge{"common/grasping", "common/base"},
+    Edge{"common/grasping", "common/model"},
+    Edge{"common/keys", "common/base"},
+    Edge{"common/learning", "common/base"},
+    Edge{"common/learning", "common/proto"},
+    Edge{"common/model", "common/base"},
+    Edge{"common/proto", "common/base"},
+    Edge{"common/recording/compare", "common/base"},
+    Edge{"common/recording/compare", "common/recording/mcap"},
+    Edge{"common/recording/compare", "common/recording/types"},
+    Edge{"common/recording/layout", "common/base"},
+    Edge{"common/recording/layout", "common/dds"},
+    Edge{"common/recording/layout", "common/recording/mcap"},
+    Edge{"common/recording/mcap", "common/base"},
+    Edge{"common/recording/types", "common/base"},
+    Edge{"common/service", "common/base"},
+    Edge{"common/service", "common/clock"},
+    Edge{"common/service", "common/dds"},
+    Edge{"common/service", "common/tool"},
+    Edge{"common/service", "idl"},
+    Edge{"common/statistics", "common/base"},
+    Edge{"common/tool", "common/base"},
+};
+
+inline constexpr std::string_view older = "older than the rule";
+
+inline constexpr std::array long_functions{
+    Exception{"common/dds/participant.cpp", "Participant::join(", older},
+    Exception{"common/service/config.cpp", "Config::load(", older},
+    Exception{"common/service/config_keys.cpp", "config_keys(", "a table: a row a key"},
+    Exception{"services/cli/tools/keys/keys_command.cpp", "keys_command(", older},
+    Exception{"services/cli/tools/status/status_command.cpp", "status_command(", older},
+    Exception{"services/recorder/tools/replay/main.cpp", "replay(", older},
+    Exception{"tests/benchmark/glove_driver.cpp", "measure(", older},
+    Exception{"tests/integration/flood_test.cpp", "Flood::flood(", older},
+    Exception{"tests/integration/profiles_test.cpp", "SitesBehindRoutersMeetAtForwardedPortsAlone)",
+              older},
+    Exception{"tests/integration/replay_test.cpp", "EasesTheHandToWhereTheRecordingBegins)", older},
+    Exception{"tests/integration/security_test.cpp",
+              "IntrudersGetNothingBringNothingAndTheOthersGoOn)", older},
+    Exception{"tests/integration/security_test.cpp", "BrokenKeysStopAProcess)", older},
+    Exception{"tests/integration/simulation_test.cpp", "GraspsWhatWasSeenAndReportsIt)", older},
+    Exception{"tests/integration/teach_test.cpp", "ShownTrainedUsedAndRepeatedFromTheRecording)",
+              older},
+    Exception{"tests/unit/dds/raw_test.cpp", "BytesKeysEndsAndStampsPassThrough)", older},
+    Exception{"tests/unit/hand_model/hand_file_test.cpp", "RefusesWhatIsNoHandAndSaysWhere)",
+              older},
+    Exception{"tests/unit/hand_tools/broken_urdf_test.cpp", "NamesWhatIsBroken)", older},
+    Exception{"tests/unit/mapping/wild_input_test.cpp", "NeverMovesFasterThanTheLimits)", older},
+    Exception{"tests/unit/service/lockstep_test.cpp", "play(", older},
+};
+
+inline constexpr std::array process_ends{
+    Exception{"common/service/process.cpp", "_exit",
+              "the child between fork and exec, which must not run the parent's destructors"},
+    Exception{"common/service/restart.cpp", "_Exit",
+              "exec failed, and nothing is left to return to"},
+    Exception{"common/service/shell.cpp", "_Exit", "the watchdog: Fast DDS cannot even be left"},
+};
+
+inline constexpr std::array raw_targets{
+    Exception{"common/proto/CMakeLists.txt", "common_proto_messages",
+              "generated sources, compiled without our warnings"},
+};
+
+/// What this house has agreed on.
+inline constexpr Agreed agreed_here{common_edges, {}, long_functions,
+                                    process_ends, {}, raw_targets};
+
+}  // namespace prehend::architecture

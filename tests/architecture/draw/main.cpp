@@ -1,0 +1,26 @@
+// draw_architecture: prints the drawing of the house; with --write puts it into ARCHITECTURE.md.
+#include <fstream>
+#include <iostream>
+#include <iterator>
+#include <string_view>
+
+#include "tests/architecture/drawing.hpp"
+
+int main(int argc, char** argv) {
+  using namespace prehend::architecture;
+  const std::filesystem::path root = PREHEND_SOURCE;
+  const std::string drawn = drawing(read_house(root));
+  if (argc == 1) {
+    std::cout << drawn;
+    return 0;
+  }
+  if (argc != 2 || std::string_view(argv[1]) != "--write") {
+    std::cerr << "usage: draw_architecture [--write]\n";
+    return 2;
+  }
+  std::ifstream in(root / "ARCHITECTURE.md");
+  const std::string page{std::istreambuf_iterator<char>(in), {}};
+  std::ofstream out(root / "ARCHITECTURE.md");
+  out << with_drawing(page, drawn) << std::flush;
+  return out ? 0 : 3;
+}

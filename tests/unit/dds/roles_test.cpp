@@ -1,0 +1,144 @@
+// Who writes and reads a topic is true: the calls publish(dds::X), subscribe(dds::X),
+// writer(dds::X) and reader(dds::X) in the sources of each role are exactly its topics in
+// topics.hpp.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <map>
+#include <regex>
+#include <set>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "common/dds/topics.hpp"
+
+namespace prehend::dds {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Whose code lies where; the longest path counts.
+const std::map<std::string, Roles> roles_of_path{
+    {"services/glove", Role::glove},
+    {"services/recognition", Role::recognition},
+    {"services/mapping", Role::mapping},
+    {"services/mapping/tools/teach", Role::operator_},
+    {"services/simulation", Role::simulation},
+    {"services/recorder", Role::recorder | Role::replayer},
+    {"services/recorder/tools/record", Role::recorder},
+    {"services/recorder/tools/replay", Role::replayer},
+    {"services/recorder/tools/check", Role::replayer},
+    {"services/cli", Role::viewer},
+    {"common/service", services},  // the shell, which every service has
+    {"common/service/conductor.cpp", Role::replayer},
+};
+
+Roles roles_of(const std::string& file) {
+  Roles roles;
+  std::size_t longest = 0;
+  for (const auto& [path, owners] : roles_of_path)
+    if (file.starts_with(path) && path.size() > longest) {
+      longest = path.size();
+      roles = owners;
+    }
+  return roles;
+}
+
+/// A call that makes an end of a topic.
+struct Call {
+  std::string file;
+  std::string verb;
+  const TopicInfo* topic;
+  bool writes() const { return verb == "publish" || verb == "writer"; }
+  /// By the Shell, in the role of its process. Other readers in the services are those of tools
+  /// that only look.
+  bool in_role() const {
+    return verb == "publish" || verb == "subscribe" || file.starts_with("common/service");
+  }
+};
+
+/// dds::robot_command is robot/command.
+const TopicInfo* topic_of(std::string variable) {
+  if (const auto at = variable.find('_'); at != std::string::npos) variable[at] = '/';
+  return find_topic(variable);
+}
+
+std::vector<Call> calls_in(const fs::path& path) {
+  std::ifstream stream(path);
+  const std::string text{std::istreambuf_iterator<char>(stream), {}};
+  const std::string file = fs::relative(path, PREHEND_SOURCE).string();
+  static const std::regex call(R"(\b(publish|subscribe|writer|reader)\(\s*(prehend::)?dds::(\w+))");
+  std::vector<Call> calls;
+  for (std::sregex_iterator at(text.begin(), text.end(), call), end; at != end; ++at) {
+    const TopicInfo* topic = topic_of((*at)[3]);
+    EXPECT_TRUE(topic) << file << ": dds::" << (*at)[3] << " is not the name of a topic";
+    if (topic) calls.push_back({file, (*at)[1], topic});
+  }
+  return calls;
+}
+
+const std::vector<Call>& all_calls() {
+  static const std::vector<Call> calls = [] {
+    std::vector<Call> found;
+    for (const char* top : {"/services", "/common/service"})
+      for (const auto& entry : fs::recursive_directory_iterator(std::string(PREHEND_SOURCE) + top))
+        if (entry.path().extension() == ".cpp")
+          std::ranges::copy(calls_in(entry.path()), std::back_inserter(found));
+    return found;
+  }();
+  return calls;
+}
+
+using Names = std::set<std::string_view>;
+
+Names in_code(Role role, bool writes) {
+  Names names;
+  for (const Call& call : all_calls())
+    if (call.in_role() && call.writes() == writes && roles_of(call.file).has(role))
+      names.insert(call.topic->name);
+  return names;
+}
+
+Names in_list(Role role, bool writes) {
+  Names names;
+  for (const TopicInfo& topic : topic_table)
+    if ((writes ? topic.writers : topic.readers).has(role)) names.insert(topic.name);
+  return names;
+}
+
+TEST(Roles, AreTheCallsOfEachService) {
+  for (const Role role : {Role::glove, Role::recognition, Role::mapping, Role::simulation,
+                          Role::recorder, Role::replayer}) {
+    EXPECT_EQ(in_code(role, true), in_list(role, true)) << name_of(role) << " writes";
+    EXPECT_EQ(in_code(role, false), in_list(role, false)) << name_of(role) << " reads";
+  }
+}
+
+// Not all programs of an operator are ours, as those of a robot are not.
+TEST(Roles, OfAnOperatorAllowWhatTeachDoes) {
+  EXPECT_THAT(in_list(Role::operator_, true),
+              ::testing::IsSupersetOf(in_code(Role::operator_, true)));
+  EXPECT_THAT(in_list(Role::operator_, false),
+              ::testing::IsSupersetOf(in_code(Role::operator_, false)));
+  EXPECT_TRUE(in_code(Role::operator_, true).contains("operator/command"));
+}
+
+// Ends that are made without a shell, in the services, belong to tools that join as a viewer.
+TEST(Roles, OfToolsThatLookWriteNothing) {
+  int looks = 0;
+  for (const Call& call : all_calls()) {
+    EXPECT_NE(roles_of(call.file), Roles()) << call.file << " belongs to no role";
+    if (call.in_role() && roles_of(call.file) != Roles(Role::viewer)) continue;
+    EXPECT_FALSE(call.writes()) << call.file << " writes " << call.topic->name;
+    ++looks;
+  }
+  EXPECT_GT(looks, 0);
+}
+
+}  // namespace
+}  // namespace prehend::dds
