@@ -1,7 +1,6 @@
 #include "common/base/toml_text.hpp"
 
-#include <fstream>
-#include <iterator>
+#include "common/base/file_text.hpp"
 
 namespace prehend {
 namespace {
@@ -44,16 +43,9 @@ std::string with_line(std::string_view toml, std::string_view table, std::string
 
 Expected<void> write_line(const std::filesystem::path& file, std::string_view table,
                           std::string_view key, const std::string& line) {
-  std::ifstream in(file, std::ios::binary);
-  const std::string text{std::istreambuf_iterator<char>(in), {}};
-  if (!in) return fail("cannot be read", file.string());
-  const std::filesystem::path beside = file.string() + ".new";
-  std::ofstream out(beside, std::ios::binary);
-  out << with_line(text, table, key, line) << std::flush;
-  std::error_code error;
-  if (out) std::filesystem::rename(beside, file, error);
-  if (!out || error) return fail("cannot be written", file.string(), "is the place writable?");
-  return {};
+  const auto text = read_file(file);
+  if (!text) return tl::unexpected(text.error());
+  return write_file(file, with_line(*text, table, key, line));
 }
 
 }  // namespace prehend

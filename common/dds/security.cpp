@@ -4,9 +4,7 @@
 #include <fmt/format.h>
 #include <sys/stat.h>
 
-#include <fstream>
-#include <iterator>
-
+#include "common/base/file_text.hpp"
 #include "common/keys/certificate.hpp"
 
 namespace prehend::dds {
@@ -16,9 +14,8 @@ namespace {
 constexpr const char* anew = "make the key anew with `prehend keys add`, and copy its whole folder";
 
 Expected<std::string> text_of(const std::filesystem::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  std::string text{std::istreambuf_iterator<char>(stream), {}};
-  if (!stream || text.empty()) return fail("cannot be read", file.string(), anew);
+  auto text = read_file(file, anew);
+  if (text && text->empty()) return fail("is empty", file.string(), anew);
   return text;
 }
 

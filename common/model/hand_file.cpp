@@ -3,10 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <initializer_list>
-#include <sstream>
 
+#include "common/base/file_text.hpp"
 #include "common/base/paths.hpp"
 #include "common/model/hand_model.hpp"
 #include "common/model/hand_urdf.hpp"
@@ -21,15 +20,8 @@ constexpr std::size_t max_entries = 32;
 constexpr double prismatic_squeeze =
     0.005;                            // m, for the full effort unless hand.toml says otherwise
 constexpr double max_coupling = 1e4;  // rad/m of a gear rack of 0.1 mm
-constexpr double tolerance = 1e-3;    // rad or m, of limits and postures written by hand
-
-Expected<std::string> read_text(const std::filesystem::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  std::ostringstream text;
-  if (!stream || !(text << stream.rdbuf()))
-    return fail("cannot be read", file.string(), "a hand is hand.urdf and hand.toml");
-  return text.str();
-}
+constexpr const char* parts = "a hand is hand.urdf and hand.toml";
+constexpr double tolerance = 1e-3;  // rad or m, of limits and postures written by hand
 
 Error located(Error error, const std::string& file) {
   error.where = file + (error.where.empty() ? "" : ": " + error.where);
@@ -444,9 +436,9 @@ std::string hand_hint() {
 }
 
 Expected<HandModel> HandModel::load(const std::filesystem::path& directory) {
-  const auto urdf = read_text(directory / "hand.urdf");
+  const auto urdf = read_file(directory / "hand.urdf", parts);
   if (!urdf) return tl::unexpected(urdf.error());
-  const auto toml = read_text(directory / "hand.toml");
+  const auto toml = read_file(directory / "hand.toml", parts);
   if (!toml) return tl::unexpected(toml.error());
   auto hand = parse(*urdf, *toml);
   if (!hand) hand.error().where = (directory / hand.error().where).string();

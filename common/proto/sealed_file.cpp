@@ -5,8 +5,8 @@
 #include <unistd.h>
 
 #include <array>
-#include <fstream>
-#include <iterator>
+
+#include "common/base/file_text.hpp"
 
 namespace prehend::proto {
 namespace {
@@ -47,25 +47,13 @@ Expected<void> write_sealed(const std::filesystem::path& file, std::string_view 
                             std::string_view bytes) {
   std::error_code ignored;
   if (file.has_parent_path()) std::filesystem::create_directories(file.parent_path(), ignored);
-  // Written beside and renamed, so that nobody ever reads half a file.
-  const std::filesystem::path beside = file.string() + fmt::format(".{}", getpid());
-  {
-    std::ofstream stream(beside, std::ios::binary);
-    stream << seal(kind, bytes);
-    if (!stream.flush())
-      return fail("cannot be written", file.string(), "check the folder and the disk");
-  }
-  std::filesystem::rename(beside, file, ignored);
-  if (ignored) return fail("cannot be written: " + ignored.message(), file.string());
-  return {};
+  return write_file(file, seal(kind, bytes));
 }
 
 Expected<std::string> read_sealed(const std::filesystem::path& file, std::string_view kind) {
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream) return fail("cannot be read", file.string(), "is the path right?");
-  const std::string sealed((std::istreambuf_iterator<char>(stream)),
-                           std::istreambuf_iterator<char>());
-  auto bytes = unseal(sealed, kind);
+  const auto sealed = read_file(file);
+  if (!sealed) return tl::unexpected(sealed.error());
+  auto bytes = unseal(*sealed, kind);
   if (!bytes) return fail(bytes.error().what, file.string(), "make it again");
   return bytes;
 }

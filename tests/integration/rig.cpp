@@ -4,17 +4,16 @@
 #include <unistd.h>
 
 #include <atomic>
-#include <fstream>
-#include <iterator>
 
+#include "common/base/file_text.hpp"
 #include "common/base/time.hpp"
 
 namespace prehend::integration {
 namespace {
 
+/// Empty where it cannot be read, as a file of /proc whose process ends meanwhile.
 std::string file_text(const std::filesystem::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(stream), {}};
+  return read_file(file).value_or("");
 }
 
 }  // namespace

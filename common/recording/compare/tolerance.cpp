@@ -2,9 +2,9 @@
 
 #include <toml++/toml.h>
 
-#include <fstream>
 #include <sstream>
 
+#include "common/base/file_text.hpp"
 #include "common/base/paths.hpp"
 
 namespace prehend::recording {
@@ -58,11 +58,9 @@ Expected<ToleranceTable> ToleranceTable::parse(std::string_view text, const std:
 }
 
 Expected<ToleranceTable> ToleranceTable::load(const std::filesystem::path& file) {
-  std::ifstream in(file);
-  if (!in) return fail("cannot be read", file.string());
-  std::ostringstream text;
-  text << in.rdbuf();
-  return parse(text.str(), file.string());
+  const auto text = read_file(file);
+  if (!text) return tl::unexpected(text.error());
+  return parse(*text, file.string());
 }
 
 Expected<ToleranceTable> ToleranceTable::load_defaults() {

@@ -1,9 +1,8 @@
 #include "services/cli/tools/rows.hpp"
 
-#include <fstream>
-#include <iterator>
 #include <nlohmann/json.hpp>
 
+#include "common/base/file_text.hpp"
 #include "common/base/paths.hpp"
 #include "common/service/lab.hpp"
 #include "common/service/process.hpp"
@@ -30,8 +29,7 @@ Expected<std::string> printed_by(const std::string& program,
   const auto exit = process->wait(patience);
   if (!exit) return fail("does not answer", program);
   if (exit->code != 0) return fail(service::last_lines(options.log, 5), program);
-  std::ifstream stream(options.output);
-  return std::string(std::istreambuf_iterator<char>(stream), {});
+  return read_file(options.output);
 }
 
 /// Each entry of the document's one list as a row. There is at least one.

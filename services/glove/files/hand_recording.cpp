@@ -4,11 +4,10 @@
 
 #include <array>
 #include <cmath>
-#include <fstream>
-#include <iterator>
 #include <string>
 
 #include "common/base/csv_rows.hpp"
+#include "common/base/file_text.hpp"
 #include "services/glove/core/bare_hand.hpp"
 
 namespace prehend::glove {
@@ -52,12 +51,9 @@ Hand read_landmarks(CsvRow& row, double rate) {
 
 Expected<Recording> Recording::load(const std::filesystem::path& file,
                                     const RecordingOptions& options) {
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream || std::filesystem::is_directory(file))
-    return fail("the recording cannot be read", file.string(),
-                "set glove.file to a file that exists");
-  const std::string text{std::istreambuf_iterator<char>(stream), {}};
-  return parse(text, file.string(), options);
+  const auto text = read_file(file, "set glove.file to a recording");
+  if (!text) return tl::unexpected(text.error());
+  return parse(*text, file.string(), options);
 }
 
 Expected<Recording> Recording::parse(std::string_view text, std::string_view name,

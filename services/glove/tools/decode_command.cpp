@@ -1,11 +1,10 @@
 #include <fmt/format.h>
 
-#include <fstream>
 #include <iostream>
-#include <iterator>
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "common/base/file_text.hpp"
 #include "common/base/log.hpp"
 #include "services/glove/devices/bird_capture.hpp"
 #include "services/glove/tools/commands.hpp"
@@ -62,14 +61,13 @@ int decode(const DecodeArguments& arguments) {
   std::size_t records = 0;
   bool unreadable = false;
   for (const std::string& file : arguments.files) {
-    std::ifstream stream(file, std::ios::binary);
-    const std::string text{std::istreambuf_iterator<char>(stream), {}};
-    if (!stream.is_open() || stream.bad()) {
-      log::error("{}: the file cannot be read", file);
+    const auto text = read_file(file);
+    if (!text) {
+      log::error("{}", text.error().message());
       unreadable = true;
       continue;
     }
-    const auto capture = bird::read_capture(text, file);
+    const auto capture = bird::read_capture(*text, file);
     if (!capture) {
       // Licences lie beside captures: no reason to call the whole decoding a failure.
       log::warning("{}", capture.error().message());

@@ -4,7 +4,8 @@
 
 #include <algorithm>
 #include <fstream>
-#include <iterator>
+
+#include "common/base/file_text.hpp"
 
 namespace prehend::recognition {
 
@@ -37,8 +38,9 @@ Expected<void> append_to_catalogue(const std::filesystem::path& file,
   if (!before) return tl::unexpected(before.error());
   if (before->find(object.name))
     return fail(object.name + " is there already", file.string(), "choose another name");
-  std::ifstream in(file);
-  std::string text{std::istreambuf_iterator<char>(in), {}};
+  auto read = read_file(file);
+  if (!read) return tl::unexpected(read.error());
+  std::string text = std::move(*read);
   const Eigen::Vector3d& size = object.shape.size;
   text += fmt::format(
       "\n[[object]]\nname = \"{}\"\nshape = \"{}\"\nsize = [{:.4f}, {:.4f}, {:.4f}]\n"

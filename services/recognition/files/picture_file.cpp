@@ -3,10 +3,11 @@
 #include <algorithm>
 #include <cctype>
 #include <fstream>
-#include <iterator>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 #include <optional>
+
+#include "common/base/file_text.hpp"
 
 namespace prehend::recognition {
 namespace {
@@ -85,9 +86,9 @@ Expected<Picture> load_picture(const std::filesystem::path& file) {
     return fail("is no file", file.string(), "check the path");
   const auto size = std::filesystem::file_size(file, error);
   if (error || size > 256'000'000) return fail("is too large for a picture", file.string());
-  std::ifstream stream(file, std::ios::binary);
-  const std::vector<char> bytes((std::istreambuf_iterator<char>(stream)), {});
-  return decode_picture({reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()},
+  const auto bytes = read_file(file);
+  if (!bytes) return tl::unexpected(bytes.error());
+  return decode_picture({reinterpret_cast<const std::uint8_t*>(bytes->data()), bytes->size()},
                         file.string());
 }
 

@@ -9,11 +9,10 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
-#include <fstream>
-#include <iterator>
 #include <random>
 #include <system_error>
 
+#include "common/base/file_text.hpp"
 #include "common/dds/security.hpp"
 #include "common/keys/certificate.hpp"
 
@@ -105,10 +104,7 @@ Expected<Keystore> Keystore::open(const fs::path& folder) {
 }
 
 Expected<std::string> Keystore::read(const fs::path& name) const {
-  std::ifstream stream(folder_ / name, std::ios::binary);
-  std::string text{std::istreambuf_iterator<char>(stream), {}};
-  if (!stream) return fail("cannot be read", (folder_ / name).string(), "may you read it?");
-  return text;
+  return read_file(folder_ / name, "may you read it?");
 }
 
 std::vector<std::string> Keystore::names() const {

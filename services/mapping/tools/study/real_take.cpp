@@ -3,12 +3,11 @@
 #include <fmt/format.h>
 
 #include <array>
-#include <fstream>
-#include <iterator>
 #include <optional>
 #include <string>
 
 #include "common/base/csv_rows.hpp"
+#include "common/base/file_text.hpp"
 
 namespace prehend::mapping {
 
@@ -56,11 +55,9 @@ double scale_of(const RealTake& take, model::Finger finger, const Vector3d& p_HK
 }  // namespace
 
 Expected<RealTake> load_real_take(const std::filesystem::path& csv) {
-  std::ifstream file(csv, std::ios::binary);
-  if (!file || std::filesystem::is_directory(csv))
-    return fail("the recording cannot be read", csv.string());
-  const std::string text{std::istreambuf_iterator<char>(file), {}};
-  CsvRows rows(text);
+  const auto text = read_file(csv);
+  if (!text) return tl::unexpected(text.error());
+  CsvRows rows(*text);
   if (rows.empty()) return fail("the recording cannot be read", csv.string());
   RealTake take{csv.stem().string(), 1, {}};
   double last = -period;

@@ -4,8 +4,9 @@
 #include <fmt/ranges.h>
 
 #include <fstream>
-#include <iterator>
 #include <system_error>
+
+#include "common/base/file_text.hpp"
 
 namespace prehend::mapping {
 
@@ -135,8 +136,9 @@ Expected<void> write_report(const std::filesystem::path& folder,
     if (auto ok = write(folder / (figure + "-repetitions.csv"), to_csv(one.table)); !ok) return ok;
     const auto png = folder / (figure + ".png");
     if (auto ok = draw(one.outcome.chart, png); !ok) return ok;
-    std::ifstream stream(png, std::ios::binary);
-    pictures.emplace_back(std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>());
+    auto picture = read_file(png);
+    if (!picture) return tl::unexpected(picture.error());
+    pictures.push_back(std::move(*picture));
   }
   if (!trials.empty())
     if (auto ok = write(folder / "benchmark.csv", to_csv(trials)); !ok) return ok;

@@ -2,11 +2,11 @@
 
 #include <CLI/CLI.hpp>
 #include <csignal>
-#include <fstream>
 #include <iostream>
 #include <mutex>
 #include <nlohmann/json.hpp>
 
+#include "common/base/file_text.hpp"
 #include "common/base/log.hpp"
 #include "common/service/arguments.hpp"
 #include "common/service/membership.hpp"
@@ -243,10 +243,9 @@ int record(const Arguments& arguments) {
   if (!describe) return service::complain(describe.error(), exit_broken);
   Heading heading{shell->config().texts(), "", std::move(*describe)};
   if (const auto file = shell->config().path("lab.scene"); !file.empty()) {
-    std::ifstream stream(file);
-    heading.scene.assign(std::istreambuf_iterator<char>(stream), {});
-    if (!stream)
-      return service::complain({"cannot be read", file.string(), "see lab.scene"}, exit_wrong_use);
+    auto scene = read_file(file, "see lab.scene");
+    if (!scene) return service::complain(scene.error(), exit_wrong_use);
+    heading.scene = std::move(*scene);
   }
   const RecorderOptions options = arguments.recorder();
   std::error_code code;

@@ -1,8 +1,8 @@
-#include <fstream>
 #include <iostream>
 #include <iterator>
 #include <memory>
 
+#include "common/base/file_text.hpp"
 #include "services/recorder/tools/recording/commands.hpp"
 #include "services/recorder/tools/recording/records_json.hpp"
 
@@ -19,9 +19,9 @@ int write(const std::string& document, const std::string& to) {
   if (document == "-") {
     text.assign(std::istreambuf_iterator<char>(std::cin), {});
   } else {
-    std::ifstream in(document, std::ios::binary);
-    if (!in) return complain({"cannot be read", document, ""}, exit_broken);
-    text.assign(std::istreambuf_iterator<char>(in), {});
+    auto read = read_file(document);
+    if (!read) return complain(read.error(), exit_broken);
+    text = std::move(*read);
   }
   auto done = write_records(text, to);
   if (done) return exit_done;

@@ -1,11 +1,11 @@
 #include "services/simulation/tools/grasp/quality_file.hpp"
 
 #include <cmath>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <string>
 
 #include "common/analysis/contact_wrenches.hpp"
+#include "common/base/file_text.hpp"
 
 namespace prehend::simulation {
 namespace {
@@ -173,9 +173,9 @@ Expected<GraspFile> from_wrenches(const nlohmann::json& root) {
 }  // namespace
 
 Expected<GraspFile> read_grasp(const std::filesystem::path& file) {
-  std::ifstream stream(file);
-  if (!stream) return fail("cannot be read", file.string());
-  const nlohmann::json root = nlohmann::json::parse(stream, nullptr, false);
+  const auto text = read_file(file);
+  if (!text) return tl::unexpected(text.error());
+  const nlohmann::json root = nlohmann::json::parse(*text, nullptr, false);
   if (root.is_discarded() || !root.is_object())
     return fail("is no JSON object", file.string(), "see prehend grasp quality --help");
   auto grasp = root.contains("contacts")   ? from_contacts(root)

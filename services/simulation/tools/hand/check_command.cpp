@@ -1,11 +1,10 @@
 // `prehend hand check`: what is missing or suspicious in a URDF.
 #include <fmt/format.h>
 
-#include <fstream>
 #include <iostream>
 #include <memory>
-#include <sstream>
 
+#include "common/base/file_text.hpp"
 #include "common/base/log.hpp"
 #include "services/simulation/tools/hand/commands.hpp"
 #include "services/simulation/tools/hand_import/make_hand.hpp"
@@ -50,10 +49,9 @@ int run_check(const std::string& file, bool json) {
 }  // namespace
 
 Expected<Robot> read_robot_file(const std::filesystem::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  std::ostringstream text;
-  if (!stream || !(text << stream.rdbuf())) return fail("cannot be read", file.string());
-  auto robot = read_robot(text.str());
+  const auto text = read_file(file);
+  if (!text) return tl::unexpected(text.error());
+  auto robot = read_robot(*text);
   if (!robot)
     robot.error().where =
         file.string() + (robot.error().where.empty() ? "" : ": " + robot.error().where);
