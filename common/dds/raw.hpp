@@ -47,13 +47,14 @@ struct RawSample {
 using KeyOf =
     std::function<std::optional<Guid>(std::span<const std::uint8_t> payload, bool key_only)>;
 
-/// The message in a sample; false when it does not fit the topic's type.
+/// The message in a sample; false when it is damaged or does not fit the topic's type: the message
+/// may then be half filled.
 template <class P>
-bool decode(const Topic<P>&, const RawSample& sample, typename P::type& message) {
+[[nodiscard]] bool decode(const Topic<P>&, const RawSample& sample, typename P::type& message) {
   rtps::SerializedPayload_t payload(static_cast<std::uint32_t>(sample.payload.size()));
   std::copy(sample.payload.begin(), sample.payload.end(), payload.data);
   payload.length = payload.max_size;
-  P type;
+  NoThrowPubSubType<P> type;
   return payload.length >= 4 && deserialize(type, payload, &message);
 }
 

@@ -237,5 +237,26 @@ TEST_F(Raw, WhatAKeepLastWriterHasForgottenIsNoLoss) {
   EXPECT_EQ((*reader)->received(), 2u);
 }
 
+// Recordings are read by whoever got them from somewhere: what is damaged in them is refused and
+// does not end the process.
+TEST(Decode, RefusesWhatIsDamaged) {
+  v1::HandCommand message, decoded;
+  message.hand("hand");
+  message.dof({0.1, 0.2});
+  RawSample sample;
+  sample.payload = encode(robot_command, message);
+  ASSERT_TRUE(decode(robot_command, sample, decoded));
+  EXPECT_EQ(decoded, message);
+  const auto refused = [&](auto damage) {
+    RawSample damaged = sample;
+    damage(damaged.payload);
+    return !decode(robot_command, damaged, decoded);
+  };
+  EXPECT_TRUE(refused([](auto& bytes) { bytes[0] = bytes[1] = 0xff; }));  // no encapsulation
+  EXPECT_TRUE(refused([](auto& bytes) { bytes.resize(3); }));
+  EXPECT_TRUE(refused([](auto& bytes) { bytes.clear(); }));
+  EXPECT_TRUE(refused([](auto& bytes) { bytes.resize(bytes.size() / 2); }));
+}
+
 }  // namespace
 }  // namespace prehend::dds
