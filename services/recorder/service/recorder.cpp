@@ -55,24 +55,23 @@ void Recorder::open_next(Time now) {
   }
 }
 
-void Recorder::remember(const Source& source, const dds::RawSample& sample) {
-  if (!source.topic.qos.transient_local) return;
-  const InstanceKey key{&source, sample.writer, sample.instance};
-  if (sample.kind != SampleKind::data) {
+void Recorder::remember(KeptSample one) {
+  const InstanceKey key{one.source, one.sample->writer, one.sample->instance};
+  if (one.sample->kind != SampleKind::data) {
     remembered_.erase(key);
     return;
   }
   auto& kept = remembered_[key];
-  kept.push_back({&source, sample});
-  const int depth = source.topic.qos.writer_depth;
+  const int depth = one.source->topic.qos.writer_depth;
+  kept.push_back(std::move(one));
   while (kept.size() > (depth > 0 ? static_cast<std::size_t>(depth) : max_remembered))
     kept.pop_front();
 }
 
 Expected<void> Recorder::write_remembered(RecordingFile& file, Time now) {
   for (const auto& [key, kept] : remembered_)
-    for (const Kept& one : kept)
-      if (const auto done = file.write(*one.source, one.sample, now); !done) return done;
+    for (const KeptSample& one : kept)
+      if (const auto done = file.write(*one.source, *one.sample, now); !done) return done;
   return {};
 }
 
@@ -83,18 +82,19 @@ void Recorder::take(const Source& source, dds::RawSample&& sample) {
     // What a late reader would be given belongs to a snapshot also when it came in a pause.
     if (is_left_out(source, sample) && !source.topic.qos.transient_local) return;
     const Time newest = sample.received;
-    ring_.push_back({&source, std::move(sample)});
+    ring_.push_back({&source, std::make_shared<const dds::RawSample>(std::move(sample))});
     ring_bytes_ += ring_.back().size();
-    while (!ring_.empty() && (ring_.front().sample.received + options_.snapshot < newest ||
+    while (!ring_.empty() && (ring_.front().sample->received + options_.snapshot < newest ||
                               ring_bytes_ > options_.snapshot_bytes)) {
-      // What leaves the ring is what a late reader at its beginning would have been given.
-      remember(*ring_.front().source, ring_.front().sample);
       ring_bytes_ -= ring_.front().size();
+      // What leaves the ring is what a late reader at its beginning would have been given.
+      if (ring_.front().source->topic.qos.transient_local) remember(std::move(ring_.front()));
       ring_.pop_front();
     }
     return;
   }
-  remember(source, sample);
+  if (source.topic.qos.transient_local)
+    remember({&source, std::make_shared<const dds::RawSample>(sample)});
   if (is_left_out(source, sample)) return;
   if (file_->size() >= options_.split_bytes || file_->is_full() ||
       sample.received - opened_ >= options_.split_time) {
@@ -120,14 +120,12 @@ void Recorder::tick(Time now) {
       check(file_->write_losses(lost_));
       lost_written_ = lost_;
     }
-    std::error_code code;
-    const auto space = std::filesystem::space(std::filesystem::absolute(path_).parent_path(), code);
-    if (!code && space.available < options_.keep_free) {
+    if (const auto room = check_space(path_, 0, options_.keep_free); !room) {
       check(close());
-      if (!error_)
-        error_ = Error{fmt::format("only {} MB are free on the disk; the recording has ended",
-                                   space.available / 1'000'000),
-                       path_.string(), "make room, or lower --keep-free"};
+      if (!error_) {
+        error_ = room.error();
+        error_->what += "; the recording has ended";
+      }
       return;
     }
   }
@@ -159,30 +157,30 @@ bool Recorder::is_left_out(const Source& source, const dds::RawSample& sample) c
   return paused() || !source.topic.qos.transient_local;
 }
 
-Expected<std::filesystem::path> Recorder::snapshot(Time now) {
+Expected<Snapshot> Recorder::snapshot(Time now) {
   if (options_.snapshot.count() == 0)
     return fail("is not kept", "snapshot", "start the recorder with --snapshot SECONDS");
-  const auto path = with_suffix(
-      options_.file,
+  const std::string suffix =
       fmt::format("_{:%Y%m%dT%H%M%S}_{}", std::chrono::time_point_cast<std::chrono::seconds>(now),
-                  ++snapshots_));
-  auto file = open(path);
-  if (!file) return tl::unexpected(file.error());
-  const auto write = [&]() -> Expected<void> {
-    const Time start = ring_.empty() ? now : ring_.front().sample.received;
-    if (const auto done = write_remembered(*file, start); !done) return done;
-    for (const Kept& one : ring_)
-      if (const auto done = file->write(*one.source, one.sample, one.sample.received); !done)
-        return done;
-    if (const auto done = file->write_losses(lost_); !done) return done;
-    return file->close();
-  };
-  if (const auto done = write(); !done) return tl::unexpected(done.error());
-  messages_ += file->messages();
-  written_ += file->size();
-  path_ = path;
-  files_.push_back(path);
-  return path;
+                  ++snapshots_);
+  Snapshot taken{.path = with_suffix(options_.file, suffix),
+                 .heading = heading_,
+                 .compression = options_.compression,
+                 .keep_free = options_.keep_free,
+                 .start = ring_.empty() ? now : ring_.front().sample->received,
+                 .head = {},
+                 .ring = ring_,
+                 .lost = lost_};
+  for (const auto& [key, kept] : remembered_)
+    taken.head.insert(taken.head.end(), kept.begin(), kept.end());
+  return taken;
+}
+
+void Recorder::add(const Snapshot::Written& snapshot) {
+  messages_ += snapshot.messages;
+  written_ += snapshot.bytes;
+  path_ = snapshot.path;
+  files_.push_back(snapshot.path);
 }
 
 Expected<void> Recorder::close() {

@@ -9,6 +9,7 @@
 #include "common/base/error.hpp"
 #include "common/base/time.hpp"
 #include "services/recorder/service/recording_file.hpp"
+#include "services/recorder/service/snapshot.hpp"
 
 namespace prehend::recorder {
 
@@ -43,8 +44,10 @@ class Recorder {
   void pause(Time now);
   void resume(Time now);
   bool paused() const { return pause_end_ == Time::max() && pause_begin_ != Time::max(); }
-  /// Writes the ring to a file of its own and returns its name.
-  Expected<std::filesystem::path> snapshot(Time now);
+  /// What the ring holds, to be written to a file of its own without the recorder. Quick.
+  Expected<Snapshot> snapshot(Time now);
+  /// One that was written counts.
+  void add(const Snapshot::Written& snapshot);
   /// Ends the file properly. Fails when it could not be ended so or had failed before; the file is
   /// readable all the same.
   Expected<void> close();
@@ -59,11 +62,6 @@ class Recorder {
   const std::deque<std::filesystem::path>& files() const { return files_; }
 
  private:
-  struct Kept {
-    const Source* source;
-    dds::RawSample sample;
-    std::uint64_t size() const { return sample.payload.size() + 160; }
-  };
   struct InstanceKey {
     const Source* source;
     dds::Guid writer, instance;
@@ -77,7 +75,8 @@ class Recorder {
   bool is_left_out(const Source& source, const dds::RawSample& sample) const;
   Expected<RecordingFile> open(const std::filesystem::path& path);
   void open_next(Time now);
-  void remember(const Source& source, const dds::RawSample& sample);
+  /// Of a transient local topic.
+  void remember(KeptSample one);
   Expected<void> write_remembered(RecordingFile& file, Time now);
 
   RecorderOptions options_;
@@ -91,8 +90,8 @@ class Recorder {
   std::uint64_t messages_ = 0, written_ = 0;
   std::map<std::string, std::uint64_t> lost_, lost_written_;
   /// What a late reader would be given: it belongs to the head of every file.
-  std::map<InstanceKey, std::deque<Kept>> remembered_;
-  std::deque<Kept> ring_;
+  std::map<InstanceKey, std::deque<KeptSample>> remembered_;
+  std::deque<KeptSample> ring_;
   std::uint64_t ring_bytes_ = 0;
   std::optional<Error> error_;
 };

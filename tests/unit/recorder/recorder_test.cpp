@@ -56,6 +56,14 @@ struct Recording : ::testing::Test {
     EXPECT_TRUE(tape->damage().empty() || !tape->file(0).contents().closed);
     return all;
   }
+  static Expected<std::filesystem::path> snapshot(Recorder& recorder, Time now) {
+    const auto taken = recorder.snapshot(now);
+    if (!taken) return tl::unexpected(taken.error());
+    const auto written = taken->write();
+    if (!written) return tl::unexpected(written.error());
+    recorder.add(*written);
+    return written->path;
+  }
   std::vector<std::string> files() {
     std::vector<std::string> names;
     for (const auto& entry : std::filesystem::directory_iterator(folder / ""))
@@ -145,7 +153,7 @@ TEST_F(Recording, ASnapshotHoldsTheLastSecondsAndTheStateBefore) {
   for (int i = 0; i < 50; ++i) recorder.take(frame, sample(0.1 * (i + 1)));
   recorder.set_lost("world/frame", 3);
   EXPECT_TRUE(files().empty());
-  const auto first = recorder.snapshot(start + seconds(5));
+  const auto first = snapshot(recorder, start + seconds(5));
   ASSERT_TRUE(first) << first.error().message();
   // From 3.0 s to 5.0 s, both included: the ring holds what is no older than 2 s.
   const Numbers kept = numbers(first->filename(), "world/frame");
@@ -155,7 +163,7 @@ TEST_F(Recording, ASnapshotHoldsTheLastSecondsAndTheStateBefore) {
   EXPECT_EQ(lost_in(*first, "world/frame"), "3");
   // Again, with what has come since.
   recorder.take(frame, sample(5.1));
-  const auto second = recorder.snapshot(start + seconds(6));
+  const auto second = snapshot(recorder, start + seconds(6));
   ASSERT_TRUE(second);
   EXPECT_NE(*first, *second);
   EXPECT_EQ(numbers(second->filename(), "world/frame").back(), 52u);
@@ -174,10 +182,48 @@ TEST_F(Recording, ARingStaysWithinItsMemoryAndRestsInAPause) {
   recorder.pause(start + seconds(10.5));
   recorder.take(frame, sample(11));
   recorder.take(state, sample(12));
-  const auto written = recorder.snapshot(start + seconds(13));
+  const auto written = snapshot(recorder, start + seconds(13));
   ASSERT_TRUE(written);
   EXPECT_EQ(numbers(written->filename(), "world/frame").back(), 100u);
   EXPECT_EQ(numbers(written->filename(), "world/state"), (Numbers{102}));
+}
+
+// The disk may be slow: what comes while a snapshot is written goes on into the ring.
+TEST_F(Recording, ASnapshotIsWrittenWithoutTheRecorder) {
+  auto chosen = options();
+  chosen.snapshot = seconds(1);
+  auto recorder = this->recorder(chosen);
+  recorder.take(state, sample(0, 1));
+  recorder.take(frame, sample(0.1));
+  const auto taken = recorder.snapshot(start + seconds(0.2));
+  ASSERT_TRUE(taken);
+  recorder.take(state, sample(0.3, 1, Kind::disposed));
+  for (int i = 0; i < 50; ++i) recorder.take(frame, sample(1 + 0.1 * i));
+  const auto written = taken->write();
+  ASSERT_TRUE(written) << written.error().message();
+  EXPECT_EQ(numbers(written->path.filename(), "world/state"), (Numbers{1}));
+  EXPECT_EQ(numbers(written->path.filename(), "world/frame"), (Numbers{2}));
+  recorder.add(*written);
+  EXPECT_EQ(recorder.messages(), 2u);
+  EXPECT_EQ(recorder.files().size(), 1u);
+}
+
+TEST_F(Recording, ASnapshotLeavesTheDiskItsReserve) {
+  auto chosen = options();
+  chosen.snapshot = seconds(1);
+  chosen.keep_free = std::uint64_t{1} << 60;
+  auto recorder = this->recorder(chosen);
+  recorder.take(frame, sample(0));
+  const auto refused = snapshot(recorder, start + seconds(1));
+  ASSERT_FALSE(refused);
+  EXPECT_NE(refused.error().what.find("free on the disk"), std::string::npos);
+  EXPECT_TRUE(files().empty());
+  // The reserve counts with what would be written.
+  const auto room = std::filesystem::space(folder / "").available;
+  EXPECT_FALSE(check_space(folder / "a.mcap", room + 1'000'000'000, 0));
+  EXPECT_TRUE(check_space(folder / "a.mcap", 1, 0));
+  // It goes on: nothing has failed but this snapshot.
+  EXPECT_FALSE(recorder.error());
 }
 
 TEST_F(Recording, LossesStandInTheFileAndAddUp) {

@@ -150,6 +150,7 @@ class Recording {
       shell_.stop();
       return "stopped";
     }
+    if (order == "snapshot") return snapshot();
     const std::scoped_lock lock(mutex_);
     if (order == "pause") {
       recorder_.pause(shell_.now());
@@ -159,13 +160,21 @@ class Recording {
       recorder_.resume(shell_.now());
       return "recording";
     }
-    if (order == "snapshot") {
-      auto written = recorder_.snapshot(shell_.now());
-      if (!written) return tl::unexpected(written.error());
-      return written->string();
-    }
     return fail("unknown order '" + order + "'", "recorder",
                 "start, stop, pause, resume or snapshot");
+  }
+
+  /// Written without the lock: the disk may take seconds, and samples come on.
+  Expected<std::string> snapshot() {
+    std::unique_lock lock(mutex_);
+    const auto taken = recorder_.snapshot(shell_.now());
+    lock.unlock();
+    if (!taken) return tl::unexpected(taken.error());
+    const auto written = taken->write();
+    if (!written) return tl::unexpected(written.error());
+    lock.lock();
+    recorder_.add(*written);
+    return written->path.string();
   }
 
   void say(const std::string& order) {
