@@ -420,6 +420,13 @@ std::vector<std::string> hand_names() {
   return names;
 }
 
+Expected<std::filesystem::path> named_hand(const std::string& name) {
+  const auto names = hand_names();
+  if (std::find(names.begin(), names.end(), name) == names.end())
+    return fail("no hand of this name comes with us", "'" + name + "'");
+  return share_directory() / "models" / "hands" / name;
+}
+
 std::string lab_hand() {
   try {
     const toml::table lab = toml::parse_file((share_directory() / "lab.toml").string());

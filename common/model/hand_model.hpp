@@ -88,6 +88,10 @@ std::filesystem::path hand_directory(const std::string& hand);
 /// The hands that come with us, sorted: the folders in models/hands.
 std::vector<std::string> hand_names();
 
+/// The folder of a hand that somebody else names, in a message or a recording: one that comes with
+/// us, by its name alone, since a path would open any file.
+Expected<std::filesystem::path> named_hand(const std::string& name);
+
 /// The hand of the lab that comes with us (lab.toml), for tools that read no configuration.
 std::string lab_hand();
 

@@ -231,7 +231,9 @@ TEST_F(Replay, EasesTheHandToWhereTheRecordingBegins) {
   v1::HandCommand goal;
   goal.hand("hand");
   goal.model("barrett");
-  goal.mode(v1::MODE_DIRECT);
+  goal.mode(v1::MODE_INTELLIGENT);
+  goal.weight(0.7);
+  goal.object("Cup");
   goal.origin_ns(1);
   std::vector<double> dof;
   for (std::size_t i = 0; i < model.dofs().size(); ++i) dof.push_back(0.3 + 0.1 * i);
@@ -259,7 +261,7 @@ TEST_F(Replay, EasesTheHandToWhereTheRecordingBegins) {
   ASSERT_TRUE(eventually(30, [&] {
     for (const auto& sample : commands.take()) {
       if (sample.info.gone) continue;
-      if (sample.data.mode() == v1::MODE_HOLD)
+      if (sample.data.origin_ns() == 0)  // no glove is behind it
         eased.push_back(sample.data);
       else if (!recorded)
         recorded = sample.data;
@@ -268,6 +270,12 @@ TEST_F(Replay, EasesTheHandToWhereTheRecordingBegins) {
   }));
   ASSERT_GT(eased.size(), 20u);
   EXPECT_EQ(recorded->dof(), goal.dof());
+  EXPECT_EQ(recorded->mode(), v1::MODE_INTELLIGENT);
+  for (const v1::HandCommand& command : eased) {
+    EXPECT_EQ(command.mode(), v1::MODE_DIRECT);  // it moves
+    EXPECT_EQ(command.weight(), 0);
+    EXPECT_EQ(command.object(), "");
+  }
   for (std::size_t i = 0; i < dof.size(); ++i) {
     const double limit = 0.5 * model.dofs()[i].max_velocity;
     // The first command is made one tick of 10 ms or so after the state.
@@ -292,6 +300,24 @@ TEST_F(Replay, EasesTheHandToWhereTheRecordingBegins) {
   }));
   const auto exit = player.wait(seconds(10));
   EXPECT_TRUE(exit && exit->code == 0);
+}
+
+// A recording comes from anywhere: what it calls its hand is a name, never the way to a file.
+TEST_F(Replay, ARecordedHandIsANameAndNoPath) {
+  for (const std::string model : {"../hands/barrett", "/tmp", "."}) {
+    v1::HandCommand command;
+    command.hand("hand");
+    command.model(model);
+    auto recording = create("path.mcap");
+    write(recording, {dds::raw_topic(dds::robot_command), name_}, dds::robot_command, command,
+          milliseconds(0));
+    ASSERT_TRUE(recording.close());
+    const Answer answer =
+        run("prehend", with_lab({"replay", file("path.mcap"), "--ease-in", "hand"}), 20);
+    EXPECT_EQ(answer.exit_code, 3) << answer.log;
+    EXPECT_NE(answer.log.find("no hand of this name"), std::string::npos) << answer.log;
+    std::filesystem::remove(file("path.mcap"));
+  }
 }
 
 TEST_F(Replay, WithoutAHandThereIsNoEasing) {

@@ -231,4 +231,18 @@ TEST(HandFile, NamesTheFolder) {
       << wrong.error().message();
 }
 
+TEST(HandFile, WhatOthersNameIsAHandOfOursAndNoPath) {
+  for (const std::string& name : model::hand_names()) {
+    const auto folder = model::named_hand(name);
+    ASSERT_TRUE(folder) << folder.error().message();
+    EXPECT_TRUE(model::HandModel::load(*folder));
+  }
+  ASSERT_FALSE(model::hand_names().empty());
+  const std::string path = model::hand_directory(model::hand_names().front()).string();
+  for (const std::string& name :
+       {path, std::string("../hands/") + model::hand_names().front(), std::string(".."),
+        std::string("/etc"), std::string("no_such_hand"), std::string()})
+    EXPECT_FALSE(model::named_hand(name)) << name;
+}
+
 }  // namespace

@@ -7,7 +7,6 @@
 #include <thread>
 
 #include "common/base/log.hpp"
-#include "common/base/paths.hpp"
 #include "common/convert/convert.hpp"
 #include "common/recording/types/idl.hpp"
 #include "common/service/arguments.hpp"
@@ -104,8 +103,9 @@ class Easing {
       if (!dds::decode(dds::robot_command, played->sample, command) ||
           command.hand().to_string() != hand)
         continue;
-      auto model =
-          model::HandModel::load(share_directory() / "models/hands" / command.model().to_string());
+      const auto folder = model::named_hand(command.model().to_string());
+      if (!folder) return tl::unexpected(folder.error());
+      auto model = model::HandModel::load(*folder);
       if (!model) return tl::unexpected(model.error());
       const auto X_WB = convert::from_message(command.X_WB());
       if (!X_WB) return tl::unexpected(X_WB.error());
@@ -132,10 +132,8 @@ class Easing {
     const Duration t = now - began_;
     const HandPlace place = way_->at(t);
     command_.stamp_ns(to_ns(now));
-    command_.origin_ns(0);
     command_.dof(convert::to_message(place.dof));
     command_.X_WB(convert::to_message(place.X_WB));
-    command_.mode(v1::MODE_HOLD);
     dds::RawSample sample = first_.sample;
     sample.payload = dds::encode(dds::robot_command, command_);
     sample.sent = now;
@@ -145,7 +143,16 @@ class Easing {
 
  private:
   Easing(Played first, const v1::HandCommand& command, model::HandModel model, HandPlace to)
-      : first_(std::move(first)), command_(command), model_(std::move(model)), to_(std::move(to)) {}
+      : first_(std::move(first)), command_(command), model_(std::move(model)), to_(std::move(to)) {
+    // It moves the hand, and knows nothing of objects: whoever watches for a hand that stands still
+    // must not take it for one.
+    command_.mode(v1::MODE_DIRECT);
+    command_.weight(0);
+    command_.object("");
+    command_.grasp_type(v1::GRASP_NONE);
+    command_.extrapolating(false);
+    command_.origin_ns(0);
+  }
   Played first_;
   v1::HandCommand command_;
   model::HandModel model_;
