@@ -193,6 +193,9 @@ Expected<fdds::DomainParticipantQos> participant_qos(const Network& network,
   constexpr std::string_view profiles[] = {"laptop", "lan", "server", "wan"};
   if (std::find(std::begin(profiles), std::end(profiles), network.profile) == std::end(profiles))
     return fail("must be laptop, lan, server or wan, not " + network.profile, "lab.network");
+  if (network.profile == "wan" && network.keys.empty() && !network.insecure)
+    return fail("would let in whoever reaches this host: there are no keys", "lab.network = wan",
+                "set lab.keys, or lab.insecure = true to do without");
   auto qos = load(network.profile);
   if (!qos) return qos;
   if (const std::string wrong = violation(network.profile, *qos); !wrong.empty())

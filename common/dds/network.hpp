@@ -22,6 +22,7 @@ struct Network {
   std::string listen;                // wan: HOST:PORT where others dial this process; empty: at
                                      // its own address
   std::filesystem::path keys;        // of this process, see security.hpp; empty: not secured
+  bool insecure = false;             // wan: may do without keys
 };
 
 /// What a participant is to the discovery of a network.

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 #include <toml++/toml.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cctype>
@@ -58,27 +59,54 @@ std::optional<Setting> convert(const toml::node& node, const Setting& like) {
   return std::nullopt;
 }
 
-/// Nearest known key, to help with a slip of the pen.
-std::string suggestion(std::string_view unknown) {
-  const auto distance = [](std::string_view a, std::string_view b) {
-    std::vector<std::size_t> row(b.size() + 1);
-    for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
-    for (std::size_t i = 1; i <= a.size(); ++i) {
-      std::size_t diagonal = row[0]++;
-      for (std::size_t j = 1; j <= b.size(); ++j) {
-        const std::size_t above = row[j];
-        row[j] = std::min({row[j - 1] + 1, above + 1, diagonal + (a[i - 1] != b[j - 1])});
-        diagonal = above;
-      }
+/// In single letters put in, left out or changed.
+std::size_t distance(std::string_view a, std::string_view b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    std::size_t diagonal = row[0]++;
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      const std::size_t above = row[j];
+      row[j] = std::min({row[j - 1] + 1, above + 1, diagonal + (a[i - 1] != b[j - 1])});
+      diagonal = above;
     }
-    return row.back();
-  };
-  const auto& keys = config_keys();
+  }
+  return row.back();
+}
+
+/// The nearest known name, to help with a slip of the pen.
+std::string suggestion(std::string_view unknown, const std::vector<std::string>& known) {
   const auto nearest =
-      std::min_element(keys.begin(), keys.end(), [&](const auto& a, const auto& b) {
-        return distance(unknown, a.name) < distance(unknown, b.name);
+      std::min_element(known.begin(), known.end(), [&](const std::string& a, const std::string& b) {
+        return distance(unknown, a) < distance(unknown, b);
       });
-  return fmt::format("did you mean {}?", nearest->name);
+  return fmt::format("did you mean {}?", *nearest);
+}
+
+std::string nearest_key(std::string_view unknown) {
+  std::vector<std::string> names;
+  for (const ConfigKey& key : config_keys()) names.emplace_back(key.name);
+  return suggestion(unknown, names);
+}
+
+std::string variable_of(const ConfigKey& key) {
+  std::string variable = "PREHEND_" + std::string(key.name);
+  for (char& c : variable)
+    c = c == '.' ? '_' : static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+  return variable;
+}
+
+/// A misspelt variable would be passed over, and what it should have switched on stay off.
+Expected<void> check_environment() {
+  std::vector<std::string> known = other_variables();
+  for (const ConfigKey& key : config_keys()) known.push_back(variable_of(key));
+  for (char** entry = environ; *entry; ++entry) {
+    std::string name = *entry;
+    name.resize(std::min(name.find('='), name.size()));
+    if (name.starts_with("PREHEND_") && std::find(known.begin(), known.end(), name) == known.end())
+      return fail("unknown variable of the environment", name, suggestion(name, known));
+  }
+  return {};
 }
 
 }  // namespace
@@ -92,7 +120,7 @@ Expected<Config> Config::load(const std::filesystem::path& file,
   const auto set = [&](std::string_view name, const toml::node& node,
                        const std::string& where) -> Expected<void> {
     const ConfigKey* key = find_key(name);
-    if (!key) return fail(fmt::format("unknown key {}", name), where, suggestion(name));
+    if (!key) return fail(fmt::format("unknown key {}", name), where, nearest_key(name));
     auto value = convert(node, key->fallback);
     if (!value)
       return fail(fmt::format("{} must be {}", name, type_name(key->fallback)), where,
@@ -104,7 +132,7 @@ Expected<Config> Config::load(const std::filesystem::path& file,
   const auto set_from_text = [&](std::string_view name, const std::string& text,
                                  const std::string& where) -> Expected<void> {
     const ConfigKey* key = find_key(name);
-    if (!key) return fail(fmt::format("unknown key {}", name), where, suggestion(name));
+    if (!key) return fail(fmt::format("unknown key {}", name), where, nearest_key(name));
     if (std::holds_alternative<std::string>(key->fallback))
       return set(name, toml::value<std::string>(text), where);
     try {
@@ -116,6 +144,7 @@ Expected<Config> Config::load(const std::filesystem::path& file,
     }
   };
 
+  if (const auto known = check_environment(); !known) return tl::unexpected(known.error());
   toml::table root;
   try {
     root = toml::parse_file(file.string());
@@ -137,9 +166,7 @@ Expected<Config> Config::load(const std::filesystem::path& file,
   }
 
   for (const ConfigKey& key : config_keys()) {
-    std::string variable = "PREHEND_" + std::string(key.name);
-    for (char& c : variable)
-      c = c == '.' ? '_' : static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+    const std::string variable = variable_of(key);
     if (const char* text = std::getenv(variable.c_str()))
       if (const auto done = set_from_text(key.name, text, variable); !done)
         return tl::unexpected(done.error());

@@ -25,8 +25,12 @@ struct ConfigKey {
 };
 const std::vector<ConfigKey>& config_keys();
 
+/// Variables of the environment that begin as those of keys do and mean something else.
+const std::vector<std::string>& other_variables();
+
 /// The configuration: defaults, then the file, then PREHEND_TABLE_KEY from the environment, then
-/// overrides of the form "table.key=value". Unknown keys and wrong types are errors.
+/// overrides of the form "table.key=value". Unknown keys, wrong types and unknown variables
+/// PREHEND_... are errors.
 class Config {
  public:
   static Expected<Config> load(const std::filesystem::path& file,

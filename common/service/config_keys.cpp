@@ -24,6 +24,8 @@ const std::vector<ConfigKey>& config_keys() {
        "empty: at its own address, the first free port from 7420"},
       {"lab.keys", Text(""),
        "folder of this process's keys, or of all, from `prehend keys`; empty: not secured"},
+      {"lab.insecure", false,
+       "join a network wan without keys: whoever reaches this host may then lead the hand"},
       {"lab.lockstep", false, "follow lab/clock instead of the system clock"},
       {"lab.scene", Text(""),
        "scene file: what stands on the table; empty where only cameras know"},
@@ -84,6 +86,20 @@ const std::vector<ConfigKey>& config_keys() {
       {"simulation.state_rate", 100.0, "Hz, robot/state and object/state"},
   };
   return keys;
+}
+
+const std::vector<std::string>& other_variables() {
+  static const std::vector<std::string> names{
+      "PREHEND_SHARE",        // common/base/paths.hpp
+      "PREHEND_SEED",         // containers (deploy): the scene, the gateway between sites,
+      "PREHEND_GATEWAY",      //
+      "PREHEND_TRACKER",      // devices on the host,
+      "PREHEND_CAMERA",       //
+      "PREHEND_RECORDING",    // and what is played instead
+      "PREHEND_LONG",         // tests
+      "PREHEND_SHARED_DATA",  // tests, `prehend study`
+  };
+  return names;
 }
 
 }  // namespace prehend::service

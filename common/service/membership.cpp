@@ -11,7 +11,8 @@ dds::ParticipantOptions membership(const Config& config, const std::string& name
                       .servers = config.names("lab.server"),
                       .peers = config.names("lab.peers"),
                       .listen = config.text("lab.listen"),
-                      .keys = config.path("lab.keys")},
+                      .keys = config.path("lab.keys"),
+                      .insecure = config.flag("lab.insecure")},
           .role = role};
 }
 

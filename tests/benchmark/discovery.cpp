@@ -363,7 +363,7 @@ int sites(int rounds, const std::filesystem::path& folder, const std::string& se
       std::filesystem::create_directories(place);
       Role listens{static_cast<int>(std::random_device{}() % 200),
                    fmt::format("sites-{}", getpid()),
-                   {.profile = "wan"},
+                   {.profile = "wan", .insecure = !secure},
                    "mapping",
                    3};
       if (secure) listens.network.keys = keys;

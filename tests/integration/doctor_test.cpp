@@ -181,13 +181,15 @@ TEST_F(Doctor, NamesADiscoveryServerThatDoesNotAnswer) {
 
 TEST_F(Doctor, NamesASiteThatTakesNoCalls) {
   if (!may_make_namespaces()) GTEST_SKIP() << "namespaces need root and ip";
-  const std::string dial = "$doctor --set lab.network=wan --set 'lab.peers=[\"127.0.0.1:7420\"]'";
+  const std::string dial =
+      "$doctor --set lab.network=wan --set lab.insecure=true --set "
+      "'lab.peers=[\"127.0.0.1:7420\"]'";
   const std::string up = "ip link set lo up; ip link set lo multicast on; ";
   EXPECT_NE(ask_in_script(up + "exec " + dial)["sites"].find("127.0.0.1:7420"), std::string::npos);
   std::string lab;
   for (const std::string& word : with_lab({})) (lab += word) += " ";
   const std::string listens = "$bin/prehend-simulation " + lab +
-                              "--set lab.network=wan & peer=$!\n"
+                              "--set lab.network=wan --set lab.insecure=true & peer=$!\n"
                               "until bash -c 'exec 3<>/dev/tcp/127.0.0.1/7420' 2>/dev/null; "
                               "do sleep 0.05; done\n";
   EXPECT_FALSE(ask_in_script(up + listens + dial + "; code=$?; kill $peer; wait $peer; exit $code")

@@ -81,8 +81,8 @@ TEST_F(Profiles, APartThatFastDdsWouldIgnoreStopsTheProcess) {
     options.command = {program("prehend"), "status",
                        "--timeout",        "0.1",
                        "--config",         PREHEND_SOURCE "/deploy/lab.toml"};
-    const Strings lab =
-        lab_arguments({fmt::format("lab.network={}", profile), "lab.server=[\"127.0.0.1\"]"});
+    const Strings lab = lab_arguments({fmt::format("lab.network={}", profile),
+                                       "lab.server=[\"127.0.0.1\"]", "lab.insecure=true"});
     options.command.insert(options.command.end(), lab.begin(), lab.end());
     options.log = folder_ / fmt::format("{}.log", profile);
     options.environment = {{"PREHEND_SHARE", share.string()}};
@@ -162,7 +162,7 @@ keys=$(mktemp -d)/keys other=$(mktemp -d)/keys
 simulation=
 trap 'kill $far $simulation || true; rm -r ${keys%/keys} ${other%/keys}' EXIT
 $bin/prehend keys init $keys; $bin/prehend keys init $other
-wan="$lab --set lab.network=wan"
+wan="$lab --set lab.network=wan --set lab.insecure=true"
 sees() { $there $bin/prehend status --wait simulation $wan --set 'lab.peers=["10.9.0.1"]' "$@"; }
 $bin/prehend-simulation $wan & simulation=$!
 sees --timeout 30 || exit 10

@@ -73,21 +73,29 @@ TEST(Network, WhoJoinsAtOnceListensAtAPortOfItsOwn) {
       if (own.kind == LOCATOR_KIND_TCPv4) return rtps::IPLocator::getPhysicalPort(own);
     return std::uint16_t{0};
   };
-  const auto one = participant_qos({.profile = "wan"});
+  const auto one = participant_qos({.profile = "wan", .insecure = true});
   ASSERT_TRUE(one) << one.error().message();
   EXPECT_NE(port_of(*one), 0);
   const std::string same = "127.0.0.1:" + std::to_string(port_of(*one));
-  EXPECT_FALSE(participant_qos({.profile = "wan", .listen = same}));
+  EXPECT_FALSE(participant_qos({.profile = "wan", .listen = same, .insecure = true}));
   std::uint16_t other = 0;
   {
-    const auto two = participant_qos({.profile = "wan"});
+    const auto two = participant_qos({.profile = "wan", .insecure = true});
     ASSERT_TRUE(two) << two.error().message();
     other = port_of(*two);
     EXPECT_NE(other, port_of(*one));
   }
-  const auto three = participant_qos({.profile = "wan"});
+  const auto three = participant_qos({.profile = "wan", .insecure = true});
   ASSERT_TRUE(three) << three.error().message();
   EXPECT_EQ(port_of(*three), other) << "its owner has gone";
+}
+
+// It listens on every interface: forgotten keys must not open the lab to whoever reaches it.
+TEST(Network, SitesWithoutKeysMustBeAskedFor) {
+  const auto open = participant_qos({.profile = "wan"});
+  ASSERT_FALSE(open);
+  EXPECT_NE(open.error().hint.find("lab.insecure"), std::string::npos);
+  EXPECT_TRUE(participant_qos({.profile = "wan", .insecure = true}));
 }
 
 TEST(Network, WrongSettingsAreErrorsWithAMend) {
@@ -98,9 +106,12 @@ TEST(Network, WrongSettingsAreErrorsWithAMend) {
         Network{.profile = "server", .servers = {"127.0.0.1:70000"}},
         Network{.profile = "server", .servers = {":11811"}},
         Network{.profile = "server", .servers = {"no.such.host.invalid:11811"}},
-        Network{.profile = "wan", .listen = "127.0.0.1"},
-        Network{.profile = "wan", .peers = {"127.0.0.1:port"}},
-        Network{.profile = "wan", .peers = {"127.0.0.1"}, .listen = "127.0.0.1:29420"}}) {
+        Network{.profile = "wan", .listen = "127.0.0.1", .insecure = true},
+        Network{.profile = "wan", .peers = {"127.0.0.1:port"}, .insecure = true},
+        Network{.profile = "wan",
+        .peers = {"127.0.0.1"},
+        .listen = "127.0.0.1:29420",
+        .insecure = true}}) {
     const auto qos = participant_qos(network);
     ASSERT_FALSE(qos) << network.profile;
     EXPECT_FALSE(qos.error().what.empty());

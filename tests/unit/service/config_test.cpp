@@ -88,5 +88,32 @@ TEST(Config, MistakesAreNamed) {
   EXPECT_FALSE(Config::load("/nowhere/lab.toml"));
 }
 
+// A misspelt variable that is passed over leaves off what it should have switched on: keys above
+// all.
+TEST(Config, MisspeltVariablesAreNamed) {
+  const auto file = write("");
+  for (const auto& [name, meant] : std::initializer_list<std::pair<const char*, const char*>>{
+           {"PREHEND_LAB_KEY", "did you mean PREHEND_LAB_KEYS?"},
+           {"PREHEND_LABNETWORK", "did you mean PREHEND_LAB_NETWORK?"},
+           {"PREHEND_SEDE", "did you mean PREHEND_SEED?"},
+           {"PREHEND_", "did you mean"}}) {
+    setenv(name, "x", 1);
+    const auto config = Config::load(file);
+    unsetenv(name);
+    ASSERT_FALSE(config) << name;
+    EXPECT_EQ(config.error().where, name);
+    EXPECT_NE(config.error().message().find(meant), std::string::npos) << config.error().message();
+  }
+  for (const std::string& name : other_variables()) {
+    const char* before = std::getenv(name.c_str());
+    if (!before) setenv(name.c_str(), "", 1);
+    EXPECT_TRUE(Config::load(file)) << name;
+    if (!before) unsetenv(name.c_str());
+  }
+  setenv("PREHENDING", "x", 1);  // somebody else's
+  EXPECT_TRUE(Config::load(file));
+  unsetenv("PREHENDING");
+}
+
 }  // namespace
 }  // namespace prehend::service
