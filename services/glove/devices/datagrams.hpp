@@ -4,6 +4,8 @@
 
 #include <string>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 #include "common/base/error.hpp"
 #include "common/base/time.hpp"
@@ -14,27 +16,47 @@ namespace prehend::glove {
 /// An IPv4 address and a port as text, "127.0.0.1:9870".
 Expected<sockaddr_in> parse_address(const std::string& text);
 
+/// Where datagrams come, and whose are heard. Whoever is heard leads the hand.
+struct ReceiverOptions {
+  std::string address;               // host:port of this machine
+  std::vector<std::string> senders;  // IPv4 addresses; empty: this machine's loopback
+  std::string token;                 // the first line of every datagram; empty: none
+  /// The lab has keys: beyond loopback it needs both of these, since nothing else asks a sender
+  /// who it is.
+  bool secured = false;
+};
+
+/// What came.
+struct Datagram {
+  std::string bytes;           // without its token; empty: none came in time, or it was refused
+  std::string_view refused{};  // why
+};
+
 /// A UDP socket that receives. Not for several threads at once.
 class DatagramReceiver {
  public:
-  static Expected<DatagramReceiver> bind(const std::string& address);
+  /// What is wrong with the options, before any port is opened.
+  static Expected<void> check(const ReceiverOptions& options);
+  static Expected<DatagramReceiver> bind(const ReceiverOptions& options);
   DatagramReceiver(DatagramReceiver&& other) noexcept;
   DatagramReceiver& operator=(DatagramReceiver&&) = delete;
   ~DatagramReceiver();
 
-  /// The next datagram, as soon as there is one; empty when none came in time.
-  Expected<std::string> read(Duration timeout);
+  /// The next datagram, as soon as there is one.
+  Expected<Datagram> read(Duration timeout);
 
  private:
-  explicit DatagramReceiver(std::string address) : address_(std::move(address)) {}
-  std::string address_;
+  explicit DatagramReceiver(ReceiverOptions options) : options_(std::move(options)) {}
+  bool hears(const sockaddr_in& sender) const;
+  ReceiverOptions options_;
+  std::vector<in_addr_t> senders_;
   int socket_ = -1;
 };
 
-/// A UDP socket that sends, to nobody perhaps.
+/// A UDP socket that sends, to nobody perhaps. A token goes before every datagram.
 class DatagramSender final : public Plug {
  public:
-  static Expected<DatagramSender> create(const std::string& address);
+  static Expected<DatagramSender> create(const std::string& address, std::string token = {});
   DatagramSender(DatagramSender&& other) noexcept;
   DatagramSender& operator=(DatagramSender&&) = delete;
   ~DatagramSender() override;
@@ -44,8 +66,9 @@ class DatagramSender final : public Plug {
   std::string where() const override { return address_; }
 
  private:
-  explicit DatagramSender(std::string address) : address_(std::move(address)) {}
-  std::string address_;
+  DatagramSender(std::string address, std::string token)
+      : address_(std::move(address)), token_(std::move(token)) {}
+  std::string address_, token_;
   sockaddr_in to_{};
   int socket_ = -1;
 };

@@ -30,7 +30,10 @@ struct DeviceSink {
 /// Everything a device may need; each takes what concerns it.
 struct DeviceOptions {
   Pose X_WT = Pose::Identity();
-  std::string port;  // a path, or host:port of datagrams
+  std::string port;                  // a path, or host:port of datagrams
+  std::vector<std::string> senders;  // of datagrams, by address; empty: on this machine
+  std::string token;                 // before each of them; empty: none
+  bool secured = false;              // the lab has keys
   int baud = 115200;
   std::vector<Site> sites = usual_sites();  // of a tracker's sensors, by address
   std::string format = "position_matrix";

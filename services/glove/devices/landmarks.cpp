@@ -29,8 +29,8 @@ bool is_hand(const Landmarks& points) {
 
 class LandmarksDevice final : public Device {
  public:
-  LandmarksDevice(const DeviceOptions& options, std::string address)
-      : address_(std::move(address)),
+  LandmarksDevice(const DeviceOptions& options, ReceiverOptions receiver)
+      : receiver_(std::move(receiver)),
         left_(options.left),
         hand_scale_(options.hand_scale),
         X_TH_(options.X_WT.inverse() * options.scene.X_WH),
@@ -45,16 +45,18 @@ class LandmarksDevice final : public Device {
 
  private:
   Expected<void> live(const std::stop_token& stop) {
-    auto socket = DatagramReceiver::bind(address_);
+    auto socket = DatagramReceiver::bind(receiver_);
     if (!socket) return tl::unexpected(socket.error());
     clock_.restart();
     auto last = Clock::now();
     while (!stop.stop_requested()) {
       const auto datagram = socket->read(milliseconds(50));
       if (!datagram) return tl::unexpected(datagram.error());
-      if (!datagram->empty() && receive(*datagram, process_now())) last = Clock::now();
+      if (!datagram->refused.empty()) sink_.drop(datagram->refused, 1);
+      if (receive(datagram->bytes, process_now())) last = Clock::now();
       if (Clock::now() - last > max_silence)
-        return fail("no usable landmarks come", address_, "start the hand tracking program");
+        return fail("no usable landmarks come", receiver_.address,
+                    "start the hand tracking program");
     }
     return {};
   }
@@ -105,7 +107,7 @@ class LandmarksDevice final : public Device {
     return {};
   }
 
-  std::string address_;
+  ReceiverOptions receiver_;
   bool left_;
   double hand_scale_;
   Pose X_TH_;  // where a hand is held of which that is not known
@@ -154,9 +156,13 @@ class LandmarksEmulator final : public Emulator {
 }  // namespace
 
 Expected<std::unique_ptr<Device>> create_landmarks(const DeviceOptions& options) {
-  std::string address = options.port.empty() ? landmarks_address : options.port;
-  if (const auto good = parse_address(address); !good) return tl::unexpected(good.error());
-  return std::make_unique<LandmarksDevice>(options, std::move(address));
+  ReceiverOptions receiver{.address = options.port.empty() ? landmarks_address : options.port,
+                           .senders = options.senders,
+                           .token = options.token,
+                           .secured = options.secured};
+  if (const auto good = DatagramReceiver::check(receiver); !good)
+    return tl::unexpected(good.error());
+  return std::make_unique<LandmarksDevice>(options, std::move(receiver));
 }
 
 std::unique_ptr<Emulator> emulate_landmarks(const DeviceOptions& options) {

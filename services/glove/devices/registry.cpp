@@ -98,7 +98,7 @@ const std::vector<DeviceKind>& device_kinds() {
        .line = Line::datagrams,
        .emulate = emulate_landmarks,
        .address = landmarks_address,
-       .keys = {"glove.port"}},
+       .keys = {"glove.port", "glove.senders", "glove.token_file"}},
       {.name = "recording",
        .help = "a hand recording, Leap or 21 landmarks",
        .create = create_recording,
@@ -135,8 +135,8 @@ EmulationOptions emulation_of(const DeviceKind& kind, const DeviceOptions& optio
   made.device = [kind, options] { return kind.emulate(options); };
   if (kind.line == Line::datagrams) {
     const std::string address = options.port.empty() ? std::string(kind.address) : options.port;
-    made.plug_in = [address]() -> Expected<std::unique_ptr<Plug>> {
-      auto sender = DatagramSender::create(address);
+    made.plug_in = [address, token = options.token]() -> Expected<std::unique_ptr<Plug>> {
+      auto sender = DatagramSender::create(address, token);
       if (!sender) return tl::unexpected(sender.error());
       return std::make_unique<DatagramSender>(std::move(*sender));
     };

@@ -1,6 +1,7 @@
 #include "services/glove/service/options.hpp"
 
 #include <algorithm>
+#include <fstream>
 
 namespace prehend::glove {
 namespace {
@@ -23,6 +24,19 @@ Expected<std::vector<Site>> checked_sites(const std::vector<std::string>& names)
   return sites;
 }
 
+Expected<std::string> read_token(const std::filesystem::path& file) {
+  constexpr std::size_t min_length = 16;
+  std::ifstream stream(file);
+  std::string token;
+  if (!std::getline(stream, token))
+    return fail("cannot be read", file.string(), "glove.token_file names it");
+  const auto printed = [](char c) { return c > ' ' && c <= '~'; };
+  if (token.size() < min_length || !std::all_of(token.begin(), token.end(), printed))
+    return fail("its first line is no token", file.string(),
+                "16 letters and digits at least, as `openssl rand -hex 16` makes them");
+  return token;
+}
+
 }  // namespace
 
 Expected<DeviceOptions> device_options(const service::Config& config) {
@@ -34,6 +48,13 @@ Expected<DeviceOptions> device_options(const service::Config& config) {
   if (!X_WT) return fail(X_WT.error().what, "tracker.X_WT", "see deploy/lab.toml");
   options.X_WT = *X_WT;
   options.port = config.text("glove.port");
+  options.senders = config.names("glove.senders");
+  options.secured = !config.text("lab.keys").empty();
+  if (const auto file = config.path("glove.token_file"); !file.empty()) {
+    auto token = read_token(file);
+    if (!token) return tl::unexpected(token.error());
+    options.token = std::move(*token);
+  }
   options.baud = static_cast<int>(config.integer("glove.baud"));
   auto sites = checked_sites(config.names("glove.sites"));
   if (!sites) return tl::unexpected(sites.error());

@@ -29,21 +29,23 @@ Landmarks hand_at(double x, double closure) {
 
 class LandmarksTest : public ::testing::Test {
  protected:
-  void start(bool left = false) {
+  void start(bool left = false, const std::string& token = {}) {
     DeviceOptions options;
     options.left = left;
+    options.token = token;
     options.scene.X_WH = make_pose({0.3, 0.1, 0.25});
     // Ports of a range of their own; another program may have taken one.
     Random random(static_cast<std::uint64_t>(::getpid()));
     for (int tries = 0; tries < 100; ++tries) {
       options.port = "127.0.0.1:" + std::to_string(20000 + random.index(10000));
-      if (DatagramReceiver::bind(options.port)) break;
+      if (DatagramReceiver::bind({.address = options.port, .senders = {}, .token = {}})) break;
     }
     auto made = find_device("landmarks")->create(options);
     ASSERT_TRUE(made) << made.error().message();
     device_ = std::move(*made);
     device_->start(listener_.sink());
-    sender_.emplace(*DatagramSender::create(options.port));
+    port_ = options.port;
+    sender_.emplace(*DatagramSender::create(options.port, token));
     // Until it listens: what nobody hears is lost.
     for (int n = 0; listener_.all().empty(); ++n) {
       ASSERT_LT(n, 500) << "no frame comes";
@@ -64,6 +66,7 @@ class LandmarksTest : public ::testing::Test {
   }
 
   Listener listener_;
+  std::string port_;
   std::unique_ptr<Device> device_;
   std::optional<DatagramSender> sender_;
 };
@@ -140,6 +143,73 @@ TEST_F(LandmarksTest, RefusesAndCountsWhatTrackersGetWrong) {
   EXPECT_TRUE(listener_.frame_with(
       [&](const Frame& f) { return (f.readings[1].p_TS - hand_at(0.3, 0.5)[4]).norm() < 1e-9; }));
   EXPECT_GT(listener_.all().size(), before);
+}
+
+// With a token, only those who know it lead the hand; the others are counted.
+TEST_F(LandmarksTest, WithATokenItHearsOnlyThoseWhoKnowIt) {
+  const std::string token = "correct-horse-battery";
+  start(false, token);  // gets a frame with the token
+  const auto line = [&](double x) {
+    return to_line({.stamp = now(), .in_room = true, .points = hand_at(x, 0.5)}) + "\n";
+  };
+  sender_.emplace(*DatagramSender::create(port_));  // without it
+  for (const std::string& before :
+       {std::string(), std::string("\n"), token.substr(1) + "\n", token + "x\n", token}) {
+    const auto wrong = listener_.drops()["wrong token"];
+    for (int n = 0; n < 500 && listener_.drops()["wrong token"] == wrong; ++n) {
+      sender_->write(before + line(0.3));
+      ::usleep(5000);
+    }
+    EXPECT_GT(listener_.drops()["wrong token"], wrong) << before;
+  }
+  for (const Frame& frame : listener_.all())
+    EXPECT_GT((frame.readings[1].p_TS - hand_at(0.3, 0.5)[4]).norm(), 0.1) << "was led";
+  sender_->write(token + "\n" + line(0.2));
+  EXPECT_TRUE(listener_.frame_with(
+      [&](const Frame& f) { return (f.readings[1].p_TS - hand_at(0.2, 0.5)[4]).norm() < 1e-9; }));
+}
+
+// Loopback is 127.0.0.0/8: an address of it stands for a host that is not in the list.
+TEST(Datagrams, OnlyKnownSendersAreHeard) {
+  const auto answer = [](std::vector<std::string> senders) {
+    Random random(static_cast<std::uint64_t>(::getpid()) + 1);
+    for (int tries = 0; tries < 100; ++tries) {
+      const std::string address = "127.0.0.1:" + std::to_string(20000 + random.index(10000));
+      auto receiver = DatagramReceiver::bind({.address = address, .senders = senders, .token = {}});
+      if (!receiver) continue;
+      DatagramSender::create(address)->write("hello");
+      const auto came = receiver->read(seconds(10));
+      return came ? came->bytes + std::string(came->refused) : came.error().message();
+    }
+    return std::string("no port is free");
+  };
+  EXPECT_EQ(answer({}), "hello") << "this machine, unless told otherwise";
+  EXPECT_EQ(answer({"127.0.0.1"}), "hello");
+  EXPECT_EQ(answer({"192.168.7.2", "127.0.0.1"}), "hello");
+  EXPECT_EQ(answer({"192.168.7.2"}), "unknown sender");
+  EXPECT_EQ(answer({"127.0.0.2"}), "unknown sender");
+}
+
+// Nothing else asks a sender who it is: with keys, a port for other hosts is opened only to those
+// who are named and know the token.
+TEST(Datagrams, ALabWithKeysOpensNoPortForEverybody) {
+  ReceiverOptions open{.address = "0.0.0.0:9871", .senders = {}, .token = {}, .secured = true};
+  EXPECT_FALSE(DatagramReceiver::check(open));
+  open.senders = {"192.168.7.2"};
+  EXPECT_FALSE(DatagramReceiver::check(open));
+  open.token = "correct-horse-battery";
+  EXPECT_TRUE(DatagramReceiver::check(open));
+  open.senders = {};
+  EXPECT_FALSE(DatagramReceiver::check(open));
+  EXPECT_TRUE(DatagramReceiver::check(
+      {.address = "127.0.0.1:9871", .senders = {}, .token = {}, .secured = true}));
+  EXPECT_TRUE(DatagramReceiver::check({.address = "0.0.0.0:9871", .senders = {}, .token = {}}));
+  EXPECT_FALSE(
+      DatagramReceiver::check({.address = "127.0.0.1:9871", .senders = {"anna"}, .token = {}}));
+  DeviceOptions options;
+  options.port = "0.0.0.0:9871";
+  options.secured = true;
+  EXPECT_FALSE(find_device("landmarks")->create(options));
 }
 
 TEST(Landmarks, RefusesAWrongAddress) {
