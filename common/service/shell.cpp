@@ -14,6 +14,7 @@
 #include "common/dds/topics.hpp"
 #include "common/service/lockstep_loop.hpp"
 #include "common/service/membership.hpp"
+#include "common/service/pulse.hpp"
 #include "common/service/restart.hpp"
 #include "common/service/status_publisher.hpp"
 #include "common/service/task_queue.hpp"
@@ -89,6 +90,7 @@ struct Shell::State {
   std::optional<StatusPublisher> status_publisher;
   std::optional<LockstepLoop> cycles;  // in lockstep only
   std::optional<Watchdog> watchdog;
+  std::unique_ptr<Pulse> pulse;
 
   bool may_restart() const { return options.restarts && !lockstep; }
 
@@ -123,6 +125,17 @@ struct Shell::State {
                                        .looks_for_deadlock = !lockstep});
   }
 
+  /// From now on it answers who asks whether it is alive, as soon as it runs.
+  void answer() {
+    auto made = Pulse::create(pulse_name(config, options.name),
+                              [this](std::function<void()> task) { tasks.post(std::move(task)); });
+    if (made)
+      pulse = std::move(*made);
+    else
+      log::warning("`prehend alive {}` is not answered here: {}", options.name,
+                   made.error().message());
+  }
+
   Expected<void> join() {
     dds::ParticipantOptions joining = membership(config, options.name, options.role);
     joining.lockstep = lockstep;
@@ -136,6 +149,7 @@ struct Shell::State {
     if (!publisher) return tl::unexpected(publisher.error());
     status_publisher.emplace(std::move(*publisher));
     watch();
+    answer();
     if (lockstep) {
       auto loop = LockstepLoop::create(*participant, options.name);
       if (!loop) return tl::unexpected(loop.error());

@@ -246,9 +246,30 @@ TEST_F(Doctor, NamesAHostWhoseClockIsWrong) {
   EXPECT_NE(found.at("clocks").find("elsewhere"), std::string::npos);
 }
 
+// Liveness hangs on nothing but the process: no network, no discovery server, no keys.
+TEST_F(Doctor, AServiceAnswersForItself) {
+  const auto alive = [&](const std::string& timeout) {
+    return run("prehend",
+               with_lab({"alive", "simulation", "--timeout", timeout, "--set", "lab.network=server",
+                         "--set", "lab.keys=/none"}),
+               20)
+        .exit_code;
+  };
+  EXPECT_EQ(alive("1"), 1);
+  auto simulation = start("simulation");
+  EXPECT_TRUE(eventually(20, [&] { return alive("1") == 0; }));
+  EXPECT_EQ(run("prehend", with_lab({"alive", "mapping", "--timeout", "1"}), 20).exit_code, 1);
+  simulation.signal(SIGSTOP);
+  EXPECT_TRUE(eventually(20, [&] { return alive("0.3") == 1; })) << "it hangs";
+  simulation.signal(SIGCONT);
+  EXPECT_TRUE(eventually(20, [&] { return alive("1") == 0; }));
+  simulation.stop(seconds(5));
+  EXPECT_EQ(alive("1"), 1);
+}
+
 TEST_F(Doctor, NamesASecuredPeerBesideAnUnsecuredOneAndTheReverse) {
   const Time now = from_ns(now_ns());
-  const auto store = cli::Keystore::init(folder_ / "keys", std::chrono::days(365), now);
+  const auto store = cli::Keystore::init(folder_ / "keys", std::chrono::days(365), now, {});
   ASSERT_TRUE(store);
   const std::string secured = "lab.keys=" + store->folder().string();
   EXPECT_TRUE(ask({secured}).contains("security")) << "this test is there without keys";

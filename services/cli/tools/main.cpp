@@ -3,6 +3,7 @@
 #include <iostream>
 
 #include "common/base/log.hpp"
+#include "services/cli/tools/alive_command.hpp"
 #include "services/cli/tools/arguments.hpp"
 #include "services/cli/tools/demo_command.hpp"
 #include "services/cli/tools/dispatch.hpp"
@@ -24,6 +25,7 @@ struct Command {
 constexpr Command commands[] = {
     {"demo", cli::demo_command, "play a demonstration through all services and judge the grasp"},
     {"status", cli::status_command, "who is there and how they fare"},
+    {"alive", cli::alive_command, "does a service on this host answer for itself"},
     {"discovery-server", cli::server_command,
      "by which services find each other without multicast"},
     {"doctor", cli::doctor_command, "what is wrong with this machine's set-up, and the mend"},
