@@ -58,6 +58,20 @@ void apply(Qos& qos, const TopicQos& contract, int depth, bool lockstep) {
   if (contract.deadline.count() > 0) qos.deadline().period = duration(contract.deadline);
 }
 
+/// The keys of who joins, if they hold where it joins.
+Expected<Keys> keys_of(const ParticipantOptions& options) {
+  const auto now = std::chrono::time_point_cast<Duration>(std::chrono::system_clock::now());
+  auto keys =
+      load_keys(options.network.keys, options.role.empty() ? options.name : options.role, now);
+  // Fast DDS would only say that it made no writer.
+  if (const Scope scope = keys ? keys->permissions.scope : Scope{};
+      !scope.covers(options.rig, options.domain))
+    return fail("the keys hold for " + text(scope), keys->folder.string(),
+                fmt::format("this is rig {} in domain {}: make others with `prehend keys`",
+                            options.rig, options.domain));
+  return keys;
+}
+
 constexpr std::chrono::milliseconds max_goodbye{1000};
 constexpr std::size_t max_attempts = 4;  // at joining a secured lab
 
@@ -163,8 +177,7 @@ Expected<Participant> Participant::join(const ParticipantOptions& options) {
   state->options = options;
   Network network = options.network;
   if (!network.keys.empty()) {
-    const auto now = std::chrono::time_point_cast<Duration>(std::chrono::system_clock::now());
-    auto keys = load_keys(network.keys, options.role.empty() ? options.name : options.role, now);
+    auto keys = keys_of(options);
     if (!keys) return tl::unexpected(keys.error());
     network.keys = keys->folder;
     state->keys.emplace(std::move(*keys));

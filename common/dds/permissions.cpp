@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 #include <tinyxml2.h>
 
+#include <algorithm>
+
 namespace prehend::dds {
 namespace {
 
@@ -15,17 +17,22 @@ constexpr std::string_view head = R"(<?xml version="1.0" encoding="UTF-8"?>
 constexpr std::string_view every_domain =
     "<domains><id_range><min>0</min><max>232</max></id_range></domains>";
 
-std::string rule(std::string_view kind, const std::set<std::string, std::less<>>& topics) {
+std::string domains(const Scope& scope) {
+  if (!scope.domain) return std::string(every_domain);
+  return fmt::format("<domains><id>{}</id></domains>", *scope.domain);
+}
+
+std::string rule(std::string_view kind, const std::set<std::string, std::less<>>& topics,
+                 const std::string& rig) {
   if (topics.empty()) return {};
   std::string rule = fmt::format("        <{}>\n          <topics>\n", kind);
   for (const std::string& topic : topics)
     rule += fmt::format("            <topic>{}</topic>\n", topic);
-  // Which rig, is for the lab to say.
   return rule + fmt::format(
                     "          </topics>\n"
-                    "          <partitions><partition>*</partition></partitions>\n"
+                    "          <partitions><partition>{}</partition></partitions>\n"
                     "        </{}>\n",
-                    kind);
+                    rig, kind);
 }
 
 /// The text of a child; an empty one where there is none.
@@ -36,6 +43,26 @@ std::string child(const XMLElement* parent, const char* name) {
 }
 
 }  // namespace
+
+bool Scope::covers(std::string_view other_rig, int other_domain) const {
+  return (rig == "*" || rig == other_rig) && (!domain || *domain == other_domain);
+}
+
+Expected<Scope> scope_of(const std::string& rig, int domain) {
+  const auto plain = [](char c) {
+    return static_cast<unsigned char>(c) > ' ' && c != '\x7f' &&
+           std::string_view("*?[]\\<>&\"'").find(c) == std::string_view::npos;
+  };
+  if (rig.empty() || !std::all_of(rig.begin(), rig.end(), plain))
+    return fail("is no name of one rig", "lab.rig = " + rig,
+                "letters and digits, or --rig any for keys that hold everywhere");
+  return Scope{rig, domain};
+}
+
+std::string text(const Scope& scope) {
+  return (scope.rig == "*" ? "any rig" : "rig " + scope.rig) +
+         (scope.domain ? fmt::format(" in domain {}", *scope.domain) : " in any domain");
+}
 
 Permissions min_permissions(Role role) {
   Permissions permissions;
@@ -89,8 +116,10 @@ std::string text(const Permissions& permissions) {
   </permissions>
 </dds>
 )",
-                     permissions.subject, permissions.from, permissions.until, every_domain,
-                     rule("publish", permissions.writes), rule("subscribe", permissions.reads));
+                     permissions.subject, permissions.from, permissions.until,
+                     domains(permissions.scope),
+                     rule("publish", permissions.writes, permissions.scope.rig),
+                     rule("subscribe", permissions.reads, permissions.scope.rig));
 }
 
 Expected<Permissions> read_permissions(std::string_view xml) {
@@ -118,6 +147,19 @@ Expected<Permissions> read_permissions(std::string_view xml) {
          topic = topic->NextSiblingElement("topic"))
       if (const char* name = topic->GetText()) into.emplace(name);
   };
+  for (const char* kind : {"publish", "subscribe"}) {
+    const XMLElement* list = allowed ? allowed->FirstChildElement(kind) : nullptr;
+    list = list ? list->FirstChildElement("partitions") : nullptr;
+    if (list) read.scope.rig = child(list, "partition");
+  }
+  const XMLElement* ids = allowed ? allowed->FirstChildElement("domains") : nullptr;
+  if (ids && ids->FirstChildElement("id")) {
+    int domain = 0;
+    if (ids->FirstChildElement("id")->QueryIntText(&domain) != tinyxml2::XML_SUCCESS)
+      return foreign();
+    read.scope.domain = domain;
+  }
+  if (read.scope.rig != "*" && !scope_of(read.scope.rig, 0)) return foreign();
   topics("publish", read.writes);
   topics("subscribe", read.reads);
   // Whatever else may stand in such a file gives itself away here.

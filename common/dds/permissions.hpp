@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <set>
 #include <string>
 #include <string_view>
@@ -10,15 +11,31 @@
 /// Who may write and read what, from topic_table, as the texts of DDS Security that say so.
 namespace prehend::dds {
 
+/// Where a key holds.
+struct Scope {
+  std::string rig = "*";      // "*": in every rig
+  std::optional<int> domain;  // nothing: in every domain
+  bool covers(std::string_view other_rig, int other_domain) const;
+
+  bool operator==(const Scope&) const = default;
+};
+
+/// In a rig and domain. Fails for a rig whose name would stand for others, too: * and ? do.
+Expected<Scope> scope_of(const std::string& rig, int domain);
+
+/// «rig lab in domain 0».
+std::string text(const Scope& scope);
+
 struct Permissions {
   std::string subject;      // of the certificate they are for, in the order of RFC 2253
   std::string from, until;  // UTC, 2026-11-21T17:00:00
   std::set<std::string, std::less<>> writes, reads;  // topics
+  Scope scope;
 
   bool operator==(const Permissions&) const = default;
 };
 
-/// The least that a role needs.
+/// The least that a role needs, everywhere.
 Permissions min_permissions(Role role);
 
 /// The rules of the lab: only who is authenticated joins, and only what is permitted is written and

@@ -342,9 +342,9 @@ int table(bool json, const std::vector<int>& counts, const std::vector<std::stri
 
 int sites(int rounds, const std::filesystem::path& folder, const std::string& self) {
   const auto keys = folder / "keys";
-  auto made = service::Process::start(
-      {.command = {(program_directory() / "prehend").string(), "keys", "init", keys.string()},
-       .log = "/dev/null"});
+  auto made = service::Process::start({.command = {(program_directory() / "prehend").string(),
+                                                   "keys", "init", keys.string(), "--rig", "any"},
+                                       .log = "/dev/null"});
   if (!made || !made->wait(30s)) throw std::runtime_error("prehend keys does not work");
   Hosts hosts;
   hosts.add("robot");

@@ -248,9 +248,9 @@ int run(bool json, double seconds, const std::vector<std::string>& cases, const 
     return 3;
   }
   const std::filesystem::path keys = folder->path() / "keys";
-  auto made = service::Process::start(
-      {.command = {(program_directory() / "prehend").string(), "keys", "init", keys.string()},
-       .log = "/dev/null"});
+  auto made = service::Process::start({.command = {(program_directory() / "prehend").string(),
+                                                   "keys", "init", keys.string(), "--rig", "any"},
+                                       .log = "/dev/null"});
   if (!made || !made->wait(30s)) {
     std::cerr << "prehend keys does not work\n";
     return 3;

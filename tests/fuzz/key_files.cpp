@@ -26,6 +26,7 @@ int main(int argc, char** argv) {
   dds::Permissions permissions = dds::min_permissions(dds::Role::glove);
   permissions.subject = "CN=glove";
   permissions.from = permissions.until = "2027-01-01T00:00:00";
+  permissions.scope = *dds::scope_of("left", 7);
   const std::string text = dds::text(permissions);
 
   // The first letter says which file it is.

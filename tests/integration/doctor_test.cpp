@@ -281,11 +281,11 @@ TEST_F(Doctor, NamesASecuredPeerBesideAnUnsecuredOneAndTheReverse) {
 
 TEST_F(Doctor, NamesKeysThatAreOpenOrAboutToExpire) {
   const Time now = from_ns(now_ns());
-  const auto store = cli::Keystore::init(folder_ / "keys", std::chrono::days(10), now);
+  const auto store = cli::Keystore::init(folder_ / "keys", std::chrono::days(10), now, {});
   ASSERT_TRUE(store);
   const std::string keys = "lab.keys=" + (store->folder() / "viewer").string();
   EXPECT_NE(ask({keys})["keys"].find("10 days"), std::string::npos);
-  ASSERT_TRUE(store->add("viewer", dds::Role::viewer, std::chrono::days(100), true, now));
+  ASSERT_TRUE(store->add("viewer", dds::Role::viewer, std::chrono::days(100), true, now, {}));
   EXPECT_FALSE(ask({keys}).contains("keys"));
   fs::permissions(store->folder() / "viewer" / "key.pem", fs::perms::others_read,
                   fs::perm_options::add);

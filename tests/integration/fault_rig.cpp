@@ -64,7 +64,7 @@ OnHosts::OnHosts() {
 
 void FaultRig::secure() {
   network_.keys = folder_ / "keys";
-  const Answer made = run("prehend", {"keys", "init", network_.keys.string()}, 30);
+  const Answer made = run("prehend", with_lab({"keys", "init", network_.keys.string()}), 30);
   if (made.exit_code != 0) throw std::runtime_error(made.log);
   join("replayer");  // which writes orders and reads everything
 }

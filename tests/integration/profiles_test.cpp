@@ -161,7 +161,7 @@ iptables -A INPUT -i here -p udp -j DROP && $there iptables -A INPUT -i there -p
 keys=$(mktemp -d)/keys other=$(mktemp -d)/keys
 simulation=
 trap 'kill $far $simulation || true; rm -r ${keys%/keys} ${other%/keys}' EXIT
-$bin/prehend keys init $keys; $bin/prehend keys init $other
+$bin/prehend keys init $keys $lab; $bin/prehend keys init $other $lab
 wan="$lab --set lab.network=wan --set lab.insecure=true"
 sees() { $there $bin/prehend status --wait simulation $wan --set 'lab.peers=["10.9.0.1"]' "$@"; }
 $bin/prehend-simulation $wan & simulation=$!
@@ -213,7 +213,7 @@ $in_robot_router iptables -t nat -A PREROUTING -i to_glove_router -p tcp --dport
   -j DNAT --to-destination 192.168.7.2
 
 keys=$(mktemp -d)/keys
-$bin/prehend keys init $keys
+$bin/prehend keys init $keys $lab
 wan="$lab --set lab.network=wan --set lab.keys=$keys"
 start() { "$@" & services="$services $!"; }
 start $in_robot $bin/prehend-mapping $wan --set lab.listen=198.51.100.1:7420

@@ -10,6 +10,7 @@
 #include <fastdds/dds/publisher/Publisher.hpp>
 #include <fastdds/dds/subscriber/Subscriber.hpp>
 #include <fstream>
+#include <nlohmann/json.hpp>
 #include <thread>
 
 #include "common/dds/raw.hpp"
@@ -31,7 +32,7 @@ class Security : public Rig {
   Security() : store_(make_store("keys")) {}
 
   Keystore make_store(const std::string& name) {
-    auto made = Keystore::init(folder_ / name, year, now());
+    auto made = Keystore::init(folder_ / name, year, now(), {name_, domain_});
     if (!made) throw std::runtime_error(made.error().message());
     return *made;
   }
@@ -128,8 +129,8 @@ TEST_F(Security, IntrudersGetNothingBringNothingAndTheOthersGoOn) {
                                          {"foreigner", foreign.folder() / "recognition"}};
   std::map<std::string, fs::path> reads{{"stranger", ""},
                                         {"foreigner", foreign.folder() / "mapping"}};
-  ASSERT_TRUE(store_.add("recognition-lost", dds::Role::recognition, year, false, now()));
-  ASSERT_TRUE(store_.add("mapping-lost", dds::Role::mapping, year, false, now()));
+  ASSERT_TRUE(store_.add("recognition-lost", dds::Role::recognition, year, false, now(), {}));
+  ASSERT_TRUE(store_.add("mapping-lost", dds::Role::mapping, year, false, now(), {}));
   writes["thief"] = copy_of("recognition-lost", "lost-writer");
   reads["thief"] = copy_of("mapping-lost", "lost-reader");
   ASSERT_TRUE(store_.revoke("recognition-lost", now()));
@@ -165,7 +166,7 @@ TEST_F(Security, IntrudersGetNothingBringNothingAndTheOthersGoOn) {
     ears.push_back(*intruders.back().reader(dds::object_detection));
   }
   // A viewer of ours that permits itself to write, which its own library then believes.
-  ASSERT_TRUE(foreign.add("viewer", dds::Role::recognition, year, true, now()));
+  ASSERT_TRUE(foreign.add("viewer", dds::Role::recognition, year, true, now(), {}));
   Forger forger(domain_, name_, copy_of("viewer", "forger"), foreign.folder() / "viewer");
   EXPECT_TRUE(forger.at_work());
 
@@ -282,7 +283,7 @@ TEST_F(Security, BrokenKeysStopAProcess) {
         fs::permissions(keys / key_files::key, fs::perms::group_read, fs::perm_options::add);
       },
       "can be read by others");
-  ASSERT_TRUE(store_.add("viewer-old", Role::viewer, -std::chrono::hours(1), false, now()));
+  ASSERT_TRUE(store_.add("viewer-old", Role::viewer, -std::chrono::hours(1), false, now(), {}));
   const Answer old = status_with(store_.folder() / "viewer-old");
   EXPECT_EQ(old.exit_code, 3);
   EXPECT_NE(old.log.find("expired"), std::string::npos) << old.log;
@@ -358,7 +359,7 @@ TEST_F(Security, ThoseWhoComeAndGoLockNobodyUp) {
 
 // A service that has been running since before reads the list anew and keeps its process number.
 TEST_F(Security, ARevokedKeyNoLongerOpensWhatItDid) {
-  ASSERT_TRUE(store_.add("viewer-eve", dds::Role::viewer, year, false, now()));
+  ASSERT_TRUE(store_.add("viewer-eve", dds::Role::viewer, year, false, now(), {}));
   const fs::path eve = copy_of("viewer-eve", "eve");
   auto simulation = start("simulation", {"lab.keys=" + store_.folder().string()});
   const Strings wait{"--wait", "simulation", "--timeout", "15"};
@@ -379,10 +380,83 @@ TEST_F(Security, ARevokedKeyNoLongerOpensWhatItDid) {
   }));
 }
 
+// The same processes with the same keys, beside the lab that these are for: whoever may lead one
+// hand may not lead every one.
+TEST_F(Security, KeysHoldInTheirRigAndDomainAlone) {
+  const auto join_in = [&](int domain, const std::string& rig) {
+    return dds::Participant::create(
+        {.name = "glove", .domain = domain, .rig = rig, .network = {.keys = store_.folder()}});
+  };
+  const auto here = join_in(domain_, name_);
+  ASSERT_TRUE(here) << here.error().message();
+  for (const auto& [domain, rig] :
+       {std::pair(domain_, name_ + "b"), std::pair(domain_, std::string("*")),
+        std::pair(domain_ + 1, name_)}) {
+    const auto elsewhere = join_in(domain, rig);
+    ASSERT_FALSE(elsewhere) << domain << " " << rig;
+    EXPECT_NE(elsewhere.error().what.find("hold for rig " + name_), std::string::npos)
+        << elsewhere.error().message();
+  }
+  const Keystore every = *Keystore::init(folder_ / "every", year, now(), {});
+  EXPECT_TRUE(dds::Participant::create({.name = "glove",
+                                        .domain = domain_,
+                                        .rig = name_ + "b",
+                                        .network = {.keys = every.folder()}}));
+
+  const std::string keys = (folder_ / "bound").string();
+  ASSERT_EQ(run("prehend", {"keys", "init", keys, "--set", "lab.rig=left", "--domain", "7"}, 20)
+                .exit_code,
+            0);
+  const Answer shown = run("prehend", {"keys", "show", "--store", keys, "--json"}, 20);
+  for (const auto& key : nlohmann::json::parse(shown.output)["keys"]) {
+    EXPECT_EQ(key["rig"], "left");
+    EXPECT_EQ(key["domain"], 7);
+    EXPECT_EQ(key["state"], "valid");
+  }
+  EXPECT_EQ(run("prehend", {"keys", "init", keys + "2", "--set", "lab.rig=*"}, 20).exit_code, 2);
+}
+
+// Fast DDS asks at its own side which rig a writer is for when it is made, and not again. Whoever
+// changes that afterwards is stopped by the others.
+TEST_F(Security, AWriterThatMovesToAnotherRigIsNotHeardThere) {
+  auto glove = member("recognition", store_.folder());
+  auto writer = *glove.writer(dds::object_detection);
+  const Keystore& authority = store_;
+  ASSERT_TRUE(
+      authority.add("mapping-b", dds::Role::mapping, year, false, now(), {name_ + "b", domain_}));
+  auto other = *dds::Participant::create({.name = "mapping-b",
+                                          .domain = domain_,
+                                          .rig = name_ + "b",
+                                          .network = {.keys = authority.folder() / "mapping-b"}});
+  auto reader = *other.reader(dds::object_detection);
+  auto* publisher = const_cast<eprosima::fastdds::dds::Publisher*>(writer.raw().get_publisher());
+  auto qos = publisher->get_qos();
+  qos.partition().clear();
+  qos.partition().push_back((name_ + "b").c_str());
+  publisher->set_qos(qos);
+  // One of that rig is heard while the other is not.
+  ASSERT_TRUE(authority.add("recognition-b", dds::Role::recognition, year, false, now(),
+                            {name_ + "b", domain_}));
+  auto own = *dds::Participant::create({.name = "recognition-b",
+                                        .domain = domain_,
+                                        .rig = name_ + "b",
+                                        .network = {.keys = authority.folder() / "recognition-b"}});
+  auto voice = *own.writer(dds::object_detection);
+  std::uint64_t heard = 0, brought_in = 0;
+  ASSERT_TRUE(eventually(20, [&] {
+    writer.write(detection(theirs, now_ns()));
+    voice.write(detection(ours, now_ns()));
+    for (const auto& sample : reader.take())
+      if (!sample.info.gone) ++(sample.data.track() == ours ? heard : brought_in);
+    return heard > 200;
+  }));
+  EXPECT_EQ(brought_in, 0u);
+}
+
 // One command, nothing to edit, and the whole lab works.
 TEST_F(Security, TheDemonstrationIsHeldAndRecordedUnderKeys) {
   const std::string keys = (folder_ / "demo-keys").string(), file = (folder_ / "lab.mcap").string();
-  ASSERT_EQ(run("prehend", {"keys", "init", keys}, 20).exit_code, 0);
+  ASSERT_EQ(run("prehend", {"keys", "init", keys, "--rig", "any"}, 20).exit_code, 0);
   const Answer shown = run("prehend", {"keys", "show", "--store", keys}, 20);
   EXPECT_EQ(shown.exit_code, 0) << shown.output;
   const Answer demo = run("prehend",

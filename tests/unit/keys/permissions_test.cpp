@@ -24,6 +24,29 @@ TEST(Permissions, ComeBackAsTheyWereWritten) {
   }
 }
 
+TEST(Permissions, HoldInOneRigAndDomain) {
+  Permissions bound = of(Role::glove);
+  bound.scope = *scope_of("left", 7);
+  const std::string written = text(bound);
+  EXPECT_EQ(written.find("<partition>*</partition>"), std::string::npos) << written;
+  EXPECT_EQ(written.find("232"), std::string::npos) << written;
+  const auto read = read_permissions(written);
+  ASSERT_TRUE(read) << read.error().message();
+  EXPECT_EQ(*read, bound);
+  EXPECT_TRUE(read->scope.covers("left", 7));
+  EXPECT_FALSE(read->scope.covers("left", 0));
+  EXPECT_FALSE(read->scope.covers("right", 7));
+  EXPECT_FALSE(read->scope.covers("*", 7));
+  EXPECT_TRUE(Scope{}.covers("anything", 200));
+}
+
+// A pattern would stand for other rigs, and markup for other rules.
+TEST(Permissions, ARigThatIsNoNameIsRefused) {
+  for (const char* rig : {"", "*", "a*", "a?", "[ab]", "a b", "<x>", "a&b", "a\nb", "\x1b[2J"})
+    EXPECT_FALSE(scope_of(rig, 0)) << rig;
+  for (const char* rig : {"lab", "demo-17-a", "prüfstand"}) EXPECT_TRUE(scope_of(rig, 0)) << rig;
+}
+
 TEST(Permissions, ThatSayMoreAreRefused) {
   const std::string good = text(of(Role::mapping));
   const auto with = [&](const std::string& what, const std::string& instead) {

@@ -47,15 +47,19 @@ int show(const Keystore& store, bool json) {
   for (const Keystore::Entry& entry : *entries) {
     const std::string_view state = state_of(entry);
     usable = usable && (state == "valid" || state == "expires soon" || state == "revoked");
-    list.push_back({{"name", entry.name},
-                    {"role", role_name(entry)},
-                    {"state", state},
-                    {"expires", day(entry.expires)},
-                    {"trouble", entry.trouble ? entry.trouble->message() : ""},
-                    {"writes", entry.permissions.writes},
-                    {"reads", entry.permissions.reads}});
-    table += fmt::format("{:<16}{:<13}{:<14}{:<12}writes {}\n", entry.name, role_name(entry), state,
-                         day(entry.expires),
+    list.push_back(
+        {{"name", entry.name},
+         {"role", role_name(entry)},
+         {"state", state},
+         {"expires", day(entry.expires)},
+         {"rig", entry.permissions.scope.rig},
+         {"domain", entry.permissions.scope.domain ? nlohmann::json(*entry.permissions.scope.domain)
+                                                   : nlohmann::json()},
+         {"trouble", entry.trouble ? entry.trouble->message() : ""},
+         {"writes", entry.permissions.writes},
+         {"reads", entry.permissions.reads}});
+    table += fmt::format("{:<16}{:<13}{:<14}{:<12}{:<28}writes {}\n", entry.name, role_name(entry),
+                         state, day(entry.expires), dds::text(entry.permissions.scope),
                          entry.permissions.writes.empty()
                              ? "nothing"
                              : fmt::format("{}", fmt::join(entry.permissions.writes, ", ")));
@@ -77,72 +81,105 @@ Expected<dds::Role> choose_role(const std::string& name, const std::string& want
               fmt::format("name the key ROLE or ROLE-something, or give --role: {}", all));
 }
 
+struct Arguments {
+  std::string folder, name, role, store, rig;
+  LabArguments lab;
+  double days = 365;
+  bool renew = false, json = false;
+  CLI::App *init = nullptr, *add = nullptr, *revoke = nullptr, *shown = nullptr;
+
+  void add_to(CLI::App& app) {
+    app.require_subcommand(1);
+    init = app.add_subcommand("init", "make a keystore in a new folder");
+    init->add_option("DIR", folder, "the new folder")->required();
+    add = app.add_subcommand("add", "make one more key");
+    add->add_option("NAME", name, "a role, or a role and more: viewer-anna")->required();
+    add->add_option("--role", role, "its role, when its name does not say it");
+    add->add_flag("--renew", renew, "in place of the one of this name");
+    revoke = app.add_subcommand("revoke", "no longer vouch for a key");
+    revoke->add_option("NAME", name, "of the key")->required();
+    shown = app.add_subcommand("show", "names, roles, permissions and expiry");
+    shown->add_flag("--json", json, "one JSON document on standard output");
+    for (CLI::App* command : {init, add}) {
+      command->add_option("--days", days, "that the keys are valid")
+          ->check(CLI::Range(0.001, 3650.0))
+          ->capture_default_str();
+      lab.add_to(*command);
+      command->add_option("--rig", rig,
+                          "the rig where they hold, in lab.domain; otherwise lab.rig; any: in "
+                          "every rig and domain");
+    }
+    for (CLI::App* command : {add, revoke, shown})
+      command->add_option("--store", store, "the keystore; otherwise lab.keys, else ./keys");
+  }
+  Duration validity() const { return seconds(days * 86400); }
+};
+
+/// Keys hold where the lab is, unless something else is asked for.
+Expected<dds::Scope> choose_scope(const Arguments& arguments) {
+  if (arguments.rig == "any") return dds::Scope{};
+  const auto config = arguments.lab.load();
+  if (!config) return tl::unexpected(config.error());
+  return dds::scope_of(arguments.rig.empty() ? config->text("lab.rig") : arguments.rig,
+                       static_cast<int>(config->integer("lab.domain")));
+}
+
+int init(const Arguments& arguments) {
+  const auto scope = choose_scope(arguments);
+  if (!scope) return complain(scope.error(), exit_wrong_use);
+  const auto made = Keystore::init(arguments.folder, arguments.validity(), now(), *scope);
+  if (!made) return complain(made.error(), exit_broken);
+  std::cout << fmt::format(
+      "Made {0} for {1}. Keep authority-key.pem to yourself. All on this machine:\n"
+      "lab.keys = \"{0}\"; elsewhere copy the folder of each process to its host and name that.\n",
+      std::filesystem::absolute(arguments.folder).string(), dds::text(*scope));
+  return exit_done;
+}
+
+int add(const Keystore& store, const Arguments& arguments) {
+  const auto role = choose_role(arguments.name, arguments.role);
+  if (!role) return complain(role.error(), exit_wrong_use);
+  const auto scope = choose_scope(arguments);
+  if (!scope) return complain(scope.error(), exit_wrong_use);
+  const auto done =
+      store.add(arguments.name, *role, arguments.validity(), arguments.renew, now(), *scope);
+  return done ? exit_done : complain(done.error(), exit_no);
+}
+
+int revoke(const Keystore& store, const std::string& name) {
+  if (const auto done = store.revoke(name, now()); !done) return complain(done.error(), exit_no);
+  std::cout << "Copy revoked.pem into the folder of every process on other hosts; services\n"
+               "that run join anew by themselves when it changes.\n";
+  return exit_done;
+}
+
 }  // namespace
 
-int keys_command(const std::vector<std::string>& arguments) {
+int keys_command(const std::vector<std::string>& texts) {
   CLI::App app{
       "Keys with which the processes of a lab know each other. `init` makes an authority and a "
       "key\n"
-      "for each role, with the least permissions that it needs; give each host the folders of the\n"
-      "processes that run there and name them in lab.keys (PREHEND_LAB_KEYS). Exit code of show: "
-      "0:\n"
-      "all can be used, 1: one is expired, broken or outdated.",
+      "for each role, with the least permissions that it needs, for lab.rig and lab.domain; give\n"
+      "each host the folders of the processes that run there and name them in lab.keys\n"
+      "(PREHEND_LAB_KEYS). Exit code of show: 0: all can be used, 1: one is expired, broken or\n"
+      "outdated.",
       "prehend keys"};
-  std::string folder, name, role, store_folder;
-  double days = 365;
-  bool renew = false, json = false;
-  app.require_subcommand(1);
-  const auto days_option = [&](CLI::App* command) {
-    command->add_option("--days", days, "that the keys are valid")
-        ->check(CLI::Range(0.001, 3650.0))
-        ->capture_default_str();
-  };
-  auto* init = app.add_subcommand("init", "make a keystore in a new folder");
-  init->add_option("DIR", folder, "the new folder")->required();
-  days_option(init);
-  auto* add = app.add_subcommand("add", "make one more key");
-  add->add_option("NAME", name, "a role, or a role and more: viewer-anna")->required();
-  add->add_option("--role", role, "its role, when its name does not say it");
-  add->add_flag("--renew", renew, "in place of the one of this name");
-  days_option(add);
-  auto* revoke = app.add_subcommand("revoke", "no longer vouch for a key");
-  revoke->add_option("NAME", name, "of the key")->required();
-  auto* shown = app.add_subcommand("show", "names, roles, permissions and expiry");
-  shown->add_flag("--json", json, "one JSON document on standard output");
-  for (CLI::App* command : {add, revoke, shown})
-    command->add_option("--store", store_folder, "the keystore; otherwise lab.keys, else ./keys");
-  if (const auto code = parse(app, arguments)) return *code;
-
-  if (*init) {
-    const auto made = Keystore::init(folder, seconds(days * 86400), now());
-    if (!made) return complain(made.error(), exit_broken);
-    std::cout << fmt::format(
-        "Made {0}. Keep authority-key.pem to yourself. All on this machine: lab.keys = \"{0}\";\n"
-        "elsewhere copy the folder of each process to its host and name that.\n",
-        std::filesystem::absolute(folder).string());
-    return exit_done;
-  }
-  if (store_folder.empty()) {
-    const auto config = LabArguments{}.load();
+  Arguments arguments;
+  arguments.add_to(app);
+  if (const auto code = parse(app, texts)) return *code;
+  if (*arguments.init) return init(arguments);
+  std::string folder = arguments.store;
+  if (folder.empty()) {
+    const auto config = arguments.lab.load();
     if (!config) return complain(config.error(), exit_wrong_use);
-    store_folder = config->path("lab.keys").string();
-    if (store_folder.empty()) store_folder = "keys";
+    folder = config->path("lab.keys").string();
+    if (folder.empty()) folder = "keys";
   }
-  const auto store = Keystore::open(store_folder);
+  const auto store = Keystore::open(folder);
   if (!store) return complain(store.error(), exit_broken);
-  if (*shown) return show(*store, json);
-  Expected<void> done;
-  if (*add) {
-    const auto chosen = choose_role(name, role);
-    if (!chosen) return complain(chosen.error(), exit_wrong_use);
-    done = store->add(name, *chosen, seconds(days * 86400), renew, now());
-  } else {
-    done = store->revoke(name, now());
-    if (done)
-      std::cout << "Copy revoked.pem into the folder of every process on other hosts; services\n"
-                   "that run join anew by themselves when it changes.\n";
-  }
-  return done ? exit_done : complain(done.error(), exit_no);
+  if (*arguments.shown) return show(*store, arguments.json);
+  if (*arguments.add) return add(*store, arguments);
+  return revoke(*store, arguments.name);
 }
 
 }  // namespace prehend::cli

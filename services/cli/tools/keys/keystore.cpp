@@ -66,7 +66,8 @@ std::optional<dds::Role> role_of(std::string_view name) {
   return std::nullopt;
 }
 
-Expected<Keystore> Keystore::init(const fs::path& folder, Duration validity, Time now) {
+Expected<Keystore> Keystore::init(const fs::path& folder, Duration validity, Time now,
+                                  const dds::Scope& scope) {
   std::error_code code;
   if (fs::exists(folder, code) && !fs::is_empty(folder, code))
     return fail("is there already", folder.string(), "name a new folder");
@@ -90,7 +91,7 @@ Expected<Keystore> Keystore::init(const fs::path& folder, Duration validity, Tim
     if (const auto done = write(folder / file, *text, static_cast<::mode_t>(mode)); !done)
       return tl::unexpected(done.error());
   for (const auto& [role, word] : dds::role_names)
-    if (const auto done = made.add(std::string(word), role, validity, false, now); !done)
+    if (const auto done = made.add(std::string(word), role, validity, false, now, scope); !done)
       return tl::unexpected(done.error());
   return made;
 }
@@ -117,7 +118,7 @@ std::vector<std::string> Keystore::names() const {
 }
 
 Expected<void> Keystore::add(const std::string& name, dds::Role role, Duration validity, bool renew,
-                             Time now) const {
+                             Time now, const dds::Scope& scope) const {
   if (!good_name(name))
     return fail("is no name for a key", name, "small letters, digits, - and _, at most 48");
   std::error_code code;
@@ -140,6 +141,7 @@ Expected<void> Keystore::add(const std::string& name, dds::Role role, Duration v
   if (!facts) return tl::unexpected(facts.error());
   dds::Permissions permissions = dds::min_permissions(role);
   permissions.subject = facts->subject;
+  permissions.scope = scope;
   permissions.from = utc(valid.from);
   permissions.until = utc(valid.until);
   const auto permitted = keys::sign(authority, dds::text(permissions));

@@ -28,14 +28,15 @@ class Keystore {
   };
 
   /// An authority in a new folder, with a key for each role. Ten years, keys `validity`.
-  static Expected<Keystore> init(const std::filesystem::path& folder, Duration validity, Time now);
+  static Expected<Keystore> init(const std::filesystem::path& folder, Duration validity, Time now,
+                                 const dds::Scope& scope);
   static Expected<Keystore> open(const std::filesystem::path& folder);
 
   const std::filesystem::path& folder() const { return folder_; }
-  /// A key with the least permissions of the role. renew: in place of one of this name, which stays
-  /// valid until it expires.
+  /// A key with the least permissions of the role, within the scope. renew: in place of one of this
+  /// name, which stays valid until it expires.
   Expected<void> add(const std::string& name, dds::Role role, Duration validity, bool renew,
-                     Time now) const;
+                     Time now, const dds::Scope& scope) const;
   /// No longer vouches for the key of this name.
   Expected<void> revoke(const std::string& name, Time now) const;
   Expected<std::vector<Entry>> entries(Time now) const;
