@@ -113,7 +113,7 @@ bool FaultRig::operate(double limit_s, const std::function<bool()>& condition) {
     for (auto& sample : states_->take())
       if (!sample.info.gone) {
         moved_by_ = sample.data.origin_ns();
-        dof_ = sample.data.dof();
+        stillness_.add(sample.data);
       }
     for (auto& sample : grasps_->take())
       if (!sample.info.gone) reports_.insert(sample.data.sequence_number());

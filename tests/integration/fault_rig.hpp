@@ -8,6 +8,7 @@
 
 #include "tests/integration/hosts.hpp"
 #include "tests/integration/rig.hpp"
+#include "tests/integration/stillness.hpp"
 
 namespace prehend::integration {
 
@@ -74,7 +75,7 @@ class FaultRig : public OnHosts, public Rig {
   Strings sets_;
   std::map<std::string, service::Process> processes_;
   std::int64_t moved_by_ = 0;                          // origin of the last state of the hand
-  std::vector<double> dof_;                            // of the last state, rad
+  Stillness stillness_;                                // of the hand, since it was last begun anew
   std::map<std::string, v1::ServiceStatus> statuses_;  // last of each name
   std::set<std::uint64_t> reports_;                    // their numbers
   bool orders_ = true;                                 // give any
