@@ -3,6 +3,8 @@
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
 
+#include "common/base/printable.hpp"
+
 namespace prehend::log {
 namespace {
 
@@ -20,8 +22,13 @@ std::string& name() {
   return instance;
 }
 
+/// What others have said may be in it. Lines behind the first are set in: none looks like one of
+/// ours.
 std::string line(std::string_view text) {
-  return name().empty() ? std::string(text) : fmt::format("[{}] {}", name(), text);
+  std::string shown = printable(text, "\n\t");
+  for (std::size_t at = shown.find('\n'); at != std::string::npos; at = shown.find('\n', at + 1))
+    shown.insert(at + 1, "  ");
+  return name().empty() ? shown : fmt::format("[{}] {}", name(), shown);
 }
 
 }  // namespace

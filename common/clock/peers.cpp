@@ -10,6 +10,7 @@ constexpr std::size_t max_peers = 256;                 // more than a rig has se
 constexpr std::size_t max_told = 64;                   // idl/Operation.idl
 constexpr Duration memory = std::chrono::seconds(10);  // of who says nothing any more
 constexpr std::size_t process_bytes = 8;               // of a Participant
+constexpr std::size_t max_sent = 128;                  // they come at 50 Hz at most, mostly at 1 Hz
 
 }  // namespace
 
@@ -20,15 +21,16 @@ Peers::Heard Peers::hear(const v1::ClockBeacon& beacon, const Participant& from,
   forget(received);
   const std::string service = beacon.service().to_string();
   if (service == service_) return {};
-  if (!peers_.contains(service) && peers_.size() >= max_peers) return {};
-  Peer& peer = peers_[service];
+  const std::pair key(service, from);
+  if (!peers_.contains(key) && peers_.size() >= max_peers) return {};
+  Peer& peer = peers_[key];
   const Time sent = from_ns(beacon.stamp_ns());
-  peer.service = service;
-  peer.from = from;
   peer.step = Duration(beacon.step_ns());
   Heard heard{.answer = true};
   for (const v1::ClockPeer& told : beacon.peers()) {
     if (told.service().to_string() != service_) continue;
+    // Of somebody else who claims our name.
+    if (std::find(sent_.begin(), sent_.end(), told.sent_ns()) == sent_.end()) continue;
     heard.answer = !told.known();
     const auto before = peer.filter.at(received);
     const std::uint64_t steps = peer.filter.steps();
@@ -47,10 +49,12 @@ v1::ClockBeacon Peers::beacon(Time now, Duration step) {
   beacon.host(host_.c_str());
   beacon.stamp_ns(to_ns(now));
   beacon.step_ns(step.count());
-  for (const auto& [service, peer] : peers_) {
+  sent_.push_back(beacon.stamp_ns());
+  if (sent_.size() > max_sent) sent_.pop_front();
+  for (const auto& [key, peer] : peers_) {
     if (beacon.peers().size() == max_told) break;
     v1::ClockPeer told;
-    told.service(service.c_str());
+    told.service(key.first.c_str());
     told.sent_ns(to_ns(peer.sent));
     told.received_ns(to_ns(peer.received));
     if (const auto offset = peer.filter.at(now)) {
@@ -76,17 +80,22 @@ Duration Peers::system_ahead(const Participant& writer, Time now) const {
 }
 
 std::optional<Offset> Peers::offset(const std::string& service, Time now) const {
-  const auto found = peers_.find(service);
-  return found == peers_.end() ? std::nullopt : found->second.filter.at(now);
+  std::optional<Offset> best;
+  for (const auto& [key, peer] : peers_) {
+    if (key.first != service) continue;
+    const auto known = peer.filter.at(now);
+    if (known && (!best || known->uncertainty < best->uncertainty)) best = known;
+  }
+  return best;
 }
 
 /// The participant itself, else another one of its process: the replayer plays through its own.
 const Peers::Peer* Peers::find(const Participant& writer) const {
   const Peer* same_process = nullptr;
-  for (const auto& [service, peer] : peers_) {
+  for (const auto& [key, peer] : peers_) {
     if (!peer.filter.at(peer.received)) continue;
-    if (peer.from == writer) return &peer;
-    if (std::equal(writer.begin(), writer.begin() + process_bytes, peer.from.begin()))
+    if (key.second == writer) return &peer;
+    if (std::equal(writer.begin(), writer.begin() + process_bytes, key.second.begin()))
       same_process = &peer;
   }
   return same_process;

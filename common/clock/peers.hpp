@@ -1,9 +1,11 @@
 #pragma once
 
 #include <array>
+#include <deque>
 #include <map>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "common/base/time.hpp"
 #include "common/clock/offset_filter.hpp"
@@ -16,7 +18,9 @@ namespace prehend::clock {
 using Participant = std::array<std::uint8_t, 12>;
 
 /// The clocks of the others as one process sees them. Pure: beacons in, beacons and offsets out.
-/// Beacons are both question and answer: each takes back when the last one of everybody came.
+/// Beacons are both question and answer: each takes back when the last one of everybody came. A
+/// name is what a beacon claims; whose it is, its writer's identity tells, so that nobody speaks
+/// for another's clock.
 class Peers {
  public:
   /// service: our own key, as in our ServiceStatus.
@@ -37,13 +41,11 @@ class Peers {
   Duration ahead(const Participant& writer, Time now) const;
   /// The same for the times that DDS itself notes, which follow steps of the system's clock.
   Duration system_ahead(const Participant& writer, Time now) const;
-  /// By the key of the service; nullopt: not known.
+  /// By the key of the service, the best known of those who claim it; nullopt: not known.
   std::optional<Offset> offset(const std::string& service, Time now) const;
 
  private:
   struct Peer {
-    std::string service;
-    Participant from{};
     Time sent, received;
     Duration step{};
     OffsetFilter filter;
@@ -52,7 +54,8 @@ class Peers {
   void forget(Time now);
 
   std::string service_, host_;
-  std::map<std::string, Peer> peers_;  // by service
+  std::map<std::pair<std::string, Participant>, Peer> peers_;  // by service and writer
+  std::deque<std::int64_t> sent_;  // stamps of our last beacons: nothing else is taken back
 };
 
 }  // namespace prehend::clock

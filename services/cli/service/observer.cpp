@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "common/base/printable.hpp"
 #include "common/convert/convert.hpp"
 
 namespace prehend::cli {
@@ -125,7 +126,8 @@ const v1::ObjectDetection* Observer::recognised() const {
 std::string Observer::progress() const {
   std::string text = fmt::format("{} frames", frames_);
   if (const v1::ObjectDetection* seen = recognised())
-    text += fmt::format(", {} ({:.0f} %)", seen->name().to_string(), 100 * seen->probability());
+    text += fmt::format(", {} ({:.0f} %)", printable(seen->name().to_string()),
+                        100 * seen->probability());
   if (command_) text += fmt::format(", {} {:.2f}", to_string(command_->mode()), command_->weight());
   if (report_)
     text += fmt::format(", {} contacts, {}", report_->contacts().size(),

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "common/base/named_values.hpp"
+#include "common/base/printable.hpp"
 
 namespace prehend::cli {
 namespace {
@@ -92,7 +93,7 @@ std::string to_json(const Outcome& outcome) {
 std::string to_table(const Outcome& outcome) {
   std::string text;
   const auto row = [&text](std::string_view name, const std::string& value) {
-    text += fmt::format("{:<12}{}\n", name, value);
+    text += fmt::format("{:<12}{}\n", name, printable(value));
   };
   if (outcome.object) {
     const Outcome::Object& seen = *outcome.object;

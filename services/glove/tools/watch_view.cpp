@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "common/base/named_values.hpp"
+#include "common/base/printable.hpp"
 #include "common/model/human_hand.hpp"
 #include "common/service/status.hpp"
 
@@ -45,12 +46,9 @@ double quantile(std::deque<double> values, double q) {
   return *at;
 }
 
-/// Text from outside, without what could command a terminal, at most `width` bytes.
-std::string printable(std::string_view text, std::size_t width) {
-  std::string result(text.substr(0, width));
-  for (char& c : result)
-    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = ' ';
-  return result;
+/// Text from outside, `width` bytes of it at most.
+std::string clipped(std::string_view text, std::size_t width) {
+  return printable(text.substr(0, width));
 }
 
 Json numbers(const v1::Vector3& v) {
@@ -101,11 +99,11 @@ std::string WatchView::page(Time now) const {
   std::string text;
   const auto line = [&](const std::string& words) { text += words.substr(0, 80) + '\n'; };
   if (!frame_) {
-    line(fmt::format("glove {}: no frames heard", printable(glove_, 40)));
+    line(fmt::format("glove {}: no frames heard", clipped(glove_, 40)));
   } else {
     const double age = to_seconds(now - frame_at_);
-    line(fmt::format("glove {}: {}{}, {:.1f} frames/s{}", printable(glove_, 20),
-                     printable(frame_->device().to_string(), 20),
+    line(fmt::format("glove {}: {}{}, {:.1f} frames/s{}", clipped(glove_, 20),
+                     clipped(frame_->device().to_string(), 20),
                      frame_->left() ? ", left hand (mirrored)" : "", frames_.rate(now),
                      age > silent ? fmt::format(", silent for {:.1f} s", age) : ""));
     for (const v1::SensorReading& sensor : frame_->sensors()) {
@@ -123,7 +121,7 @@ std::string WatchView::page(Time now) const {
     line(
         fmt::format("hand of {}, scale {:.2f}: {:.1f} postures/s, quality {:.0f} %, latency {:.1f}"
                     " ms{}",
-                    printable(posture_->user().to_string(), 16), posture_->hand_scale(),
+                    clipped(posture_->user().to_string(), 16), posture_->hand_scale(),
                     postures_.rate(now), 100 * posture_->quality(), quantile(latency_ms_, 0.5),
                     age > silent ? fmt::format(", held for {:.1f} s", age) : ""));
     const auto& p = posture_->X_WH().position();
@@ -142,13 +140,13 @@ std::string WatchView::page(Time now) const {
   }
   if (services_.empty()) line("service: none is there");
   for (const auto& [key, status] : services_) {
-    line(fmt::format("service {}: {} {}", printable(key, 40), name_of(status.state()),
-                     printable(status.message().to_string(), 80)));
+    line(fmt::format("service {}: {} {}", clipped(key, 40), name_of(status.state()),
+                     clipped(status.message().to_string(), 80)));
     for (const v1::StageLatency& stage : status.latency())
       line(fmt::format("  {:<13}p50 {:.0f} us, p99 {:.0f} us",
-                       printable(stage.stage().to_string(), 13), stage.p50_us(), stage.p99_us()));
+                       clipped(stage.stage().to_string(), 13), stage.p50_us(), stage.p99_us()));
     for (const v1::Drop& drop : status.drops())
-      line(fmt::format("  rejected: {:<28}{:>10}", printable(drop.reason().to_string(), 28),
+      line(fmt::format("  rejected: {:<28}{:>10}", clipped(drop.reason().to_string(), 28),
                        drop.count()));
   }
   return text;

@@ -91,6 +91,27 @@ TEST(StatusView, ThePageSaysWhatGoesOn) {
   EXPECT_THAT(StatusView({}).page(start), HasSubstr("no service is there"));
 }
 
+// Whatever a service calls itself: the terminal shows it and does not obey it.
+TEST(StatusView, NamesCommandNoTerminal) {
+  v1::ServiceStatus evil = status("a\x1b[2J", "b\x1b]0;c\x07");
+  evil.message("d\r\x1b[1Ae\nf");
+  evil.rates().resize(1);
+  evil.rates()[0].name("g\x1b[8m");
+  evil.drops().resize(1);
+  evil.drops()[0].reason("h\x1b[8m");
+  evil.latency().resize(1);
+  evil.latency()[0].stage("i\x1b[8m");
+  StatusView view({});
+  view.hear(evil, start);
+  const std::string page = view.page(start);
+  EXPECT_THAT(page, HasSubstr("a\\x1b[2J"));
+  for (const char c : page)
+    EXPECT_TRUE(static_cast<unsigned char>(c) >= 0x20 || c == '\n') << static_cast<int>(c);
+  EXPECT_THAT(page, HasSubstr("e\\x0af")) << "no line of its own";
+  EXPECT_EQ(json::parse(view.json(start))["services"][0]["name"], "a\x1b[2J")
+      << "programs get it whole";
+}
+
 TEST(StatusView, WhoFallsSilentOrSaysGoodbyeIsMissing) {
   StatusView view({"glove", "mapping"});
   view.hear(status("glove"), start);

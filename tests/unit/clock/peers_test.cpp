@@ -135,6 +135,28 @@ TEST_F(Rig, TheSystemsClockIsFollowedForWhatDdsNotes) {
   EXPECT_EQ(nodes[1]->peers.system_ahead(nodes[0]->id, reader), seconds(3600));
 }
 
+// A beacon says itself whose it is: one that takes another's name must not move that one's stamps,
+// nor make others wrong about our clock.
+TEST_F(Rig, WhoClaimsAnothersNameShiftsNobodysStamps) {
+  add("glove", Duration::zero());
+  add("mapping", Duration::zero());
+  for (int i = 0; i < 3; ++i) round();
+  Peers liar("glove", "host");
+  const Participant its = participant(66);
+  for (int i = 0; i < 10; ++i) {
+    const Time fast = now + seconds(3600);
+    liar.hear(nodes[1]->peers.beacon(nodes[1]->clock(now), {}), nodes[1]->id, fast);
+    for (auto& node : nodes) node->peers.hear(liar.beacon(fast, {}), its, node->clock(now));
+    round();
+  }
+  const Time reader = nodes[1]->clock(now);
+  EXPECT_EQ(nodes[1]->peers.ahead(nodes[0]->id, reader), Duration::zero());
+  EXPECT_NEAR(to_seconds(nodes[1]->peers.ahead(its, reader)), 3600, 1)
+      << "its own clock is its own";
+  EXPECT_EQ(nodes[0]->peers.ahead(nodes[1]->id, nodes[0]->clock(now)), Duration::zero());
+  EXPECT_TRUE(steps.empty()) << "no clock was set";
+}
+
 TEST_F(Rig, NobodyIsRememberedForEverAndNobodyFillsTheMemory) {
   add("mapping", Duration::zero());
   Peers& peers = nodes[0]->peers;

@@ -7,6 +7,7 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
 
+#include "common/base/printable.hpp"
 #include "common/service/arguments.hpp"
 #include "services/cli/tools/doctor/machine.hpp"
 #include "services/cli/tools/doctor/neighbours.hpp"
@@ -57,8 +58,8 @@ int doctor_command(const std::vector<std::string>& arguments) {
       continue;
     }
     std::cout << fmt::format("{:<7}{:<22}{}\n", finding.ok ? "ok" : "WRONG", finding.name,
-                             finding.detail);
-    if (!finding.ok) std::cout << fmt::format("{:<29}mend: {}\n", "", finding.hint);
+                             printable(finding.detail));
+    if (!finding.ok) std::cout << fmt::format("{:<29}mend: {}\n", "", printable(finding.hint));
   }
   if (json)
     std::cout << nlohmann::ordered_json{{"checks", checks}}.dump(

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "common/base/printable.hpp"
 #include "common/service/status.hpp"
 
 namespace prehend::cli {
@@ -27,6 +28,12 @@ std::string age(double s) {
 
 std::string latency(double us) {
   return us < 10'000 ? fmt::format("{:.0f} µs", us) : fmt::format("{:.1f} ms", us / 1000);
+}
+
+/// What a service says of itself.
+template <class Text>
+std::string shown(const Text& text) {
+  return printable(text.to_string());
 }
 
 /// Right-aligned by what is seen: «µ» and «±» are two bytes each.
@@ -143,10 +150,10 @@ std::string StatusView::page(Time now) const {
         : offset->against == key
             ? "the measure"
             : fmt::format("{:+.4f} s ± {}", offset->offset, latency(1e6 * offset->uncertainty));
-    text += fmt::format("{:<14}{:<18}{:<12}{:>8}{:>6.0f} MB{}\n", status.name().to_string(),
-                        status.host().to_string(), state(service, now), age(status.uptime()),
+    text += fmt::format("{:<14}{:<18}{:<12}{:>8}{:>6.0f} MB{}\n", shown(status.name()),
+                        shown(status.host()), state(service, now), age(status.uptime()),
                         status.resident() / 1e6, right(by, 24));
-    if (status.message().size() > 0) text += fmt::format("  {}\n", status.message().to_string());
+    if (status.message().size() > 0) text += fmt::format("  {}\n", shown(status.message()));
   }
 
   const auto section = [&](const std::string& title, const auto& rows) {
@@ -157,15 +164,14 @@ std::string StatusView::page(Time now) const {
   section(fmt::format("{:<14}{:<40}{:>10}{:>14}", "SERVICE", "RATE", "A SECOND", "TOTAL"),
           [](const Service& service, std::string& lines) {
             for (const v1::Rate& rate : service.status.rates())
-              lines +=
-                  fmt::format("{:<14}{:<40}{:>10.1f}{:>14}\n", service.status.name().to_string(),
-                              rate.name().to_string(), rate.per_second(), rate.total());
+              lines += fmt::format("{:<14}{:<40}{:>10.1f}{:>14}\n", shown(service.status.name()),
+                                   shown(rate.name()), rate.per_second(), rate.total());
           });
   section(fmt::format("{:<14}{:<40}{:>10}{:>10}{:>10}", "SERVICE", "LATENCY", "P50", "P99", "MOST"),
           [](const Service& service, std::string& lines) {
             for (const v1::StageLatency& stage : service.status.latency())
-              lines += fmt::format("{:<14}{:<40}{}{}{}\n", service.status.name().to_string(),
-                                   stage.stage().to_string(), right(latency(stage.p50_us()), 10),
+              lines += fmt::format("{:<14}{:<40}{}{}{}\n", shown(service.status.name()),
+                                   shown(stage.stage()), right(latency(stage.p50_us()), 10),
                                    right(latency(stage.p99_us()), 10),
                                    right(latency(stage.max_us()), 10));
           });
@@ -174,8 +180,7 @@ std::string StatusView::page(Time now) const {
             for (const v1::Drop& drop : service.status.drops()) {
               const auto fresh = service.fresh_drops.find(drop.reason().to_string());
               lines += fmt::format(
-                  "{:<14}{:<40}{:>10}{:>14}\n", service.status.name().to_string(),
-                  drop.reason().to_string(),
+                  "{:<14}{:<40}{:>10}{:>14}\n", shown(service.status.name()), shown(drop.reason()),
                   fresh == service.fresh_drops.end() ? "" : fmt::format("+{}", fresh->second),
                   drop.count());
             }
