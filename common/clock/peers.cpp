@@ -64,14 +64,14 @@ v1::ClockBeacon Peers::beacon(Time now, Duration step) {
 }
 
 Duration Peers::ahead(const Participant& writer, Time now) const {
-  const Peer* peer = find(writer);
+  const Peer* peer = find_measured(writer);
   const auto offset = peer ? peer->filter.at(now) : std::nullopt;
   return offset && std::chrono::abs(offset->offset) > offset->uncertainty ? offset->offset
                                                                           : Duration::zero();
 }
 
 Duration Peers::system_ahead(const Participant& writer, Time now) const {
-  const Peer* peer = find(writer);
+  const Peer* peer = find_measured(writer);
   return ahead(writer, now) + (peer ? peer->step : Duration::zero());
 }
 
@@ -81,15 +81,25 @@ std::optional<Offset> Peers::offset(const std::string& service, Time now) const 
 }
 
 /// The participant itself, else another one of its process: the replayer plays through its own.
-const Peers::Peer* Peers::find(const Participant& writer) const {
+template <class Wanted>
+const Peers::Peer* Peers::find(const Participant& writer, Wanted wanted) const {
   const Peer* same_process = nullptr;
   for (const auto& [service, peer] : peers_) {
-    if (!peer.filter.at(peer.received)) continue;
+    if (!wanted(peer)) continue;
     if (peer.from == writer) return &peer;
     if (std::equal(writer.begin(), writer.begin() + process_bytes, peer.from.begin()))
       same_process = &peer;
   }
   return same_process;
+}
+
+const Peers::Peer* Peers::find_measured(const Participant& writer) const {
+  return find(writer, [](const Peer& peer) { return peer.filter.at(peer.received).has_value(); });
+}
+
+std::string Peers::service_of(const Participant& writer) const {
+  const Peer* peer = find(writer, [](const Peer&) { return true; });
+  return peer ? peer->service : std::string();
 }
 
 void Peers::forget(Time now) {

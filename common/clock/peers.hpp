@@ -37,6 +37,8 @@ class Peers {
   Duration ahead(const Participant& writer, Time now) const;
   /// The same for the times that DDS itself notes, which follow steps of the system's clock.
   Duration system_ahead(const Participant& writer, Time now) const;
+  /// The service of this writer; empty: not known.
+  std::string service_of(const Participant& writer) const;
   /// By the key of the service; nullopt: not known.
   std::optional<Offset> offset(const std::string& service, Time now) const;
 
@@ -48,7 +50,9 @@ class Peers {
     Duration step{};
     OffsetFilter filter;
   };
-  const Peer* find(const Participant& writer) const;
+  template <class Wanted>
+  const Peer* find(const Participant& writer, Wanted wanted) const;
+  const Peer* find_measured(const Participant& writer) const;
   void forget(Time now);
 
   std::string service_, host_;

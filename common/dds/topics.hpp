@@ -46,11 +46,12 @@ inline constexpr Topic<v1::ObjectDetectionPubSubType> object_detection{
      .rate = "as camera/image",
      .remark = "disposed when gone"}};
 
+/// Ownership is shared: an exclusive reader would drop a second writer without a word, while the
+/// gate of the robot (common/gate) refuses and names it.
 inline constexpr Topic<v1::HandCommandPubSubType> robot_command{
     {.name = "robot/command",
      .qos = {.writer_depth = 64,
              .reader_depth = 1,
-             .exclusive_ownership = true,
              .deadline = std::chrono::milliseconds(100),
              .lifespan = std::chrono::milliseconds(200)},
      .writers = Role::mapping,

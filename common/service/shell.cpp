@@ -1,5 +1,7 @@
 #include "common/service/shell.hpp"
 
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <atomic>
@@ -204,6 +206,10 @@ bool Shell::lockstep() const {
 }
 Time Shell::now() const {
   return state_->lockstep ? state_->cycles->now() : process_now();
+}
+std::string Shell::writer_of(const dds::SampleInfo& info) const {
+  std::string service = state_->clock_sync ? state_->clock_sync->service_of(info) : std::string();
+  return service.empty() ? fmt::format("{:02x}", fmt::join(info.participant, ".")) : service;
 }
 dds::Participant& Shell::participant() {
   return *state_->participant;

@@ -287,6 +287,16 @@ Expected<PlayerOptions> player_options(const Arguments& arguments, const Tape& t
   return options;
 }
 
+/// Robots refuse commands that are old; in lockstep time is that of the recording.
+void warn_of_old_commands(const Tape& tape, const Arguments& arguments) {
+  const auto moves_robots = [](const recording::Stream* stream) {
+    return stream->topic.name == dds::robot_command.name;
+  };
+  if (arguments.stamps == "kept" && std::ranges::any_of(tape.streams(), moves_robots))
+    log::warning("{} keeps its stamps: a robot refuses commands of then; --stamps now moves them",
+                 dds::robot_command.name);
+}
+
 int replay(const Arguments& arguments) {
   std::optional<Time> start_at;
   if (!arguments.start_at.empty()) {
@@ -303,6 +313,7 @@ int replay(const Arguments& arguments) {
   auto tape = Tape::open({arguments.files.begin(), arguments.files.end()}, wanted);
   if (!tape) return service::complain(tape.error(), exit_broken);
   for (const Error& damage : tape->damage()) log::warning("{}", damage.message());
+  warn_of_old_commands(*tape, arguments);
   const auto options = player_options(arguments, *tape);
   if (!options) return service::complain(options.error(), exit_wrong_use);
   std::optional<Easing> easing;
