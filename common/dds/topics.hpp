@@ -66,6 +66,16 @@ inline constexpr Topic<v1::HandStatePubSubType> robot_state{
      .open = true,
      .rate = "100 Hz"}};
 
+inline constexpr Topic<v1::GateStatePubSubType> robot_gate{
+    {.name = "robot/gate",
+     .qos = {.transient_local = true},
+     .writers = Role::simulation | Role::robot,
+     .readers = Role::operator_,
+     .open = true,
+     .content = Content::process,
+     .rate = "on change, 1 Hz",
+     .remark = "not in lockstep"}};
+
 inline constexpr Topic<v1::SceneStatePubSubType> scene_state{{.name = "scene/state",
                                                               .qos = {.transient_local = true},
                                                               .writers = Role::simulation,
@@ -89,14 +99,14 @@ inline constexpr Topic<v1::OperatorCommandPubSubType> operator_command{
     {.name = "operator/command",
      .qos = {.writer_depth = 0, .reader_depth = 0},
      .writers = Role::operator_,
-     .readers = Role::mapping | Role::recorder | Role::replayer,
+     .readers = Role::mapping | Role::simulation | Role::robot | Role::recorder | Role::replayer,
      .content = Content::order,
      .rate = "on demand"}};
 
 inline constexpr Topic<v1::OperatorReplyPubSubType> operator_reply{
     {.name = "operator/reply",
      .qos = {.writer_depth = 0, .reader_depth = 0},
-     .writers = Role::mapping | Role::recorder | Role::replayer,
+     .writers = Role::mapping | Role::simulation | Role::robot | Role::recorder | Role::replayer,
      .readers = Role::operator_,
      .content = Content::order,
      .rate = "a command"}};
@@ -136,9 +146,9 @@ inline constexpr Topic<v1::ServiceStatusPubSubType> service_status{
 /// In the order of the table in idl/README.md. What is not here has no reader and no writer
 /// (a static_assert of Participant).
 inline constexpr std::tuple typed_topics{
-    glove_frame,    hand_posture, camera_image, object_detection, robot_command,
-    robot_state,    scene_state,  object_state, grasp_report,     operator_command,
-    operator_reply, lab_clock,    lab_progress, lab_beacon,       service_status};
+    glove_frame, hand_posture, camera_image, object_detection, robot_command,    robot_state,
+    robot_gate,  scene_state,  object_state, grasp_report,     operator_command, operator_reply,
+    lab_clock,   lab_progress, lab_beacon,   service_status};
 
 template <class PubSub>
 inline constexpr bool is_listed = std::apply(

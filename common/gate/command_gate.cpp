@@ -22,7 +22,8 @@ constexpr auto refusal_names =
                            {Refusal::too_old, "command too old"},
                            {Refusal::from_future, "command from the future"},
                            {Refusal::not_newer, "command not newer than the last"},
-                           {Refusal::second_writer, "command of a second writer"}});
+                           {Refusal::second_writer, "command of a second writer"},
+                           {Refusal::stopped, "command while stopped"}});
 
 }  // namespace
 
@@ -49,11 +50,29 @@ CommandGate::CommandGate(const model::HandModel& hand, GateOptions options, Limi
 
 tl::expected<Passed, Refusal> CommandGate::admit(const Command& command, Time now) {
   if (const auto refused = judge(command, now)) return tl::unexpected(*refused);
-  if (std::exchange(starts_, false)) {
-    const auto here = where_ ? where_() : std::nullopt;
-    here ? motion_.start(*here) : motion_.start_anywhere();
-  }
+  start();
   return motion_.step(command.place, command.stamp, now);
+}
+
+void CommandGate::start() {
+  if (!std::exchange(starts_, false)) return;
+  const auto here = where_ ? where_() : std::nullopt;
+  here ? motion_.start(*here) : motion_.start_anywhere();
+}
+
+void CommandGate::stop(const std::string& by, const std::string& reason, Time now) {
+  if (!stop_) stop_ = Stop{by, reason, now};
+  starts_ = true;
+}
+
+void CommandGate::release() {
+  stop_.reset();
+  starts_ = true;
+}
+
+Passed CommandGate::go(const Place& place, Time now) {
+  start();
+  return motion_.step(place, now, now);
 }
 
 std::optional<Refusal> CommandGate::judge(const Command& command, Time now) {
@@ -65,7 +84,7 @@ std::optional<Refusal> CommandGate::judge(const Command& command, Time now) {
     return Refusal::second_writer;
   lead(command.writer);
   led_ = now;
-  return std::nullopt;
+  return stop_ ? std::optional(Refusal::stopped) : std::nullopt;
 }
 
 std::optional<Refusal> CommandGate::judge_content(const Command& command) const {

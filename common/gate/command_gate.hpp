@@ -38,7 +38,8 @@ enum class Refusal {
   too_old,
   from_future,
   not_newer,
-  second_writer
+  second_writer,
+  stopped
 };
 std::string_view to_string(Refusal refusal);
 
@@ -67,6 +68,18 @@ class CommandGate {
   std::optional<WriterId> leader(Time now) const;
   /// From now on this writer leads, whoever led before.
   void take_over(const WriterId& writer, Time now);
+  /// Nothing is obeyed any more until the release. A stop that is there already stays as it is.
+  void stop(const std::string& by, const std::string& reason, Time now);
+  /// The next command counts from where the hand is, however it came there.
+  void release();
+  struct Stop {
+    std::string by, reason;
+    Time since{};
+  };
+  const std::optional<Stop>& stopped() const { return stop_; }
+  /// While it is stopped: how far the hand may go by now on its way to a place of its own choice.
+  Passed go(const Place& place, Time now);
+
   /// How often the lead has changed hands.
   std::uint64_t leads() const { return leads_; }
 
@@ -80,6 +93,7 @@ class CommandGate {
   std::optional<Refusal> judge_content(const Command& command) const;
   bool is_newer(const Command& command, Time now);
   void lead(const WriterId& writer);
+  void start();
 
   const model::HandModel& hand_;
   GateOptions options_;
@@ -87,7 +101,8 @@ class CommandGate {
   Where where_;
   std::map<WriterId, Heard> heard_;  // the newest of each writer
   std::optional<WriterId> leader_;
-  Time led_{};          // its last command that was in order
+  Time led_{};  // its last command that was in order
+  std::optional<Stop> stop_;
   bool starts_ = true;  // the next command is the first of a lead
   std::uint64_t leads_ = 0;
 };

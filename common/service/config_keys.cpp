@@ -91,6 +91,10 @@ const std::vector<ConfigKey>& config_keys() {
       {"gate.base_acceleration", 300.0, "m/s², of the base"},
       {"gate.base_turn_speed", 3.6, "rad/s, of the base"},
       {"gate.base_turn_acceleration", 900.0, "rad/s², of the base"},
+
+      {"safety.on_stop", Text("hold"),
+       "what the fingers do at a stop: hold (keep their squeeze) or open; the base stays"},
+      {"safety.start_stopped", false, "a robot obeys nothing before its first release"},
   };
   return keys;
 }

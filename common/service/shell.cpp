@@ -329,7 +329,7 @@ Expected<Exit> Shell::run() {
     state.participant.reset();
     state.restart.now();
   }
-  log::info("stopped");
+  if (state.options.restarts) log::info("stopped");
   return state.exit.load();
 }
 

@@ -8,6 +8,9 @@
 #include "services/cli/tools/dispatch.hpp"
 #include "services/cli/tools/doctor/doctor_command.hpp"
 #include "services/cli/tools/keys/keys_command.hpp"
+#include "services/cli/tools/orders/release_command.hpp"
+#include "services/cli/tools/orders/stop_command.hpp"
+#include "services/cli/tools/orders/takeover_command.hpp"
 #include "services/cli/tools/scene_command.hpp"
 #include "services/cli/tools/server_command.hpp"
 #include "services/cli/tools/status/status_command.hpp"
@@ -24,6 +27,9 @@ struct Command {
 constexpr Command commands[] = {
     {"demo", cli::demo_command, "play a demonstration through all services and judge the grasp"},
     {"status", cli::status_command, "who is there and how they fare"},
+    {"stop", cli::stop_command, "stop the robots of a rig, or of all, until they are released"},
+    {"release", cli::release_command, "end a stop"},
+    {"takeover", cli::takeover_command, "say whose commands a robot hand obeys"},
     {"discovery-server", cli::server_command,
      "by which services find each other without multicast"},
     {"doctor", cli::doctor_command, "what is wrong with this machine's set-up, and the mend"},

@@ -93,6 +93,11 @@ Expected<void> Simulation::accept(const Command& command, Time now) {
   return {};
 }
 
+void Simulation::hold() {
+  world_->hold_still();
+  holding_ = true;
+}
+
 void Simulation::approach(const Command& command) {
   if (world_->hand_touches_anything()) return;
   const grasping::HandMotion before = world_->hand_motion();
@@ -121,10 +126,7 @@ Duration Simulation::follow(Time now, bool lockstep) {
 bool Simulation::step() {
   if (time_ + period_ > goal_) return false;
   time_ += period_;
-  if (!holding_ && time_ - accepted_ > options_.stale) {
-    world_->hold_still();
-    holding_ = true;
-  }
+  if (!holding_ && time_ - accepted_ > options_.stale) hold();
   world_->step();
   if (const auto body = detector_.update(*world_); body && command_) {
     const grasping::HandMotion motion = world_->hand_motion();

@@ -46,6 +46,9 @@ class Simulation {
   /// away ones.
   Expected<void> accept(const Command& command, Time now);
 
+  /// Stays where it is from now on, with its squeeze, until the next command.
+  void hold();
+
   /// Lets the world follow the clock: drops what it is behind by more than max_behind (live) or
   /// nothing (lockstep) and returns the time dropped. The first call sets the world's time.
   Duration follow(Time now, bool lockstep);

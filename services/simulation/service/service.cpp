@@ -64,11 +64,14 @@ Expected<void> Service::start() {
     from_scene_ = true;
   }
 
-  auto gate = robot::Gatekeeper::create(
-      shell_, hand_, hand_name_,
-      {.obey = [this](const v1::HandCommand& message, const gate::Place& place,
-                      Time now) { return simulation_->accept(from_message(message, place), now); },
-       .where = [this] { return where(); }});
+  robot::Robot robot;
+  robot.obey = [this](const v1::HandCommand& message, const gate::Place& place, Time now) {
+    return simulation_->accept(from_message(message, place), now);
+  };
+  robot.where = [this] { return where(); };
+  robot.hold = [this] { simulation_->hold(); };
+  robot.go = [this](const gate::Place& place, Time now) { go(place, now); };
+  auto gate = robot::Gatekeeper::create(shell_, hand_, hand_name_, std::move(robot));
   if (!gate) return tl::unexpected(gate.error());
   gate_ = std::move(*gate);
   if (!from_scene_)
@@ -89,6 +92,17 @@ std::optional<gate::Place> Service::where() const {
   return gate::Place{simulation_->world().commanded_dof(), simulation_->world().commanded_base()};
 }
 
+/// As a command that answers no glove frame.
+void Service::go(const gate::Place& place, Time now) {
+  Command command = simulation_->command().value_or(Command{});
+  command.stamp = now;
+  command.origin = {};
+  command.mode = v1::MODE_HOLD;
+  command.dof = place.dof;
+  command.X_WB = place.X_WB;
+  if (auto went = simulation_->accept(command, now); !went) shell_.status().drop(went.error().what);
+}
+
 void Service::on_detection(const v1::ObjectDetection& message) {
   const auto sighting = from_message(message, catalogue_);
   if (!sighting) {
@@ -107,7 +121,7 @@ void Service::on_tick(Time now) {
   if (const Duration dropped = simulation_->follow(now, shell_.lockstep()); dropped.count() > 0)
     shell_.status().drop("time (ms)",
                          static_cast<std::uint64_t>(std::max(1.0, 1e3 * to_seconds(dropped))));
-  if (!shell_.lockstep()) gate_->look_around(now);
+  gate_->tick(now);
   if (scene_changed_) publish_scene();
   while (simulation_->step()) {
     shell_.status().count("steps");

@@ -28,6 +28,7 @@ class Service {
   Service(service::Shell& shell, model::HandModel hand, model::Catalogue catalogue);
   Expected<void> start();
   std::optional<gate::Place> where() const;
+  void go(const gate::Place& place, Time now);
   void on_detection(const v1::ObjectDetection& message);
   void on_tick(Time now);
   void publish_state();

@@ -34,6 +34,7 @@ const std::map<std::string, Roles> roles_of_path{
     {"services/recorder/tools/replay", Role::replayer},
     {"services/recorder/tools/check", Role::replayer},
     {"services/cli", Role::viewer},
+    {"services/cli/tools/orders", Role::operator_},
     {"common/robot", Role::simulation | Role::robot},  // the gate before a hand
     {"common/service", services},                      // the shell, which every service has
     {"common/service/conductor.cpp", Role::replayer},

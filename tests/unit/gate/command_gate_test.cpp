@@ -174,6 +174,45 @@ TEST(Gate, TheSameLeaderGoesOnAfterASilence) {
   EXPECT_EQ(passed->place.X_WB.translation(), Eigen::Vector3d(5, 5, 5));
 }
 
+TEST(Gate, AStopLatchesUntilTheReleaseAndTheFirstOneCounts) {
+  Place here = open_at(barrett(), {0, 0, 0.5});
+  auto gate = made(barrett(), [&] { return here; });
+  EXPECT_EQ(refusal(gate, command(barrett(), 1, 0), at(0)), std::nullopt);
+  gate.stop("anna", "a noise", at(5));
+  gate.stop("ben", "", at(6));
+  ASSERT_TRUE(gate.stopped());
+  EXPECT_EQ(gate.stopped()->by, "anna");
+  EXPECT_EQ(gate.stopped()->reason, "a noise");
+  for (int ms = 10; ms < 2000; ms += 10)
+    EXPECT_EQ(refusal(gate, command(barrett(), 1, ms, {1, 0, 0.5}), at(ms)), Refusal::stopped);
+  EXPECT_EQ(gate.leader(at(1990)), writer(1)) << "who leads goes on leading";
+  EXPECT_EQ(refusal(gate, command(barrett(), 2, 1991), at(1991)), Refusal::second_writer);
+  here = open_at(barrett(), {0.1, 0, 0.5});
+  gate.release();
+  const auto passed = gate.admit(command(barrett(), 1, 2000, {1, 0, 0.5}), at(2000));
+  ASSERT_TRUE(passed);
+  EXPECT_NEAR(passed->place.X_WB.translation().x(), 0.1 + 1.2 * 0.02, 1e-9);
+}
+
+TEST(Gate, AStoppedHandOpensWithinItsLimits) {
+  Place here = open_at(barrett(), {0, 0, 0.5});
+  here.dof.setConstant(1);
+  here.dof = barrett().clamp(here.dof);
+  const Place open = open_at(barrett(), {0, 0, 0.5});
+  auto gate = made(barrett(), [&] { return here; });
+  gate.stop("anna", "", at(0));
+  Eigen::VectorXd before = here.dof;
+  int ms = 0;
+  for (; ms < 5000 && (before - open.dof).norm() > 1e-9; ms += 2) {
+    const Passed passed = gate.go(open, at(ms));
+    for (Eigen::Index i = 0; ms > 0 && i < before.size(); ++i)
+      EXPECT_LE(std::abs(passed.place.dof[i] - before[i]),
+                1.2 * barrett().dofs()[static_cast<std::size_t>(i)].max_velocity * 0.002 + 1e-9);
+    before = passed.place.dof;
+  }
+  EXPECT_LT(ms, 1000);
+}
+
 TEST(Gate, IsNotMadeWithLimitsThatAllowNothing) {
   Limits limits = limits_of(barrett());
   limits.base.speed = 0;
