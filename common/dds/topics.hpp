@@ -111,6 +111,14 @@ inline constexpr Topic<v1::OperatorReplyPubSubType> operator_reply{
      .content = Content::order,
      .rate = "a command"}};
 
+inline constexpr Topic<v1::OperatorConsentPubSubType> operator_consent{
+    {.name = "operator/consent",
+     .qos = {.reliable = false, .deadline = std::chrono::milliseconds(100)},
+     .writers = Role::operator_,
+     .readers = Role::simulation | Role::robot,
+     .content = Content::order,
+     .rate = "50 Hz while asked"}};
+
 inline constexpr Topic<v1::LabClockPubSubType> lab_clock{
     {.name = "lab/clock",
      .qos = {.writer_depth = 0, .reader_depth = 0},
@@ -146,9 +154,10 @@ inline constexpr Topic<v1::ServiceStatusPubSubType> service_status{
 /// In the order of the table in idl/README.md. What is not here has no reader and no writer
 /// (a static_assert of Participant).
 inline constexpr std::tuple typed_topics{
-    glove_frame, hand_posture, camera_image, object_detection, robot_command,    robot_state,
-    robot_gate,  scene_state,  object_state, grasp_report,     operator_command, operator_reply,
-    lab_clock,   lab_progress, lab_beacon,   service_status};
+    glove_frame,      hand_posture,   camera_image,     object_detection, robot_command,
+    robot_state,      robot_gate,     scene_state,      object_state,     grasp_report,
+    operator_command, operator_reply, operator_consent, lab_clock,        lab_progress,
+    lab_beacon,       service_status};
 
 template <class PubSub>
 inline constexpr bool is_listed = std::apply(

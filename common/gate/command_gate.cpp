@@ -23,7 +23,8 @@ constexpr auto refusal_names =
                            {Refusal::from_future, "command from the future"},
                            {Refusal::not_newer, "command not newer than the last"},
                            {Refusal::second_writer, "command of a second writer"},
-                           {Refusal::stopped, "command while stopped"}});
+                           {Refusal::stopped, "command while stopped"},
+                           {Refusal::no_consent, "command without consent"}});
 
 }  // namespace
 
@@ -70,6 +71,21 @@ void CommandGate::release() {
   starts_ = true;
 }
 
+void CommandGate::consent(const WriterId& writer, bool held, Time stamp, Time now) {
+  if (std::chrono::abs(now - stamp) > options_.max_age) return;
+  // What comes late or twice must not undo that it was let go.
+  if (giver_ == writer && stamp <= told_) return;
+  if (!held && holder_ != writer) return;
+  holder_ = held ? std::optional(writer) : std::nullopt;
+  giver_ = writer;
+  told_ = stamp;
+  held_ = now;
+}
+
+bool CommandGate::has_consent(Time now) const {
+  return !options_.deadman || (holder_ && now - held_ <= options_.max_consent_age);
+}
+
 Passed CommandGate::go(const Place& place, Time now) {
   start();
   return motion_.step(place, now, now);
@@ -84,7 +100,10 @@ std::optional<Refusal> CommandGate::judge(const Command& command, Time now) {
     return Refusal::second_writer;
   lead(command.writer);
   led_ = now;
-  return stop_ ? std::optional(Refusal::stopped) : std::nullopt;
+  if (stop_) return Refusal::stopped;
+  if (has_consent(now)) return std::nullopt;
+  starts_ = true;
+  return Refusal::no_consent;
 }
 
 std::optional<Refusal> CommandGate::judge_content(const Command& command) const {

@@ -39,7 +39,8 @@ enum class Refusal {
   from_future,
   not_newer,
   second_writer,
-  stopped
+  stopped,
+  no_consent
 };
 std::string_view to_string(Refusal refusal);
 
@@ -47,6 +48,8 @@ struct GateOptions {
   std::string hand;                                   // key of its topics
   Duration max_age = std::chrono::milliseconds(200);  // of a command, and how far ahead it may be
   Duration max_silence = std::chrono::milliseconds(300);  // after which a leader leads no more
+  bool deadman = false;                                   // nothing is obeyed without consent
+  Duration max_consent_age = std::chrono::milliseconds(100);
 };
 
 /// Stands before a robot hand, simulated or real, and decides which commands it obeys. One writer
@@ -72,6 +75,11 @@ class CommandGate {
   void stop(const std::string& by, const std::string& reason, Time now);
   /// The next command counts from where the hand is, however it came there.
   void release();
+  /// Somebody holds the deadman, or lets it go. Only who held it last can let it go.
+  void consent(const WriterId& writer, bool held, Time stamp, Time now);
+  /// There is consent, or none is asked for.
+  bool has_consent(Time now) const;
+
   struct Stop {
     std::string by, reason;
     Time since{};
@@ -103,7 +111,9 @@ class CommandGate {
   std::optional<WriterId> leader_;
   Time led_{};  // its last command that was in order
   std::optional<Stop> stop_;
-  bool starts_ = true;  // the next command is the first of a lead
+  std::optional<WriterId> holder_, giver_;  // of the deadman: now, and who said something last
+  Time held_{}, told_{};                    // when it came, and its stamp
+  bool starts_ = true;                      // the next command is the first of a lead
   std::uint64_t leads_ = 0;
 };
 

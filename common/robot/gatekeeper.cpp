@@ -60,7 +60,7 @@ void put(Text& to, const std::string& from, std::size_t length) {
 
 bool same(const v1::GateState& a, const v1::GateState& b) {
   return a.leader() == b.leader() && a.refused() == b.refused() && a.stopped() == b.stopped() &&
-         a.stopped_by() == b.stopped_by() && a.reason() == b.reason();
+         a.consent() == b.consent() && a.stopped_by() == b.stopped_by() && a.reason() == b.reason();
 }
 
 }  // namespace
@@ -75,14 +75,17 @@ Expected<std::unique_ptr<Gatekeeper>> Gatekeeper::create(service::Shell& shell,
   auto gate = gate::CommandGate::create(hand,
                                         {.hand = name,
                                          .max_age = seconds(config.number("gate.max_age")),
-                                         .max_silence = seconds(config.number("gate.max_silence"))},
+                                         .max_silence = seconds(config.number("gate.max_silence")),
+                                         .deadman = config.flag("safety.deadman")},
                                         limits_of(hand, config), robot.where);
   if (!gate) {
     gate.error().exit = exit_wrong_use;
     return tl::unexpected(gate.error());
   }
-  return std::unique_ptr<Gatekeeper>(
+  std::unique_ptr<Gatekeeper> made(
       new Gatekeeper(shell, hand, name, std::move(*gate), std::move(robot)));
+  if (auto opened = made->open_audit(name); !opened) return tl::unexpected(opened.error());
+  return made;
 }
 
 Gatekeeper::Gatekeeper(service::Shell& shell, const model::HandModel& hand, const std::string& name,
@@ -95,7 +98,9 @@ Gatekeeper::Gatekeeper(service::Shell& shell, const model::HandModel& hand, cons
       states_(shell.publish(dds::robot_gate)),
       replies_(shell.publish(dds::operator_reply)),
       last_obeyed_(shell.now() + start_up) {
+  consented_ = gate_.has_consent(shell_.now());
   put(state_.hand(), name, 64);
+  state_.deadman(shell.config().flag("safety.deadman"));
   if (shell.config().flag("safety.start_stopped"))
     gate_.stop("safety.start_stopped", "not yet released", shell.now());
   shell_.subscribe(dds::robot_command, std::function([this](const v1::HandCommand& message,
@@ -107,15 +112,50 @@ Gatekeeper::Gatekeeper(service::Shell& shell, const model::HandModel& hand, cons
                                                                const dds::SampleInfo& info) {
                      if (!info.gone) on_order(order, info);
                    }));
+  shell_.subscribe(dds::operator_consent, std::function([this](const v1::OperatorConsent& consent,
+                                                               const dds::SampleInfo& info) {
+                     if (!info.gone) on_consent(consent, info);
+                   }));
+}
+
+Gatekeeper::~Gatekeeper() {
+  const Time now = shell_.now();
+  if (audit_) audit_->flush(now, true);
+  note(audit::Event::end, "", "", now);
 }
 
 void Gatekeeper::tick(Time now) {
+  watch_consent(now);
+  watch_lead(now);
+  if (audit_ && !audit_->flush(now)) shell_.status().drop("audit not written");
   if (gate_.stopped() && opens_)
     if (const auto here = robot_.where())
       robot_.go(gate_.go({open_.dof, here->X_WB}, now).place, now);
   if (shell_.lockstep()) return;
   look_around(now);
   tell(now);
+}
+
+Expected<void> Gatekeeper::open_audit(const std::string& name) {
+  const auto folder = shell_.config().path("safety.audit");
+  if (folder.empty()) return {};
+  auto log = audit::Log::open({.folder = folder, .name = name});
+  if (!log) return tl::unexpected(log.error());
+  audit_.emplace(std::move(*log));
+  note(audit::Event::begin, "", "", shell_.now());
+  return {};
+}
+
+void Gatekeeper::note(audit::Event event, const std::string& who, const std::string& what,
+                      Time now) {
+  if (audit_ && !audit_->write({now, state_.hand().to_string(), event, who, what}))
+    shell_.status().drop("audit not written");
+}
+
+void Gatekeeper::note_refused(std::string_view reason, const gate::WriterId& writer, Time now) {
+  if (audit_ && !audit_->refuse({now, state_.hand().to_string(), audit::Event::refused,
+                                 name_of(writer), std::string(reason)}))
+    shell_.status().drop("audit not written");
 }
 
 // --- commands
@@ -126,19 +166,27 @@ void Gatekeeper::on_command(const v1::HandCommand& message, const dds::SampleInf
   const bool ours = passed || passed.error() != gate::Refusal::another_hand;
   if (ours && (writers_.size() < max_writers || writers_.contains(info.participant)))
     writers_[info.participant] = now;
-  note_lead();
+  watch_lead(now);
   if (passed)
     obey(message, info, *passed, now);
   else
     refuse(passed.error(), info, now);
 }
 
-void Gatekeeper::note_lead() {
-  if (gate_.leads() == leads_) return;
-  shell_.status().count("leads", gate_.leads() - leads_);
-  leads_ = gate_.leads();
-  if (const auto leader = gate_.leader(shell_.now()))
-    log::info("{} leads the hand", name_of(*leader));
+/// Says and notes who leads, and who leads no more.
+void Gatekeeper::watch_lead(Time now) {
+  if (gate_.leads() != leads_) {
+    shell_.status().count("leads", gate_.leads() - leads_);
+    leads_ = gate_.leads();
+  }
+  const auto leader = gate_.leader(now);
+  if (leader == leader_) return;
+  if (leader_) note(audit::Event::lead_end, leader_name_, "", now);
+  leader_ = leader;
+  if (!leader) return;
+  leader_name_ = name_of(*leader);
+  log::info("{} leads the hand", leader_name_);
+  note(audit::Event::lead, leader_name_, "", now);
 }
 
 void Gatekeeper::count(std::string_view reason) {
@@ -152,8 +200,11 @@ void Gatekeeper::count(std::string_view reason) {
 
 void Gatekeeper::refuse(gate::Refusal refusal, const dds::SampleInfo& info, Time now) {
   count(to_string(refusal));
+  note_refused(to_string(refusal), info.participant, now);
   // What is for another hand, or comes while it must not move, is no fault of the commands.
-  if (refusal == gate::Refusal::another_hand || refusal == gate::Refusal::stopped) return;
+  if (refusal == gate::Refusal::another_hand || refusal == gate::Refusal::stopped ||
+      refusal == gate::Refusal::no_consent)
+    return;
   const Refused refused{std::string(to_string(refusal)), info.participant, now};
   (refusal == gate::Refusal::second_writer ? second_ : refused_) = refused;
 }
@@ -161,7 +212,10 @@ void Gatekeeper::refuse(gate::Refusal refusal, const dds::SampleInfo& info, Time
 void Gatekeeper::obey(const v1::HandCommand& message, const dds::SampleInfo& info,
                       const gate::Passed& passed, Time now) {
   for (std::size_t i = 0; i < gate::cuts; ++i)
-    if (passed.cut[i]) count(to_string(static_cast<gate::Cut>(i)));
+    if (passed.cut[i]) {
+      count(to_string(static_cast<gate::Cut>(i)));
+      note_refused(to_string(static_cast<gate::Cut>(i)), info.participant, now);
+    }
   if (auto obeyed = robot_.obey(message, passed.place, now); !obeyed) {
     count(obeyed.error().what);
     refused_ = Refused{obeyed.error().what, info.participant, now};
@@ -197,7 +251,10 @@ void Gatekeeper::on_order(const v1::OperatorCommand& order, const dds::SampleInf
   put(reply.message(), executed ? *executed : executed.error().message(), 255);
   // One that was refused may be given again, when clocks are known or the writer has come.
   if (executed) orders_.add(reply);
-  if (!executed) shell_.status().drop("order refused");
+  if (!executed) {
+    shell_.status().drop("order refused");
+    note(audit::Event::order_refused, by, executed.error().message(), now);
+  }
   replies_.publish(reply);
   if (!shell_.lockstep()) {
     look_around(now);
@@ -218,7 +275,7 @@ Expected<std::string> Gatekeeper::execute(const v1::OperatorCommand& order, cons
     if (by.starts_with("replayer@")) return fail("an order that is played is not obeyed", by);
   }
   return order.action() == v1::ACTION_RELEASE ? release(by, argument, now)
-                                              : take_over(argument, now);
+                                              : take_over(by, argument, now);
 }
 
 std::string Gatekeeper::stop(const std::string& by, const std::string& reason, Time now) {
@@ -229,6 +286,7 @@ std::string Gatekeeper::stop(const std::string& by, const std::string& reason, T
                        gate_.stopped()->reason.empty() ? "" : ": ", gate_.stopped()->reason);
   robot_.hold();
   shell_.status().count("stops");
+  note(audit::Event::stop, by, reason, now);
   log::warning("stopped by {}{}{}", by, reason.empty() ? "" : ": ", reason);
   return opens_ ? "stopped; the hand opens" : "stopped; the hand holds";
 }
@@ -242,11 +300,13 @@ Expected<std::string> Gatekeeper::release(const std::string& by, const std::stri
   put(state_.reason(), reason, 127);
   state_.since_ns(to_ns(now));
   last_obeyed_ = now;
+  note(audit::Event::release, by, reason, now);
   log::warning("released by {}: {}", by, reason);
   return "released";
 }
 
-Expected<std::string> Gatekeeper::take_over(const std::string& name, Time now) {
+Expected<std::string> Gatekeeper::take_over(const std::string& by, const std::string& name,
+                                            Time now) {
   std::erase_if(writers_, [&](const auto& entry) { return now - entry.second > noticed; });
   std::vector<gate::WriterId> meant;
   std::string heard;
@@ -261,9 +321,30 @@ Expected<std::string> Gatekeeper::take_over(const std::string& name, Time now) {
     return fail(meant.empty() ? "does not send robot/command" : "several are called so", name,
                 heard.empty() ? "nobody does" : "those who do: " + heard);
   robot_.hold();
+  note(audit::Event::takeover, by, name_of(meant.front()), now);
   gate_.take_over(meant.front(), now);
-  note_lead();
+  watch_lead(now);
   return name_of(meant.front()) + " leads";
+}
+
+// --- consent
+
+void Gatekeeper::on_consent(const v1::OperatorConsent& consent, const dds::SampleInfo& info) {
+  if (consent.hand().to_string() != state_.hand().to_string()) return;
+  // What somebody consented to then is not consent now.
+  if (!shell_.lockstep() && shell_.writer_of(info).starts_with("replayer@")) return;
+  const Time now = shell_.now();
+  gate_.consent(info.participant, consent.held(), from_ns(consent.stamp_ns()), now);
+  watch_consent(now);
+}
+
+/// Without consent the hand stays at once, not only when the next command is refused.
+void Gatekeeper::watch_consent(Time now) {
+  const bool has = gate_.has_consent(now);
+  if (consented_ && !has) robot_.hold();
+  if (consented_ != has && state_.deadman())
+    note(has ? audit::Event::consent : audit::Event::consent_end, "", "", now);
+  consented_ = has;
 }
 
 // --- what is told
@@ -277,6 +358,7 @@ std::string Gatekeeper::missing(Time now) const {
   if (const auto& stop = gate_.stopped())
     return fmt::format("stopped by {}{}{}; prehend release ends it", stop->by,
                        stop->reason.empty() ? "" : ": ", stop->reason);
+  if (!consented_) return "the deadman is not held; prehend consent holds it";
   const bool silent = now - last_obeyed_ > patience;
   // At the start commands are waited for, unless some come that cannot be obeyed.
   const bool refused = refused_ && now - refused_->at <= patience && (silent || last_obeyed_ > now);
@@ -309,6 +391,7 @@ void Gatekeeper::tell(Time now) {
   put(state.refused(), second ? name_of(second_->writer) : "", 127);
   const auto& stop = gate_.stopped();
   state.stopped(stop.has_value());
+  state.consent(state.deadman() && consented_);
   put(state.stopped_by(), stop ? stop->by : "", 127);
   if (stop) {
     put(state.reason(), stop->reason, 127);

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "common/audit/log.hpp"
 #include "common/base/error.hpp"
 #include "common/dds/participant.hpp"
 #include "common/gate/command_gate.hpp"
@@ -43,6 +44,8 @@ class Gatekeeper {
   /// From the service's tick.
   void tick(Time now);
 
+  ~Gatekeeper();
+
  private:
   Gatekeeper(service::Shell& shell, const model::HandModel& hand, const std::string& name,
              gate::CommandGate gate, Robot robot);
@@ -51,13 +54,20 @@ class Gatekeeper {
   void obey(const v1::HandCommand& message, const dds::SampleInfo& info, const gate::Passed& passed,
             Time now);
   void count(std::string_view reason);
-  void note_lead();
 
   void on_order(const v1::OperatorCommand& order, const dds::SampleInfo& info);
   Expected<std::string> execute(const v1::OperatorCommand& order, const std::string& by, Time now);
   std::string stop(const std::string& by, const std::string& reason, Time now);
   Expected<std::string> release(const std::string& by, const std::string& reason, Time now);
-  Expected<std::string> take_over(const std::string& name, Time now);
+  Expected<std::string> take_over(const std::string& by, const std::string& name, Time now);
+
+  void on_consent(const v1::OperatorConsent& consent, const dds::SampleInfo& info);
+  void watch_consent(Time now);
+  void watch_lead(Time now);
+  Expected<void> open_audit(const std::string& name);
+  /// A line of the audit log, where there is one.
+  void note(audit::Event event, const std::string& who, const std::string& what, Time now);
+  void note_refused(std::string_view reason, const gate::WriterId& writer, Time now);
 
   std::string missing(Time now) const;
   void look_around(Time now);
@@ -72,6 +82,7 @@ class Gatekeeper {
   };
 
   service::Shell& shell_;
+  std::optional<audit::Log> audit_;
   Robot robot_;
   gate::CommandGate gate_;
   gate::Place open_;    // dof: of the open hand
@@ -87,6 +98,9 @@ class Gatekeeper {
   std::string missing_;
   v1::GateState state_;  // as it was told last
   std::map<std::string, std::uint64_t, std::less<>> counts_;
+  std::optional<gate::WriterId> leader_;  // as noted
+  std::string leader_name_;
+  bool consented_ = false;
   std::uint64_t obeyed_ = 0;
   Time next_state_{};
 };

@@ -94,6 +94,10 @@ const std::vector<ConfigKey>& config_keys() {
 
       {"safety.on_stop", Text("hold"),
        "what the fingers do at a stop: hold (keep their squeeze) or open; the base stays"},
+      {"safety.deadman", false,
+       "robots move only while operator/consent is held (prehend consent)"},
+      {"safety.audit", Text(""),
+       "folder where robots log who led and stopped them; empty: nowhere"},
       {"safety.start_stopped", false, "a robot obeys nothing before its first release"},
   };
   return keys;

@@ -34,6 +34,7 @@ inline constexpr std::string_view agreed_file = "tests/architecture/agreed.hpp";
 inline constexpr std::array common_edges{
     Edge{"common/analysis", "common/base"},
     Edge{"common/analysis", "common/model"},
+    Edge{"common/audit", "common/base"},
     Edge{"common/clock", "common/base"},
     Edge{"common/clock", "idl"},
     Edge{"common/convert", "common/base"},
@@ -60,6 +61,7 @@ inline constexpr std::array common_edges{
     Edge{"common/recording/layout", "common/recording/mcap"},
     Edge{"common/recording/mcap", "common/base"},
     Edge{"common/recording/types", "common/base"},
+    Edge{"common/robot", "common/audit"},
     Edge{"common/robot", "common/base"},
     Edge{"common/robot", "common/convert"},
     Edge{"common/robot", "common/dds"},

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "tests/integration/safety_rig.hpp"
+#include "tests/integration/terminal.hpp"
 
 namespace prehend::integration {
 namespace {
@@ -35,6 +36,12 @@ class Stop : public SafetyRig {
     })) << "robot/state is silent";
     EXPECT_LT(moved, 1e-4);
     EXPECT_LT(turned, 1e-3);
+  }
+  /// One that waits for consent.
+  void start_hand_without_consent() {
+    simulation_.emplace(start("simulation", {"safety.deadman=true"}));
+    meet(commands_);
+    ASSERT_TRUE(wait(20, [&] { return heard_ > 0 && gate_.deadman(); }));
   }
   bool moves(double limit_s) {
     base_speed_ = dof_speed_ = 0;
@@ -157,6 +164,83 @@ TEST_F(Stop, IsThereFromTheStartWhereThatIsAsked) {
   EXPECT_TRUE(send(
       commands_, 20, [&] { return command(beginning); },
       [&] { return (base() - beginning).norm() < 1e-3; }));
+}
+
+// The space bar on a terminal, pressed as a keyboard repeats it.
+TEST_F(Stop, TheHandMovesOnlyWhileTheDeadmanIsHeld) {
+  start_hand_without_consent();
+  Terminal terminal(program("prehend"), with_lab({"consent", "--hold"}));
+  EXPECT_TRUE(terminal.shows("hold the space bar"));
+  double angle = 0;
+  const auto circling = [&] {
+    angle += 0.03;
+    return command(beginning + 0.1 * Vector3d(std::cos(angle), std::sin(angle), 0));
+  };
+  EXPECT_TRUE(send(
+      commands_, 20,
+      [&] {
+        terminal.press(" ");
+        return circling();
+      },
+      [&] { return gate_.consent() && status_.state() == v1::STATE_RUNNING; }))
+      << status_.message().to_string();
+  base_speed_ = 0;
+  EXPECT_TRUE(send(
+      commands_, 5,
+      [&] {
+        terminal.press(" ");
+        return circling();
+      },
+      [&] { return base_speed_ > 0.05; }));
+  // Let go: commands come all the same.
+  EXPECT_TRUE(send(commands_, 10, circling, [&] { return !gate_.consent(); }));
+  const Vector3d then = base();
+  const std::uint64_t refused = dropped("command without consent");
+  EXPECT_TRUE(send(commands_, 10, circling,
+                   [&] { return dropped("command without consent") > refused + 50; }));
+  EXPECT_LT((base() - then).norm(), 0.02);
+  EXPECT_TRUE(says("the deadman is not held")) << status_.message().to_string();
+  terminal.press("q");
+  EXPECT_EQ(terminal.end(), 0);
+}
+
+TEST_F(Stop, ConsentIsHeldByScriptsForATimeOrWithAProcess) {
+  start_hand_without_consent();
+  EXPECT_EQ(order({"consent"}).exit_code, 2);
+  EXPECT_EQ(order({"consent", "--hold"}).exit_code, 2) << "no terminal";
+  auto process = start_program("prehend", with_lab({"consent", "--while-pid", "1"}));
+  EXPECT_TRUE(wait(20, [&] { return gate_.consent(); }));
+  process.signal(SIGKILL);
+  EXPECT_TRUE(wait(5, [&] { return !gate_.consent(); })) << "it must not outlive who holds it";
+  EXPECT_EQ(order({"consent", "--for", "0.3"}).exit_code, 0);
+  EXPECT_TRUE(wait(5, [&] { return !gate_.consent(); }));
+}
+
+// Who led, stopped and let go is in the log, also when the service is killed.
+TEST_F(Stop, TheAuditLogTellsWhoDidWhat) {
+  const std::string folder = (folder_ / "audit").string();
+  start_hand({"safety.audit=" + folder});
+  ordered({"stop", "--reason", "a noise"});
+  EXPECT_TRUE(send(
+      commands_, 5, [&] { return command(beginning); },
+      [&] { return dropped("command while stopped") > 10; }));
+  ordered({"release", "--reason", "it was the door"});
+  simulation_->signal(SIGKILL);
+  ASSERT_TRUE(simulation_->wait(seconds(5)));
+  const Answer answer = order({"audit", "--set", "safety.audit=" + folder, "--json"});
+  ASSERT_EQ(answer.exit_code, 0) << answer.log;
+  std::map<std::string, json> events;
+  const json document = json::parse(answer.output);
+  for (const json& event : document["events"]) events.emplace(event["event"], event);
+  EXPECT_TRUE(events.contains("begin"));
+  EXPECT_TRUE(events.contains("lead"));
+  ASSERT_TRUE(events.contains("stop") && events.contains("release") && events.contains("refused"));
+  EXPECT_EQ(events["stop"]["what"], "a noise");
+  EXPECT_EQ(events["release"]["what"], "it was the door");
+  EXPECT_EQ(events["refused"]["what"], "command while stopped");
+  EXPECT_EQ(order({"audit", folder + "/hand.jsonl"}).exit_code, 0);
+  EXPECT_EQ(order({"audit"}).exit_code, 2) << "there is no log";
+  EXPECT_EQ(order({"audit", folder + "/none.jsonl"}).exit_code, 3);
 }
 
 TEST_F(Stop, TheLeadIsTakenOverByName) {

@@ -4,10 +4,12 @@
 
 #include "common/base/log.hpp"
 #include "services/cli/tools/arguments.hpp"
+#include "services/cli/tools/audit/audit_command.hpp"
 #include "services/cli/tools/demo_command.hpp"
 #include "services/cli/tools/dispatch.hpp"
 #include "services/cli/tools/doctor/doctor_command.hpp"
 #include "services/cli/tools/keys/keys_command.hpp"
+#include "services/cli/tools/orders/consent_command.hpp"
 #include "services/cli/tools/orders/release_command.hpp"
 #include "services/cli/tools/orders/stop_command.hpp"
 #include "services/cli/tools/orders/takeover_command.hpp"
@@ -29,6 +31,8 @@ constexpr Command commands[] = {
     {"status", cli::status_command, "who is there and how they fare"},
     {"stop", cli::stop_command, "stop the robots of a rig, or of all, until they are released"},
     {"release", cli::release_command, "end a stop"},
+    {"consent", cli::consent_command, "hold the deadman of a robot hand"},
+    {"audit", cli::audit_command, "who led, stopped and released robot hands"},
     {"takeover", cli::takeover_command, "say whose commands a robot hand obeys"},
     {"discovery-server", cli::server_command,
      "by which services find each other without multicast"},

@@ -213,6 +213,32 @@ TEST(Gate, AStoppedHandOpensWithinItsLimits) {
   EXPECT_LT(ms, 1000);
 }
 
+// The deadman: 100 ms after it was held last, or as soon as it is let go, nothing is obeyed.
+TEST(Gate, ObeysOnlyWithConsentWhereThatIsAsked) {
+  auto gate =
+      CommandGate::create(barrett(), {.hand = "hand", .deadman = true}, limits_of(barrett()))
+          .value();
+  const WriterId anna = writer(8), ben = writer(9);
+  EXPECT_EQ(refusal(gate, command(barrett(), 1, 0), at(0)), Refusal::no_consent);
+  gate.consent(anna, true, at(10), at(10));
+  EXPECT_EQ(refusal(gate, command(barrett(), 1, 110), at(110)), std::nullopt);
+  EXPECT_EQ(refusal(gate, command(barrett(), 1, 111), at(111)), Refusal::no_consent);
+  gate.consent(anna, true, at(120), at(120));
+  gate.consent(ben, false, at(121), at(121));
+  EXPECT_EQ(refusal(gate, command(barrett(), 1, 130), at(130)), std::nullopt);
+  gate.consent(anna, false, at(131), at(131));
+  EXPECT_EQ(refusal(gate, command(barrett(), 1, 140), at(140)), Refusal::no_consent);
+  gate.consent(anna, true, at(0), at(300));  // consent of then
+  EXPECT_EQ(refusal(gate, command(barrett(), 1, 300), at(300)), Refusal::no_consent);
+  gate.consent(anna, true, at(125), at(310));  // late
+  EXPECT_EQ(refusal(gate, command(barrett(), 1, 310), at(310)), Refusal::no_consent)
+      << "what comes late must not undo that it was let go";
+  gate.consent(anna, true, at(320), at(320));
+  gate.consent(anna, true, at(320), at(400));  // doubled
+  EXPECT_EQ(refusal(gate, command(barrett(), 1, 420), at(420)), std::nullopt);
+  EXPECT_EQ(refusal(gate, command(barrett(), 1, 421), at(421)), Refusal::no_consent);
+}
+
 TEST(Gate, IsNotMadeWithLimitsThatAllowNothing) {
   Limits limits = limits_of(barrett());
   limits.base.speed = 0;

@@ -19,16 +19,9 @@ namespace prehend::cli {
 namespace {
 
 /// Between two tries, until all have answered: who is only just being discovered hears a later one.
-constexpr Duration period = std::chrono::milliseconds(50);
+constexpr Duration order_period = std::chrono::milliseconds(50);
 /// Once all gates that are known have answered, others may still turn up for so long.
 constexpr Duration grace = std::chrono::milliseconds(300);
-
-/// Who gives the order, for those who read of it later; a service's name is 64 characters at most.
-std::string operator_name() {
-  const char* user = std::getenv("USER");
-  std::string name = user && *user ? user : std::to_string(::getuid());
-  return "operator-" + name.substr(0, 40);
-}
 
 /// A gate that was heard of in the rig.
 struct Answer {
@@ -53,7 +46,7 @@ class Giving {
                     std::function([this](const v1::GateState& state, const dds::SampleInfo& info) {
                       if (!info.gone) answer(info).state = state;
                     }));
-    shell.on_tick(period, [this](Time now) { tick(now); });
+    shell.on_tick(order_period, [this](Time now) { tick(now); });
     shell.status().running();
   }
 
@@ -140,6 +133,12 @@ void Order::add_to(CLI::App& app) {
       ->capture_default_str()
       ->check(CLI::Range(0.1, 3600.0));
   app.add_flag("--json", json, "one JSON document on standard output");
+}
+
+std::string operator_name() {
+  const char* user = std::getenv("USER");
+  const std::string name = user && *user ? user : std::to_string(::getuid());
+  return "operator-" + name.substr(0, 40);  // of the 64 characters of a service's name
 }
 
 int give(const Order& order) {

@@ -26,6 +26,9 @@ struct Order {
   void add_to(CLI::App& app);
 };
 
+/// Who gives an order, for those who read of it later: operator-USER.
+std::string operator_name();
+
 /// Gives the order until every gate that is there has answered, and says what they answered. The
 /// exit code: 0 when all did what was asked, 1 when one refused or none answered.
 int give(const Order& order);

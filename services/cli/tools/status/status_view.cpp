@@ -200,6 +200,7 @@ std::string StatusView::gates(Time now) const {
     std::string says =
         gate.leader().size() == 0 ? "nobody leads" : gate.leader().to_string() + " leads";
     if (gate.refused().size() > 0) says += "; " + gate.refused().to_string() + " is refused";
+    if (gate.deadman() && !gate.consent()) says += "; the deadman is not held";
     if (gate.stopped())
       says = fmt::format("STOPPED by {}{}{}", gate.stopped_by().to_string(),
                          gate.reason().size() == 0 ? "" : ": ", gate.reason().to_string());
@@ -222,6 +223,8 @@ std::string StatusView::json(Time now) const {
                      {"stopped", gate.stopped()},
                      {"stopped_by", gate.stopped_by().to_string()},
                      {"reason", gate.reason().to_string()},
+                     {"deadman", gate.deadman()},
+                     {"consent", gate.consent()},
                      {"obeyed", gate.obeyed()},
                      {"counts", counts}});
   }

@@ -13,11 +13,11 @@
 #include "common/service/arguments.hpp"
 #include "common/service/membership.hpp"
 #include "common/service/shell.hpp"
+#include "common/tool/keyboard.hpp"
 #include "services/recorder/core/ease_in.hpp"
 #include "services/recorder/core/topic_filter.hpp"
 #include "services/recorder/service/operator_link.hpp"
 #include "services/recorder/service/player.hpp"
-#include "services/recorder/tools/terminal/keyboard.hpp"
 #include "services/recorder/tools/terminal/progress_line.hpp"
 
 namespace prehend::recorder {
@@ -205,10 +205,11 @@ class Replay {
     if (key == 'b') say("burst 10");
     if (key == 'q') say("stop");
     if (key == 'l') say(figures.loops ? "loop off" : "loop on");
-    if (key == Keyboard::up) say(fmt::format("rate {}", figures.rate * 1.25));
-    if (key == Keyboard::down) say(fmt::format("rate {}", figures.rate / 1.25));
-    if (key == Keyboard::right) say(fmt::format("seek {}", figures.position + 5));
-    if (key == Keyboard::left) say(fmt::format("seek {}", std::max(0.0, figures.position - 5)));
+    if (key == tool::Keyboard::up) say(fmt::format("rate {}", figures.rate * 1.25));
+    if (key == tool::Keyboard::down) say(fmt::format("rate {}", figures.rate / 1.25));
+    if (key == tool::Keyboard::right) say(fmt::format("seek {}", figures.position + 5));
+    if (key == tool::Keyboard::left)
+      say(fmt::format("seek {}", std::max(0.0, figures.position - 5)));
   }
 
   void tick(Time now) {
@@ -251,7 +252,7 @@ class Replay {
   std::optional<Easing> easing_;
   Time start_;
   ProgressLine progress_;
-  Keyboard keyboard_;
+  tool::Keyboard keyboard_;
   OperatorLink operator_;
   std::uint64_t counted_ = 0;
   std::jthread thread_;
