@@ -6,6 +6,7 @@
 
 #include "common/convert/convert.hpp"
 #include "common/gate/command_gate.hpp"
+#include "idl/Robot.h"
 #include "tests/support/hands.hpp"
 
 using namespace prehend;

@@ -65,21 +65,19 @@ class States : public eprosima::fastdds::dds::DataReaderListener {
     }
   }
   Time moved() {
-    return with_lock([this] { return moved_; });
+    const std::scoped_lock lock(mutex_);
+    return moved_;
   }
   Time heard() {
-    return with_lock([this] { return heard_; });
+    const std::scoped_lock lock(mutex_);
+    return heard_;
   }
   std::vector<double> hops() {
-    return with_lock([this] { return hops_; });
+    const std::scoped_lock lock(mutex_);
+    return hops_;
   }
 
  private:
-  template <class F>
-  auto with_lock(F get) {
-    const std::scoped_lock lock(mutex_);
-    return get();
-  }
   std::mutex mutex_;
   std::optional<dds::Reader<v1::HandState>> reader_;
   Vector3d p_ = Vector3d::Zero();
@@ -152,7 +150,7 @@ int run(bool json, int rounds) {
   wait_until([&] { return matched(commands) && matched(orders); }, "a simulation");
   std::atomic<bool> ended = false;
   std::thread stream([&] { command(commands, ended); });
-  const auto order = [&, number = 0](v1::OperatorAction action) mutable {
+  auto order = [&, number = 0](v1::OperatorAction action) mutable {
     v1::OperatorCommand message;
     message.id(fmt::format("order-{}", ++number).c_str());
     message.action(action);

@@ -123,9 +123,15 @@ TEST_F(Stop, OldOrdersStopButDoNotRelease) {
     order.action(action);
     order.target("gate");
     order.argument("of then");
-    orders.write(order);
-    return hear<v1::OperatorReply>(
-        replies, 10, [&](const v1::OperatorReply& reply) { return reply.id().to_string() == id; });
+    // Again and again: the writer of the replies may not have met us yet.
+    std::optional<v1::OperatorReply> reply;
+    eventually(10, [&] {
+      orders.write(order);
+      reply = hear<v1::OperatorReply>(
+          replies, 0.2, [&](const v1::OperatorReply& one) { return one.id().to_string() == id; });
+      return reply.has_value();
+    });
+    return reply;
   };
   const auto stopped = give("stop", v1::ACTION_STOP);
   ASSERT_TRUE(stopped);
