@@ -68,14 +68,14 @@ v1::ClockBeacon Peers::beacon(Time now, Duration step) {
 }
 
 Duration Peers::ahead(const Participant& writer, Time now) const {
-  const Peer* peer = find(writer);
+  const Peer* peer = find_measured(writer);
   const auto offset = peer ? peer->filter.at(now) : std::nullopt;
   return offset && std::chrono::abs(offset->offset) > offset->uncertainty ? offset->offset
                                                                           : Duration::zero();
 }
 
 Duration Peers::system_ahead(const Participant& writer, Time now) const {
-  const Peer* peer = find(writer);
+  const Peer* peer = find_measured(writer);
   return ahead(writer, now) + (peer ? peer->step : Duration::zero());
 }
 
@@ -90,15 +90,28 @@ std::optional<Offset> Peers::offset(const std::string& service, Time now) const 
 }
 
 /// The participant itself, else another one of its process: the replayer plays through its own.
-const Peers::Peer* Peers::find(const Participant& writer) const {
-  const Peer* same_process = nullptr;
-  for (const auto& [key, peer] : peers_) {
-    if (!peer.filter.at(peer.received)) continue;
-    if (key.second == writer) return &peer;
-    if (std::equal(writer.begin(), writer.begin() + process_bytes, key.second.begin()))
-      same_process = &peer;
+template <class Wanted>
+const Peers::Entry* Peers::find(const Participant& writer, Wanted wanted) const {
+  const Entry* same_process = nullptr;
+  for (const Entry& entry : peers_) {
+    const Participant& participant = entry.first.second;
+    if (!wanted(entry.second)) continue;
+    if (participant == writer) return &entry;
+    if (std::equal(writer.begin(), writer.begin() + process_bytes, participant.begin()))
+      same_process = &entry;
   }
   return same_process;
+}
+
+const Peers::Peer* Peers::find_measured(const Participant& writer) const {
+  const Entry* entry =
+      find(writer, [](const Peer& peer) { return peer.filter.at(peer.received).has_value(); });
+  return entry ? &entry->second : nullptr;
+}
+
+std::string Peers::service_of(const Participant& writer) const {
+  const Entry* entry = find(writer, [](const Peer&) { return true; });
+  return entry ? entry->first.first : std::string();
 }
 
 void Peers::forget(Time now) {

@@ -41,6 +41,8 @@ class Peers {
   Duration ahead(const Participant& writer, Time now) const;
   /// The same for the times that DDS itself notes, which follow steps of the system's clock.
   Duration system_ahead(const Participant& writer, Time now) const;
+  /// The service of this writer; empty: not known.
+  std::string service_of(const Participant& writer) const;
   /// By the key of the service, the best known of those who claim it; nullopt: not known.
   std::optional<Offset> offset(const std::string& service, Time now) const;
 
@@ -50,7 +52,10 @@ class Peers {
     Duration step{};
     OffsetFilter filter;
   };
-  const Peer* find(const Participant& writer) const;
+  using Entry = std::pair<const std::pair<std::string, Participant>, Peer>;
+  template <class Wanted>
+  const Entry* find(const Participant& writer, Wanted wanted) const;
+  const Peer* find_measured(const Participant& writer) const;
   void forget(Time now);
 
   std::string service_, host_;

@@ -46,11 +46,12 @@ inline constexpr Topic<v1::ObjectDetectionPubSubType> object_detection{
      .rate = "as camera/image",
      .remark = "disposed when gone"}};
 
+/// Ownership is shared: an exclusive reader would drop a second writer without a word, while the
+/// gate of the robot (common/gate) refuses and names it.
 inline constexpr Topic<v1::HandCommandPubSubType> robot_command{
     {.name = "robot/command",
      .qos = {.writer_depth = 64,
              .reader_depth = 1,
-             .exclusive_ownership = true,
              .deadline = std::chrono::milliseconds(100),
              .lifespan = std::chrono::milliseconds(200)},
      .writers = Role::mapping,
@@ -64,6 +65,16 @@ inline constexpr Topic<v1::HandStatePubSubType> robot_state{
      .readers = Role::mapping | Role::replayer,
      .open = true,
      .rate = "100 Hz"}};
+
+inline constexpr Topic<v1::GateStatePubSubType> robot_gate{
+    {.name = "robot/gate",
+     .qos = {.transient_local = true},
+     .writers = Role::simulation | Role::robot,
+     .readers = Role::operator_,
+     .open = true,
+     .content = Content::process,
+     .rate = "on change, 1 Hz",
+     .remark = "not in lockstep"}};
 
 inline constexpr Topic<v1::SceneStatePubSubType> scene_state{{.name = "scene/state",
                                                               .qos = {.transient_local = true},
@@ -88,17 +99,25 @@ inline constexpr Topic<v1::OperatorCommandPubSubType> operator_command{
     {.name = "operator/command",
      .qos = {.writer_depth = 0, .reader_depth = 0},
      .writers = Role::operator_,
-     .readers = Role::mapping | Role::recorder | Role::replayer,
+     .readers = Role::mapping | Role::simulation | Role::robot | Role::recorder | Role::replayer,
      .content = Content::order,
      .rate = "on demand"}};
 
 inline constexpr Topic<v1::OperatorReplyPubSubType> operator_reply{
     {.name = "operator/reply",
      .qos = {.writer_depth = 0, .reader_depth = 0},
-     .writers = Role::mapping | Role::recorder | Role::replayer,
+     .writers = Role::mapping | Role::simulation | Role::robot | Role::recorder | Role::replayer,
      .readers = Role::operator_,
      .content = Content::order,
      .rate = "a command"}};
+
+inline constexpr Topic<v1::OperatorConsentPubSubType> operator_consent{
+    {.name = "operator/consent",
+     .qos = {.reliable = false, .deadline = std::chrono::milliseconds(100)},
+     .writers = Role::operator_,
+     .readers = Role::simulation | Role::robot,
+     .content = Content::order,
+     .rate = "50 Hz while asked"}};
 
 inline constexpr Topic<v1::LabClockPubSubType> lab_clock{
     {.name = "lab/clock",
@@ -135,9 +154,10 @@ inline constexpr Topic<v1::ServiceStatusPubSubType> service_status{
 /// In the order of the table in idl/README.md. What is not here has no reader and no writer
 /// (a static_assert of Participant).
 inline constexpr std::tuple typed_topics{
-    glove_frame,    hand_posture, camera_image, object_detection, robot_command,
-    robot_state,    scene_state,  object_state, grasp_report,     operator_command,
-    operator_reply, lab_clock,    lab_progress, lab_beacon,       service_status};
+    glove_frame,      hand_posture,   camera_image,     object_detection, robot_command,
+    robot_state,      robot_gate,     scene_state,      object_state,     grasp_report,
+    operator_command, operator_reply, operator_consent, lab_clock,        lab_progress,
+    lab_beacon,       service_status};
 
 template <class PubSub>
 inline constexpr bool is_listed = std::apply(

@@ -112,7 +112,7 @@ class HandLoader {
   Expected<void> load(const toml::table& root) {
     if (auto known = only_keys(root,
                                {"name", "grasp_frame", "reach", "dof", "fingertip", "torque",
-                                "breakaway", "materials", "postures"},
+                                "breakaway", "materials", "postures", "gate"},
                                {});
         !known)
       return known;
@@ -122,7 +122,8 @@ class HandLoader {
     for (const auto& step :
          {&HandLoader::read_dofs, &HandLoader::couple, &HandLoader::read_torques,
           &HandLoader::read_breakaways, &HandLoader::read_materials, &HandLoader::read_fingertips,
-          &HandLoader::read_grasp_frame, &HandLoader::read_reach, &HandLoader::read_postures})
+          &HandLoader::read_grasp_frame, &HandLoader::read_reach, &HandLoader::read_postures,
+          &HandLoader::read_gate})
       if (auto done = (this->*step)(root); !done) return done;
     return {};
   }
@@ -360,6 +361,42 @@ class HandLoader {
       if (!read) return tl::unexpected(read.error());
       if (!(*read > 0)) return fail("must be positive", std::string("reach.") + key);
       *length = *read;
+    }
+    return {};
+  }
+
+  Expected<void> read_gate(const toml::table& root) {
+    const auto table = table_of(root, "gate");
+    if (!table) return tl::unexpected(table.error());
+    if (auto known = only_keys(*table, {"lower", "upper", "velocity", "acceleration"}, "gate");
+        !known)
+      return known;
+    HandGate& gate = hand.gate_;
+    for (const auto& [key, values] :
+         std::initializer_list<std::pair<const char*, std::optional<VectorXd>*>>{
+             {"lower", &gate.lower},
+             {"upper", &gate.upper},
+             {"velocity", &gate.velocity},
+             {"acceleration", &gate.acceleration}}) {
+      if (!table->contains(key)) continue;
+      const auto read = numbers(table->get(key), hand.dofs_.size(), std::string("gate.") + key);
+      if (!read) return tl::unexpected(read.error());
+      *values = *read;
+    }
+    return check_gate();
+  }
+
+  Expected<void> check_gate() const {
+    for (const auto* values : {&hand.gate_.velocity, &hand.gate_.acceleration})
+      if (*values && !((*values)->array() > 0).all())
+        return fail("velocity and acceleration must be positive", "gate");
+    for (std::size_t k = 0; k < hand.dofs_.size(); ++k) {
+      const auto i = static_cast<Eigen::Index>(k);
+      const HandDof& dof = hand.dofs_[k];
+      const double lower = hand.gate_.lower ? (*hand.gate_.lower)[i] : dof.lower;
+      const double upper = hand.gate_.upper ? (*hand.gate_.upper)[i] : dof.upper;
+      if (!(lower < upper) || lower < dof.lower - tolerance || upper > dof.upper + tolerance)
+        return fail("needs lower < upper, within the limits of DoF " + dof.name, "gate");
     }
     return {};
   }

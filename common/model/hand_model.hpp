@@ -82,6 +82,11 @@ struct HandFingertip {
   std::optional<Finger> human;
 };
 
+/// What the gate lets through, as far as hand.toml says so: values of all DoFs, in their units.
+struct HandGate {
+  std::optional<Eigen::VectorXd> lower, upper, velocity, acceleration;
+};
+
 /// The folder of a hand: what has a slash is a path, anything else a name in models/hands.
 std::filesystem::path hand_directory(const std::string& hand);
 
@@ -116,6 +121,7 @@ class HandModel {
   const std::map<std::string, Eigen::VectorXd>& postures() const { return postures_; }
   const Pose& X_BG() const { return X_BG_; }  // grasp frame, see placement.hpp
   const Reach& reach() const { return reach_; }
+  const HandGate& gate() const { return gate_; }
 
   /// Joint angles of given dof values. Sizes: dofs() -> joints().
   Eigen::VectorXd joint_angles(const Eigen::VectorXd& dof) const;
@@ -135,6 +141,7 @@ class HandModel {
   std::map<std::string, Eigen::VectorXd> postures_;
   Pose X_BG_ = Pose::Identity();
   Reach reach_;
+  HandGate gate_;
 };
 
 }  // namespace prehend::model

@@ -103,6 +103,11 @@ ClockSync::Ahead ClockSync::ahead(const dds::SampleInfo& info) const {
   return {peers_.ahead(info.participant, now), peers_.system_ahead(info.participant, now)};
 }
 
+std::string ClockSync::service_of(const dds::SampleInfo& info) const {
+  const std::scoped_lock lock(mutex_);
+  return peers_.service_of(info.participant);
+}
+
 Duration ClockSync::clock_step() const {
   const std::scoped_lock lock(mutex_);
   return step_;

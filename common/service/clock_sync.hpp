@@ -24,6 +24,8 @@ class ClockSync {
     Duration stamps{}, sent{};  // of what the peer stamps, and of what its system clock stamps
   };
   Ahead ahead(const dds::SampleInfo& info) const;
+  /// The service that wrote; empty: not known.
+  std::string service_of(const dds::SampleInfo& info) const;
   /// How far the system's clock was set since the start; this process keeps its own.
   Duration clock_step() const;
 

@@ -88,6 +88,23 @@ const std::vector<ConfigKey>& config_keys() {
       {"simulation.hand_name", Text("hand"), "key of robot/command"},
       {"simulation.rate", 500.0, "Hz, physics steps"},
       {"simulation.state_rate", 100.0, "Hz, robot/state and object/state"},
+
+      {"gate.max_age", 0.2, "s: robots refuse commands that are older, or as far ahead"},
+      {"gate.max_silence", 0.3, "s without a command, after which another writer may lead"},
+      {"gate.box", Numbers{-10, -10, -10, 10, 10, 10},
+       "m, on the table: where the base may be, lower x, y, z, upper x, y, z"},
+      {"gate.base_speed", 1.2, "m/s, of the base"},
+      {"gate.base_acceleration", 300.0, "m/s², of the base"},
+      {"gate.base_turn_speed", 3.6, "rad/s, of the base"},
+      {"gate.base_turn_acceleration", 900.0, "rad/s², of the base"},
+
+      {"safety.on_stop", Text("hold"),
+       "what the fingers do at a stop: hold (keep their squeeze) or open; the base stays"},
+      {"safety.deadman", false,
+       "robots move only while operator/consent is held (prehend consent)"},
+      {"safety.audit", Text(""),
+       "folder where robots log who led and stopped them; empty: nowhere"},
+      {"safety.start_stopped", false, "a robot obeys nothing before its first release"},
   };
   return keys;
 }

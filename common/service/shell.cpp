@@ -1,5 +1,7 @@
 #include "common/service/shell.hpp"
 
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <atomic>
@@ -219,6 +221,10 @@ bool Shell::lockstep() const {
 Time Shell::now() const {
   return state_->lockstep ? state_->cycles->now() : process_now();
 }
+std::string Shell::writer_of(const dds::SampleInfo& info) const {
+  std::string service = state_->clock_sync ? state_->clock_sync->service_of(info) : std::string();
+  return service.empty() ? fmt::format("{:02x}", fmt::join(info.participant, ".")) : service;
+}
 dds::Participant& Shell::participant() {
   return *state_->participant;
 }
@@ -337,7 +343,7 @@ Expected<Exit> Shell::run() {
     state.participant.reset();
     state.restart.now();
   }
-  log::info("stopped");
+  if (state.options.restarts) log::info("stopped");
   return state.exit.load();
 }
 

@@ -51,6 +51,10 @@ class Shell {
   /// the same clock, wherever it comes from (common/clock).
   Time now() const;
 
+  /// Who wrote a sample, as its status calls it; else, and always in lockstep, the identity of its
+  /// participant.
+  std::string writer_of(const dds::SampleInfo& info) const;
+
   /// A function that publishes a sample on the topic, and one that disposes an instance by its key.
   /// A topic that cannot be joined makes run() fail, as it does for subscribe().
   template <class T>

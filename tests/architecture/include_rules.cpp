@@ -24,8 +24,9 @@ std::string layer_of(std::string_view path) {
   return layer.size() > service.size() + 1 ? layer.substr(service.size() + 1) : "";
 }
 
+// The gate is one, too, though every robot's service shares it.
 bool is_core(std::string_view path) {
-  return layer_of(path) == "core";
+  return layer_of(path) == "core" || path.starts_with("common/gate/");
 }
 
 bool layer_may_include(std::string_view from, std::string_view to) {

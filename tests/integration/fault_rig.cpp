@@ -73,7 +73,6 @@ void FaultRig::SetUp() {
   if (!hosts_) GTEST_SKIP() << skip_;
   states_.emplace(reader(dds::robot_state));
   grasps_.emplace(reader(dds::grasp_report));
-  commanded_.emplace(reader(dds::robot_command));
   health_.emplace(reader(dds::service_status));
   replies_.emplace(reader(dds::operator_reply));
   commands_.emplace(writer(dds::operator_command));
@@ -108,6 +107,14 @@ void FaultRig::start_lab() {
   })) << "the lab does not start";
 }
 
+std::uint64_t FaultRig::leads() const {
+  const auto simulation = statuses_.find("simulation");
+  if (simulation != statuses_.end())
+    for (const auto& rate : simulation->second.rates())
+      if (rate.name().to_string() == "leads") return rate.total();
+  return 0;
+}
+
 bool FaultRig::operate(double limit_s, const std::function<bool()>& condition) {
   return eventually(limit_s, [&] {
     for (auto& sample : states_->take())
@@ -117,11 +124,6 @@ bool FaultRig::operate(double limit_s, const std::function<bool()>& condition) {
       }
     for (auto& sample : grasps_->take())
       if (!sample.info.gone) reports_.insert(sample.data.sequence_number());
-    for (auto& sample : commanded_->take())
-      if (!sample.info.gone) {
-        const auto& leader = sample.info.participant;
-        if (leaders_.empty() || leaders_.back() != leader) leaders_.push_back(leader);
-      }
     for (auto& sample : health_->take())
       if (!sample.info.gone) statuses_[sample.data.name().to_string()] = sample.data;
     for (auto& sample : replies_->take())

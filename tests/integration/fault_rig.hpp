@@ -79,8 +79,8 @@ class FaultRig : public OnHosts, public Rig {
   std::map<std::string, v1::ServiceStatus> statuses_;  // last of each name
   std::set<std::uint64_t> reports_;                    // their numbers
   bool orders_ = true;                                 // give any
-  /// Whose commands came, one entry for each change.
-  std::vector<std::array<std::uint8_t, 12>> leaders_;
+  /// How often the lead over the hand has changed, by the simulation's own count.
+  std::uint64_t leads() const;
 
  private:
   std::uint64_t given_ = 0;
@@ -89,7 +89,6 @@ class FaultRig : public OnHosts, public Rig {
   std::int64_t next_order_ = 0;
   std::optional<dds::Reader<v1::HandState>> states_;
   std::optional<dds::Reader<v1::GraspReport>> grasps_;
-  std::optional<dds::Reader<v1::HandCommand>> commanded_;
   std::optional<dds::Reader<v1::ServiceStatus>> health_;
   std::optional<dds::Reader<v1::OperatorReply>> replies_;
   std::optional<dds::Writer<v1::OperatorCommand>> commands_;

@@ -5,10 +5,15 @@
 #include "common/base/log.hpp"
 #include "services/cli/tools/alive_command.hpp"
 #include "services/cli/tools/arguments.hpp"
+#include "services/cli/tools/audit/audit_command.hpp"
 #include "services/cli/tools/demo_command.hpp"
 #include "services/cli/tools/dispatch.hpp"
 #include "services/cli/tools/doctor/doctor_command.hpp"
 #include "services/cli/tools/keys/keys_command.hpp"
+#include "services/cli/tools/orders/consent_command.hpp"
+#include "services/cli/tools/orders/release_command.hpp"
+#include "services/cli/tools/orders/stop_command.hpp"
+#include "services/cli/tools/orders/takeover_command.hpp"
 #include "services/cli/tools/scene_command.hpp"
 #include "services/cli/tools/server_command.hpp"
 #include "services/cli/tools/status/status_command.hpp"
@@ -26,6 +31,11 @@ constexpr Command commands[] = {
     {"demo", cli::demo_command, "play a demonstration through all services and judge the grasp"},
     {"status", cli::status_command, "who is there and how they fare"},
     {"alive", cli::alive_command, "does a service on this host answer for itself"},
+    {"stop", cli::stop_command, "stop the robots of a rig, or of all, until they are released"},
+    {"release", cli::release_command, "end a stop"},
+    {"consent", cli::consent_command, "hold the deadman of a robot hand"},
+    {"audit", cli::audit_command, "who led, stopped and released robot hands"},
+    {"takeover", cli::takeover_command, "say whose commands a robot hand obeys"},
     {"discovery-server", cli::server_command,
      "by which services find each other without multicast"},
     {"doctor", cli::doctor_command, "what is wrong with this machine's set-up, and the mend"},

@@ -44,9 +44,13 @@ Expected<std::unique_ptr<Player>> Player::create(Tape tape, dds::Participant& pa
     if (const auto other = made->options_.remap.find(topic.name);
         other != made->options_.remap.end())
       topic.name = other->second;
+    // So may be its ownership, which both ends must have alike.
+    if (const dds::TopicInfo* contract = dds::find_topic(topic.name))
+      topic.qos.exclusive_ownership = contract->qos.exclusive_ownership;
+    const dds::TopicQos recorded = topic.qos;
     for (const auto& [pattern, text] : made->options_.qos) {
       if (::fnmatch(pattern.c_str(), stream->topic.name.c_str(), 0) != 0) continue;
-      const auto qos = recording::qos_of(text, stream->topic.qos);
+      const auto qos = recording::qos_of(text, recorded);
       if (!qos) return tl::unexpected(qos.error());
       topic.qos = *qos;
     }

@@ -89,8 +89,22 @@ Expected<void> Simulation::accept(const Command& command, Time now) {
     return fail("command outside limits", taken.error().where, taken.error().hint);
   command_ = command;
   accepted_ = now;
-  holding_ = false;
+  holding_ = braking_ = false;
   return {};
+}
+
+void Simulation::hold() {
+  world_->hold_still();
+  holding_ = braking_ = true;
+}
+
+/// The base must not come back to where it was when it was told to stay, 5 cm behind at 1 m/s.
+void Simulation::brake() {
+  const Pose before = world_->commanded_base();
+  world_->hold_still();
+  const Pose& now = world_->commanded_base();
+  braking_ = (now.translation() - before.translation()).norm() > 1e-6 ||
+             angle_between(now.linear(), before.linear()) > 1e-6;
 }
 
 void Simulation::approach(const Command& command) {
@@ -126,6 +140,7 @@ bool Simulation::step() {
     holding_ = true;
   }
   world_->step();
+  if (braking_) brake();
   if (const auto body = detector_.update(*world_); body && command_) {
     const grasping::HandMotion motion = world_->hand_motion();
     Closure closure;

@@ -46,6 +46,9 @@ class Simulation {
   /// away ones.
   Expected<void> accept(const Command& command, Time now);
 
+  /// Stops as fast as the arm can, and stays there, with its squeeze, until the next command.
+  void hold();
+
   /// Lets the world follow the clock: drops what it is behind by more than max_behind (live) or
   /// nothing (lockstep) and returns the time dropped. The first call sets the world's time.
   Duration follow(Time now, bool lockstep);
@@ -63,6 +66,7 @@ class Simulation {
   Simulation(const model::HandModel& hand, const Options& options,
              std::unique_ptr<grasping::World> world);
   void approach(const Command& command);
+  void brake();
 
   const model::HandModel& hand_;
   Options options_;
@@ -72,7 +76,7 @@ class Simulation {
   Time time_{}, goal_{};
   std::optional<Command> command_;  // the last accepted one
   Time accepted_{};
-  bool holding_ = true;
+  bool holding_ = true, braking_ = false;
   std::optional<Closure> closure_;
   std::uint64_t closures_ = 0;
 };

@@ -5,15 +5,13 @@
 #include "common/convert/convert.hpp"
 
 namespace prehend::simulation {
-Expected<Command> from_message(const v1::HandCommand& message) {
-  const auto X_WB = convert::from_message(message.X_WB());
-  if (!X_WB) return fail("command not finite");
+Command from_message(const v1::HandCommand& message, const gate::Place& place) {
   Command command;
   command.stamp = from_ns(message.stamp_ns());
   command.origin = from_ns(message.origin_ns());
   command.model = message.model().to_string();
-  command.dof = convert::from_message(message.dof());
-  command.X_WB = *X_WB;
+  command.dof = place.dof;
+  command.X_WB = place.X_WB;
   command.mode = static_cast<int>(message.mode());
   command.weight = message.weight();
   command.object = message.object().to_string();

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "common/base/error.hpp"
+#include "common/gate/motion_limiter.hpp"
 #include "common/grasping/world.hpp"
 #include "common/model/catalogue.hpp"
 #include "idl/Perception.h"
@@ -12,7 +13,8 @@
 /// Between the topics and the values of the core.
 namespace prehend::simulation {
 
-Expected<Command> from_message(const v1::HandCommand& message);
+/// place: what the gate has left of it.
+Command from_message(const v1::HandCommand& message, const gate::Place& place);
 
 /// An object as it was seen. What the catalogue knows is taken from there, except the size, which
 /// was seen; anything else is taken for a light thing of wood.

@@ -12,11 +12,7 @@
 namespace prehend::simulation {
 namespace {
 
-constexpr std::size_t max_waiting = 4;                         // closures for the judge
-constexpr Duration patience = std::chrono::milliseconds(300);  // with silent commands
-constexpr Duration start_up = std::chrono::seconds(3);         // until some come
-
-constexpr const char* unled = "nobody sends robot/command; the hand stays as it is";
+constexpr std::size_t max_waiting = 4;  // closures for the judge
 
 }  // namespace
 
@@ -68,10 +64,16 @@ Expected<void> Service::start() {
     from_scene_ = true;
   }
 
-  shell_.subscribe(dds::robot_command, std::function([this](const v1::HandCommand& message,
-                                                            const dds::SampleInfo& info) {
-                     on_command(message, info);
-                   }));
+  robot::Robot robot;
+  robot.obey = [this](const v1::HandCommand& message, const gate::Place& place, Time now) {
+    return simulation_->accept(from_message(message, place), now);
+  };
+  robot.where = [this] { return where(); };
+  robot.hold = [this] { simulation_->hold(); };
+  robot.go = [this](const gate::Place& place, Time now) { go(place, now); };
+  auto gate = robot::Gatekeeper::create(shell_, hand_, hand_name_, std::move(robot));
+  if (!gate) return tl::unexpected(gate.error());
+  gate_ = std::move(*gate);
   if (!from_scene_)
     shell_.subscribe(dds::object_detection, std::function([this](const v1::ObjectDetection& message,
                                                                  const dds::SampleInfo& info) {
@@ -79,33 +81,26 @@ Expected<void> Service::start() {
                      }));
   shell_.on_tick(seconds(1.0 / rate), [this](Time now) { on_tick(now); });
   if (!shell_.lockstep()) judge_ = std::thread([this] { judge_queued(); });
-  last_command_ = shell_.now() + start_up;
   shell_.status().running();
   return {};
 }
 
-void Service::on_command(const v1::HandCommand& message, const dds::SampleInfo& info) {
-  // Whoever commanded is gone: the hand will hold still once its last command is stale.
-  if (info.gone) return;
-  if (message.hand().to_string() != hand_name_) {
-    shell_.status().drop("unknown hand");
-    return;
-  }
-  const auto command = from_message(message);
-  if (!command) {
-    shell_.status().drop(command.error().what);
-    return;
-  }
-  const Time now = shell_.now();
-  if (auto accepted = simulation_->accept(*command, now); !accepted) {
-    shell_.status().drop(accepted.error().what);
-    return;
-  }
-  last_command_ = now;
-  shell_.status().count("commands");
-  if (command->origin != Time{})  // a hand that is told to hold still answers no glove frame
-    shell_.status().latency("glove to accepted", now - command->origin);
-  shell_.status().latency("command hop", now - info.sent);
+/// What the hand is told at the moment, which after a silence is to stay; before any command it may
+/// be put anywhere.
+std::optional<gate::Place> Service::where() const {
+  if (!simulation_->command()) return std::nullopt;
+  return gate::Place{simulation_->world().commanded_dof(), simulation_->world().commanded_base()};
+}
+
+/// As a command that answers no glove frame.
+void Service::go(const gate::Place& place, Time now) {
+  Command command = simulation_->command().value_or(Command{});
+  command.stamp = now;
+  command.origin = {};
+  command.mode = v1::MODE_HOLD;
+  command.dof = place.dof;
+  command.X_WB = place.X_WB;
+  if (auto went = simulation_->accept(command, now); !went) shell_.status().drop(went.error().what);
 }
 
 void Service::on_detection(const v1::ObjectDetection& message) {
@@ -126,23 +121,13 @@ void Service::on_tick(Time now) {
   if (const Duration dropped = simulation_->follow(now, shell_.lockstep()); dropped.count() > 0)
     shell_.status().drop("time (ms)",
                          static_cast<std::uint64_t>(std::max(1.0, 1e3 * to_seconds(dropped))));
-  if (!shell_.lockstep()) look_around(now);
+  gate_->tick(now);
   if (scene_changed_) publish_scene();
   while (simulation_->step()) {
     shell_.status().count("steps");
     if (auto closure = simulation_->take_closure()) judge_soon(std::move(*closure));
     if (simulation_->time() >= next_state_) publish_state();
   }
-}
-
-/// Says that nobody commands; that the hand holds still then is the world's own doing.
-void Service::look_around(Time now) {
-  const bool led = now - last_command_ <= patience;
-  if (led == led_) return;
-  led_ = led;
-  if (led) return shell_.status().running();
-  log::warning("{}", unled);
-  shell_.status().degraded(unled);
 }
 
 void Service::publish_state() {

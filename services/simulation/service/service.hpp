@@ -4,9 +4,12 @@
 #include <deque>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <thread>
 
 #include "common/base/error.hpp"
+#include "common/gate/motion_limiter.hpp"
+#include "common/robot/gatekeeper.hpp"
 #include "common/service/shell.hpp"
 #include "services/simulation/core/simulation.hpp"
 
@@ -24,10 +27,10 @@ class Service {
  private:
   Service(service::Shell& shell, model::HandModel hand, model::Catalogue catalogue);
   Expected<void> start();
-  void on_command(const v1::HandCommand& message, const dds::SampleInfo& info);
+  std::optional<gate::Place> where() const;
+  void go(const gate::Place& place, Time now);
   void on_detection(const v1::ObjectDetection& message);
   void on_tick(Time now);
-  void look_around(Time now);
   void publish_state();
   void publish_scene();
   void judge_soon(Closure closure);
@@ -40,14 +43,14 @@ class Service {
   std::string hand_name_;
   bool from_scene_ = false;
   std::unique_ptr<Simulation> simulation_;
+  std::unique_ptr<robot::Gatekeeper> gate_;
   service::Shell::Output<v1::HandState> hand_state_;
   service::Shell::Output<v1::ObjectState> object_state_;
   service::Shell::Output<v1::SceneState> scene_state_;
   service::Shell::Output<v1::GraspReport> reports_;
   std::uint64_t sequence_ = 0, scene_sequence_ = 0;
   Duration state_period_{};
-  Time next_state_{}, last_command_{};
-  bool led_ = true;  // commands come
+  Time next_state_{};
   bool scene_changed_ = true;
 
   std::mutex mutex_;

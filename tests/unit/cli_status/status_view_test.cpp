@@ -152,6 +152,32 @@ TEST(StatusView, ClocksAreMeasuredByWhoKnowsMost) {
   EXPECT_THAT(view.page(start + seconds(10)), Not(HasSubstr("the measure")));
 }
 
+TEST(StatusView, SaysWhoLeadsAHandAndThatItIsStopped) {
+  v1::GateState gate;
+  gate.hand("hand");
+  gate.leader("mapping@here/1");
+  gate.refused("mapping@here/2");
+  StatusView view({});
+  view.hear(status("simulation"), start);
+  view.hear(gate, start);
+  EXPECT_THAT(view.page(start), HasSubstr("mapping@here/1 leads; mapping@here/2 is refused"));
+  gate.stopped(true);
+  gate.stopped_by("operator-anna@here/3");
+  gate.reason("a child came in");
+  gate.counts().resize(1);
+  gate.counts()[0].reason("command while stopped");
+  gate.counts()[0].count(7);
+  view.hear(gate, start);
+  EXPECT_THAT(view.page(start), HasSubstr("STOPPED by operator-anna@here/3: a child came in"));
+  const json hand = json::parse(view.json(start))["hands"][0];
+  EXPECT_EQ(hand["hand"], "hand");
+  EXPECT_EQ(hand["stopped"], true);
+  EXPECT_EQ(hand["stopped_by"], "operator-anna@here/3");
+  EXPECT_EQ(hand["counts"]["command while stopped"], 7);
+  // A gate that has fallen silent says nothing.
+  EXPECT_THAT(view.page(start + seconds(4)), Not(HasSubstr("STOPPED")));
+}
+
 TEST(StatusView, NothingGrowsWithoutBound) {
   StatusView view({});
   for (int i = 0; i < 3000; ++i) {

@@ -109,7 +109,7 @@ TEST_F(Raw, DiscoveryTellsTypeKeyAndQosOfATopic) {
   EXPECT_EQ(command.rigs, std::vector{rig});
   EXPECT_TRUE(command.topic.qos.reliable);
   EXPECT_FALSE(command.topic.qos.transient_local);
-  EXPECT_TRUE(command.topic.qos.exclusive_ownership);
+  EXPECT_EQ(command.topic.qos.exclusive_ownership, robot_command.qos.exclusive_ownership);
   EXPECT_EQ(command.topic.qos.deadline, std::chrono::milliseconds(100));
   EXPECT_EQ(command.topic.qos.lifespan, std::chrono::milliseconds(200));
   EXPECT_EQ(command.topic.qos.writer_depth, 64);

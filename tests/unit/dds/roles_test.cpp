@@ -34,7 +34,9 @@ const std::map<std::string, Roles> roles_of_path{
     {"services/recorder/tools/replay", Role::replayer},
     {"services/recorder/tools/check", Role::replayer},
     {"services/cli", Role::viewer},
-    {"common/service", services},  // the shell, which every service has
+    {"services/cli/tools/orders", Role::operator_},
+    {"common/robot", Role::simulation | Role::robot},  // the gate before a hand
+    {"common/service", services},                      // the shell, which every service has
     {"common/service/conductor.cpp", Role::replayer},
 };
 
@@ -85,7 +87,7 @@ std::vector<Call> calls_in(const fs::path& path) {
 const std::vector<Call>& all_calls() {
   static const std::vector<Call> calls = [] {
     std::vector<Call> found;
-    for (const char* top : {"/services", "/common/service"})
+    for (const char* top : {"/services", "/common/robot", "/common/service"})
       for (const auto& entry : fs::recursive_directory_iterator(std::string(PREHEND_SOURCE) + top))
         if (entry.path().extension() == ".cpp")
           std::ranges::copy(calls_in(entry.path()), std::back_inserter(found));

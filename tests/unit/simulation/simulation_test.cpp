@@ -128,6 +128,30 @@ TEST(Simulation, HoldsStillWhenCommandsStop) {
   EXPECT_FALSE(simulation->is_holding_still());
 }
 
+// A stop: the arm brakes with 10 m/s², so from 1 m/s it needs 0.1 s and 5 cm, and does not come
+// back.
+TEST(Simulation, StopsWithoutComingBack) {
+  const auto simulation = made();
+  ASSERT_TRUE(simulation->accept(command({0, 0, 0.5}, 0), start));
+  ASSERT_TRUE(simulation->accept(command({0, 0, 2.5}, 0), start));
+  const auto height = [&] { return simulation->world().hand_motion().X_WB.translation().z(); };
+  run_until(*simulation, start + milliseconds(190));
+  const double at_stop = height();
+  simulation->hold();
+  double before = at_stop;
+  for (int ms = 192; ms < 1000; ms += 2) {
+    run_until(*simulation, start + milliseconds(ms));
+    EXPECT_GE(height(), before - 1e-5) << ms;
+    if (ms > 310) {
+      EXPECT_LT(height() - before, 1e-6) << ms;
+    }
+    before = height();
+  }
+  EXPECT_GT(before, at_stop + 0.02);
+  EXPECT_LT(before, at_stop + 0.06);
+  EXPECT_TRUE(simulation->is_holding_still());
+}
+
 TEST(Simulation, SightingsPlaceObjectsAndMoveThemOnlyWhileTheHandIsFar) {
   const auto simulation = made();
   const auto place = [&]() -> Vector3d {

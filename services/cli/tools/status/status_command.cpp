@@ -81,6 +81,8 @@ int status_command(const std::vector<std::string>& arguments) {
   if (!statuses) return service::complain(statuses.error(), exit_broken);
   auto beacons = participant->reader(dds::lab_beacon);
   if (!beacons) return service::complain(beacons.error(), exit_broken);
+  auto gates = participant->reader(dds::robot_gate);
+  if (!gates) return service::complain(gates.error(), exit_broken);
 
   StatusView view(config->names("lab.services"));
   const auto all_up = [&] {
@@ -108,6 +110,8 @@ int status_command(const std::vector<std::string>& arguments) {
       else
         view.hear(sample.data, now);
     for (const auto& sample : beacons->take())
+      if (!sample.info.gone) view.hear(sample.data, now);
+    for (const auto& sample : gates->take())
       if (!sample.info.gone) view.hear(sample.data, now);
     if (!live) continue;
     if (entered_key() == 'q') break;

@@ -71,6 +71,12 @@ void StatusView::hear(const v1::ClockBeacon& beacon, Time now) {
     beacons_[beacon.service().to_string()] = {beacon, now};
 }
 
+void StatusView::hear(const v1::GateState& gate, Time now) {
+  std::erase_if(gates_, [&](const auto& entry) { return now - entry.second.second > max_silence; });
+  if (gates_.size() < max_services || gates_.contains(gate.hand().to_string()))
+    gates_[gate.hand().to_string()] = {gate, now};
+}
+
 void StatusView::lose(const std::string& key, Time) {
   if (const auto found = services_.find(key); found != services_.end()) found->second.gone = true;
 }
@@ -155,6 +161,8 @@ std::string StatusView::page(Time now) const {
                         status.resident() / 1e6, right(by, 24));
     if (status.message().size() > 0) text += fmt::format("  {}\n", shown(status.message()));
   }
+  if (const std::string hands = gates(now); !hands.empty())
+    text += fmt::format("\n{:<14}{}\n", "HAND", "WHO LEADS IT") + hands;
 
   const auto section = [&](const std::string& title, const auto& rows) {
     std::string lines;
@@ -188,8 +196,43 @@ std::string StatusView::page(Time now) const {
   return text;
 }
 
+/// Who leads each hand; a stop is what one must not overlook.
+std::string StatusView::gates(Time now) const {
+  std::string lines;
+  for (const auto& [hand, heard] : gates_) {
+    const v1::GateState& gate = heard.first;
+    if (now - heard.second > max_silence) continue;
+    std::string says =
+        gate.leader().size() == 0 ? "nobody leads" : gate.leader().to_string() + " leads";
+    if (gate.refused().size() > 0) says += "; " + gate.refused().to_string() + " is refused";
+    if (gate.deadman() && !gate.consent()) says += "; the deadman is not held";
+    if (gate.stopped())
+      says = fmt::format("STOPPED by {}{}{}", gate.stopped_by().to_string(),
+                         gate.reason().size() == 0 ? "" : ": ", gate.reason().to_string());
+    lines += fmt::format("{:<14}{}\n", hand, says);
+  }
+  return lines;
+}
+
 std::string StatusView::json(Time now) const {
   using Json = nlohmann::ordered_json;
+  Json hands = Json::array();
+  for (const auto& [hand, heard] : gates_) {
+    const v1::GateState& gate = heard.first;
+    if (now - heard.second > max_silence) continue;
+    Json counts = Json::object();
+    for (const v1::GateCount& one : gate.counts()) counts[one.reason().to_string()] = one.count();
+    hands.push_back({{"hand", hand},
+                     {"leader", gate.leader().to_string()},
+                     {"refused", gate.refused().to_string()},
+                     {"stopped", gate.stopped()},
+                     {"stopped_by", gate.stopped_by().to_string()},
+                     {"reason", gate.reason().to_string()},
+                     {"deadman", gate.deadman()},
+                     {"consent", gate.consent()},
+                     {"obeyed", gate.obeyed()},
+                     {"counts", counts}});
+  }
   Json list = Json::array();
   for (const auto& [key, service] : services_) {
     const v1::ServiceStatus& status = service.status;
@@ -223,8 +266,8 @@ std::string StatusView::json(Time now) const {
                     {"dropped", dropped},
                     {"latency_us", stages}});
   }
-  return Json{{"services", list}, {"missing", missing(now)}}.dump(-1, ' ', false,
-                                                                  Json::error_handler_t::replace);
+  return Json{{"services", list}, {"missing", missing(now)}, {"hands", hands}}.dump(
+      -1, ' ', false, Json::error_handler_t::replace);
 }
 
 }  // namespace prehend::cli

@@ -8,6 +8,7 @@
 
 #include "common/base/time.hpp"
 #include "idl/Operation.h"
+#include "idl/Robot.h"
 
 namespace prehend::cli {
 
@@ -20,6 +21,7 @@ class StatusView {
 
   void hear(const v1::ServiceStatus& status, Time now);
   void hear(const v1::ClockBeacon& beacon, Time now);
+  void hear(const v1::GateState& gate, Time now);
   /// A service has said goodbye, or its process was found to be gone.
   void lose(const std::string& key, Time now);
 
@@ -51,10 +53,12 @@ class StatusView {
   const v1::ClockBeacon* measure(Time now) const;
   std::optional<Clock> clock(const std::string& key, Time now) const;
   std::string state(const Service& service, Time now) const;
+  std::string gates(Time now) const;
 
   std::vector<std::string> expected_;
   std::map<std::string, Service> services_;  // by key
   std::map<std::string, std::pair<v1::ClockBeacon, Time>> beacons_;
+  std::map<std::string, std::pair<v1::GateState, Time>> gates_;  // by hand
 };
 
 }  // namespace prehend::cli

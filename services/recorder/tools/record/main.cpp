@@ -11,11 +11,11 @@
 #include "common/service/arguments.hpp"
 #include "common/service/membership.hpp"
 #include "common/service/shell.hpp"
+#include "common/tool/keyboard.hpp"
 #include "services/recorder/service/describe.hpp"
 #include "services/recorder/service/operator_link.hpp"
 #include "services/recorder/service/recorder.hpp"
 #include "services/recorder/service/topic_listener.hpp"
-#include "services/recorder/tools/terminal/keyboard.hpp"
 #include "services/recorder/tools/terminal/progress_line.hpp"
 
 namespace prehend::recorder {
@@ -230,7 +230,7 @@ class Recording {
   Recorder recorder_;
   const Arguments& arguments_;
   ProgressLine progress_;
-  Keyboard keyboard_;
+  tool::Keyboard keyboard_;
   OperatorLink operator_;
   Time started_{};
   std::uint64_t counted_ = 0, lost_ = 0;

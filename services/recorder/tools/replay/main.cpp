@@ -12,11 +12,11 @@
 #include "common/service/arguments.hpp"
 #include "common/service/membership.hpp"
 #include "common/service/shell.hpp"
+#include "common/tool/keyboard.hpp"
 #include "services/recorder/core/ease_in.hpp"
 #include "services/recorder/core/topic_filter.hpp"
 #include "services/recorder/service/operator_link.hpp"
 #include "services/recorder/service/player.hpp"
-#include "services/recorder/tools/terminal/keyboard.hpp"
 #include "services/recorder/tools/terminal/progress_line.hpp"
 
 namespace prehend::recorder {
@@ -212,10 +212,11 @@ class Replay {
     if (key == 'b') say("burst 10");
     if (key == 'q') say("stop");
     if (key == 'l') say(figures.loops ? "loop off" : "loop on");
-    if (key == Keyboard::up) say(fmt::format("rate {}", figures.rate * 1.25));
-    if (key == Keyboard::down) say(fmt::format("rate {}", figures.rate / 1.25));
-    if (key == Keyboard::right) say(fmt::format("seek {}", figures.position + 5));
-    if (key == Keyboard::left) say(fmt::format("seek {}", std::max(0.0, figures.position - 5)));
+    if (key == tool::Keyboard::up) say(fmt::format("rate {}", figures.rate * 1.25));
+    if (key == tool::Keyboard::down) say(fmt::format("rate {}", figures.rate / 1.25));
+    if (key == tool::Keyboard::right) say(fmt::format("seek {}", figures.position + 5));
+    if (key == tool::Keyboard::left)
+      say(fmt::format("seek {}", std::max(0.0, figures.position - 5)));
   }
 
   void tick(Time now) {
@@ -258,7 +259,7 @@ class Replay {
   std::optional<Easing> easing_;
   Time start_;
   ProgressLine progress_;
-  Keyboard keyboard_;
+  tool::Keyboard keyboard_;
   OperatorLink operator_;
   std::uint64_t counted_ = 0;
   std::jthread thread_;
@@ -294,6 +295,16 @@ Expected<PlayerOptions> player_options(const Arguments& arguments, const Tape& t
   return options;
 }
 
+/// Robots refuse commands that are old; in lockstep time is that of the recording.
+void warn_of_old_commands(const Tape& tape, const Arguments& arguments) {
+  const auto moves_robots = [](const recording::Stream* stream) {
+    return stream->topic.name == dds::robot_command.name;
+  };
+  if (arguments.stamps == "kept" && std::ranges::any_of(tape.streams(), moves_robots))
+    log::warning("{} keeps its stamps: a robot refuses commands of then; --stamps now moves them",
+                 dds::robot_command.name);
+}
+
 int replay(const Arguments& arguments) {
   std::optional<Time> start_at;
   if (!arguments.start_at.empty()) {
@@ -310,6 +321,7 @@ int replay(const Arguments& arguments) {
   auto tape = Tape::open({arguments.files.begin(), arguments.files.end()}, wanted);
   if (!tape) return service::complain(tape.error(), exit_broken);
   for (const Error& damage : tape->damage()) log::warning("{}", damage.message());
+  warn_of_old_commands(*tape, arguments);
   const auto options = player_options(arguments, *tape);
   if (!options) return service::complain(options.error(), exit_wrong_use);
   std::optional<Easing> easing;

@@ -4,7 +4,7 @@
 
 #include <optional>
 
-namespace prehend::recorder {
+namespace prehend::tool {
 
 /// Keys as they are pressed, without waiting for Enter. The terminal is as before at the end.
 class Keyboard {
@@ -24,4 +24,4 @@ class Keyboard {
   std::optional<termios> before_;
 };
 
-}  // namespace prehend::recorder
+}  // namespace prehend::tool

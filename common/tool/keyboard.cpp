@@ -1,9 +1,9 @@
-#include "services/recorder/tools/terminal/keyboard.hpp"
+#include "common/tool/keyboard.hpp"
 
 #include <poll.h>
 #include <unistd.h>
 
-namespace prehend::recorder {
+namespace prehend::tool {
 namespace {
 
 std::optional<char> waiting_byte() {
@@ -42,4 +42,4 @@ std::optional<int> Keyboard::key() {
   return std::nullopt;
 }
 
-}  // namespace prehend::recorder
+}  // namespace prehend::tool

@@ -1,0 +1,161 @@
+#include "common/gate/command_gate.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "common/base/named_values.hpp"
+
+namespace prehend::gate {
+namespace {
+
+constexpr double far_off = 10;              // m: no hand works there
+constexpr double tolerated_outside = 0.01;  // of a DoF's range, beyond its limits
+constexpr std::size_t max_heard = 16;       // writers
+
+constexpr auto refusal_names =
+    named_values<Refusal>({{Refusal::not_finite, "command not finite"},
+                           {Refusal::another_hand, "command for another hand"},
+                           {Refusal::another_model, "command for another model"},
+                           {Refusal::wrong_length, "command of wrong length"},
+                           {Refusal::far_away, "command far away"},
+                           {Refusal::outside_limits, "command outside limits"},
+                           {Refusal::too_old, "command too old"},
+                           {Refusal::from_future, "command from the future"},
+                           {Refusal::not_newer, "command not newer than the last"},
+                           {Refusal::second_writer, "command of a second writer"},
+                           {Refusal::stopped, "command while stopped"},
+                           {Refusal::no_consent, "command without consent"}});
+
+}  // namespace
+
+std::string_view to_string(Refusal refusal) {
+  return refusal_names.name(refusal, "command refused");
+}
+
+Expected<CommandGate> CommandGate::create(const model::HandModel& hand, GateOptions options,
+                                          Limits limits, Where where) {
+  if (limits.joint.size() != hand.dofs().size())
+    return fail("limits are those of another hand", "gate");
+  if (auto sound = check(limits); !sound) return tl::unexpected(sound.error());
+  if (options.max_age <= Duration::zero() || options.max_silence <= Duration::zero())
+    return fail("times must be positive", "gate");
+  return CommandGate(hand, std::move(options), std::move(limits), std::move(where));
+}
+
+CommandGate::CommandGate(const model::HandModel& hand, GateOptions options, Limits limits,
+                         Where where)
+    : hand_(hand),
+      options_(std::move(options)),
+      motion_(std::move(limits)),
+      where_(std::move(where)) {}
+
+tl::expected<Passed, Refusal> CommandGate::admit(const Command& command, Time now) {
+  if (const auto refused = judge(command, now)) return tl::unexpected(*refused);
+  start();
+  return motion_.step(command.place, command.stamp, now);
+}
+
+void CommandGate::start() {
+  if (!std::exchange(starts_, false)) return;
+  const auto here = where_ ? where_() : std::nullopt;
+  here ? motion_.start(*here) : motion_.start_anywhere();
+}
+
+void CommandGate::stop(const std::string& by, const std::string& reason, Time now) {
+  if (!stop_) stop_ = Stop{by, reason, now};
+  starts_ = true;
+}
+
+void CommandGate::release() {
+  stop_.reset();
+  starts_ = true;
+}
+
+void CommandGate::consent(const WriterId& writer, bool held, Time stamp, Time now) {
+  if (std::chrono::abs(now - stamp) > options_.max_age) return;
+  // What comes late or twice must not undo that it was let go.
+  if (giver_ == writer && stamp <= told_) return;
+  if (!held && holder_ != writer) return;
+  holder_ = held ? std::optional(writer) : std::nullopt;
+  giver_ = writer;
+  told_ = stamp;
+  held_ = now;
+}
+
+bool CommandGate::has_consent(Time now) const {
+  return !options_.deadman || (holder_ && now - held_ <= options_.max_consent_age);
+}
+
+Passed CommandGate::go(const Place& place, Time now) {
+  start();
+  return motion_.step(place, now, now);
+}
+
+std::optional<Refusal> CommandGate::judge(const Command& command, Time now) {
+  if (const auto refused = judge_content(command)) return refused;
+  if (now - command.stamp > options_.max_age) return Refusal::too_old;
+  if (command.stamp - now > options_.max_age) return Refusal::from_future;
+  if (!is_newer(command, now)) return Refusal::not_newer;
+  if (const auto leading = leader(now); leading && *leading != command.writer)
+    return Refusal::second_writer;
+  lead(command.writer);
+  led_ = now;
+  if (stop_) return Refusal::stopped;
+  if (has_consent(now)) return std::nullopt;
+  starts_ = true;
+  return Refusal::no_consent;
+}
+
+std::optional<Refusal> CommandGate::judge_content(const Command& command) const {
+  if (command.hand != options_.hand) return Refusal::another_hand;
+  if (command.model != hand_.name()) return Refusal::another_model;
+  const Eigen::VectorXd& dof = command.place.dof;
+  if (dof.size() != static_cast<Eigen::Index>(hand_.dofs().size())) return Refusal::wrong_length;
+  if (!dof.allFinite() || !is_finite(command.place.X_WB)) return Refusal::not_finite;
+  if (command.place.X_WB.translation().norm() > far_off) return Refusal::far_away;
+  for (Eigen::Index i = 0; i < dof.size(); ++i) {
+    const model::HandDof& limits = hand_.dofs()[static_cast<std::size_t>(i)];
+    const double slack = tolerated_outside * (limits.upper - limits.lower);
+    if (dof[i] < limits.lower - slack || dof[i] > limits.upper + slack)
+      return Refusal::outside_limits;
+  }
+  return std::nullopt;
+}
+
+/// By its number. Its stamp may be older: mapping answers a posture that came late after it has
+/// told the hand to stay, and the age is bounded. Who does not count is judged by stamps; who
+/// counts anew (a recording that begins again) is heard after a silence.
+bool CommandGate::is_newer(const Command& command, Time now) {
+  const auto known = heard_.find(command.writer);
+  if (known == heard_.end()) {
+    if (heard_.size() == max_heard)
+      heard_.erase(std::min_element(heard_.begin(), heard_.end(), [](const auto& a, const auto& b) {
+        return a.second.at < b.second.at;
+      }));
+    heard_[command.writer] = {command.sequence, command.stamp, now};
+    return true;
+  }
+  Heard& last = known->second;
+  const bool again = now - last.at > options_.max_silence || command.sequence == last.sequence;
+  if (command.sequence <= last.sequence && !(again && command.stamp > last.stamp)) return false;
+  last = {command.sequence, std::max(last.stamp, command.stamp), now};
+  return true;
+}
+
+std::optional<WriterId> CommandGate::leader(Time now) const {
+  return leader_ && now - led_ <= options_.max_silence ? leader_ : std::nullopt;
+}
+
+void CommandGate::take_over(const WriterId& writer, Time now) {
+  lead(writer);
+  led_ = now;
+}
+
+void CommandGate::lead(const WriterId& writer) {
+  if (leader_ == writer) return;
+  starts_ = true;
+  leader_ = writer;
+  ++leads_;
+}
+
+}  // namespace prehend::gate

@@ -1,0 +1,416 @@
+#include "common/robot/gatekeeper.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+#include "common/base/log.hpp"
+#include "common/convert/convert.hpp"
+#include "common/dds/topics.hpp"
+
+namespace prehend::robot {
+namespace {
+
+constexpr Duration patience = std::chrono::milliseconds(300);  // with silent commands
+constexpr Duration start_up = std::chrono::seconds(3);         // until some come
+constexpr Duration noticed = std::chrono::seconds(1);          // a second writer is, for so long
+constexpr Duration state_period = std::chrono::seconds(1);
+/// An order that moves the hand again must be meant now.
+constexpr Duration max_order_age = std::chrono::seconds(10);
+constexpr std::size_t max_writers = 16;
+constexpr std::size_t max_counts = 32;  // idl/Robot.idl
+constexpr const char* target_name = "gate";
+
+constexpr const char* unled = "nobody sends robot/command; the hand stays as it is";
+
+gate::Command from_message(const v1::HandCommand& message, const dds::SampleInfo& info) {
+  Pose nowhere;
+  nowhere.matrix().setConstant(std::numeric_limits<double>::quiet_NaN());
+  gate::Command command;
+  command.writer = info.participant;
+  command.sequence = message.sequence_number();
+  command.stamp = from_ns(message.stamp_ns());
+  command.hand = message.hand().to_string();
+  command.model = message.model().to_string();
+  command.place = {convert::from_message(message.dof()),
+                   convert::from_message(message.X_WB()).value_or(nowhere)};
+  return command;
+}
+
+gate::Limits limits_of(const model::HandModel& hand, const service::Config& config) {
+  gate::Limits limits = gate::limits_of(hand);
+  limits.base = {config.number("gate.base_speed"), config.number("gate.base_acceleration")};
+  limits.turn = {config.number("gate.base_turn_speed"),
+                 config.number("gate.base_turn_acceleration")};
+  const auto& box = config.numbers("gate.box");
+  if (box.size() == 6) {
+    limits.box_lower = {box[0], box[1], box[2]};
+    limits.box_upper = {box[3], box[4], box[5]};
+  } else {
+    limits.box_upper = limits.box_lower;  // is refused as empty
+  }
+  return limits;
+}
+
+/// Of the lengths in the IDL.
+template <class Text>
+void put(Text& to, const std::string& from, std::size_t length) {
+  to = from.substr(0, length).c_str();
+}
+
+bool same(const v1::GateState& a, const v1::GateState& b) {
+  return a.leader() == b.leader() && a.refused() == b.refused() && a.stopped() == b.stopped() &&
+         a.consent() == b.consent() && a.stopped_by() == b.stopped_by() && a.reason() == b.reason();
+}
+
+}  // namespace
+
+Expected<std::unique_ptr<Gatekeeper>> Gatekeeper::create(service::Shell& shell,
+                                                         const model::HandModel& hand,
+                                                         const std::string& name, Robot robot) {
+  const service::Config& config = shell.config();
+  const std::string& on_stop = config.text("safety.on_stop");
+  if (on_stop != "hold" && on_stop != "open")
+    return wrong_use("is neither hold nor open", "safety.on_stop");
+  auto gate = gate::CommandGate::create(hand,
+                                        {.hand = name,
+                                         .max_age = seconds(config.number("gate.max_age")),
+                                         .max_silence = seconds(config.number("gate.max_silence")),
+                                         .deadman = config.flag("safety.deadman")},
+                                        limits_of(hand, config), robot.where);
+  if (!gate) {
+    gate.error().exit = exit_wrong_use;
+    return tl::unexpected(gate.error());
+  }
+  std::unique_ptr<Gatekeeper> made(
+      new Gatekeeper(shell, hand, name, std::move(*gate), std::move(robot)));
+  if (auto opened = made->open_audit(name); !opened) return tl::unexpected(opened.error());
+  return made;
+}
+
+Gatekeeper::Gatekeeper(service::Shell& shell, const model::HandModel& hand, const std::string& name,
+                       gate::CommandGate gate, Robot robot)
+    : shell_(shell),
+      robot_(std::move(robot)),
+      gate_(std::move(gate)),
+      open_{hand.clamp(hand.postures().at("open"))},
+      opens_(shell.config().text("safety.on_stop") == "open"),
+      states_(shell.publish(dds::robot_gate)),
+      replies_(shell.publish(dds::operator_reply)),
+      last_obeyed_(shell.now() + start_up) {
+  consented_ = gate_.has_consent(shell_.now());
+  put(state_.hand(), name, 64);
+  state_.deadman(shell.config().flag("safety.deadman"));
+  if (shell.config().flag("safety.start_stopped"))
+    gate_.stop("safety.start_stopped", "not yet released", shell.now());
+  shell_.subscribe(dds::robot_command, std::function([this](const v1::HandCommand& message,
+                                                            const dds::SampleInfo& info) {
+                     // Whoever commanded is gone: the hand holds still once its command is stale.
+                     if (!info.gone) on_command(message, info);
+                   }));
+  shell_.subscribe(dds::operator_command, std::function([this](const v1::OperatorCommand& order,
+                                                               const dds::SampleInfo& info) {
+                     if (!info.gone) on_order(order, info);
+                   }));
+  shell_.subscribe(dds::operator_consent, std::function([this](const v1::OperatorConsent& consent,
+                                                               const dds::SampleInfo& info) {
+                     if (!info.gone) on_consent(consent, info);
+                   }));
+}
+
+Gatekeeper::~Gatekeeper() {
+  const Time now = shell_.now();
+  if (audit_) audit_->flush(now, true);
+  note(audit::Event::end, "", "", now);
+}
+
+void Gatekeeper::tick(Time now) {
+  watch_consent(now);
+  watch_lead(now);
+  if (audit_ && !audit_->flush(now)) shell_.status().drop("audit not written");
+  if (gate_.stopped() && opens_)
+    if (const auto here = robot_.where())
+      robot_.go(gate_.go({open_.dof, here->X_WB}, now).place, now);
+  if (shell_.lockstep()) return;
+  look_around(now);
+  tell(now);
+}
+
+Expected<void> Gatekeeper::open_audit(const std::string& name) {
+  const auto folder = shell_.config().path("safety.audit");
+  if (folder.empty()) return {};
+  auto log = audit::Log::open({.folder = folder, .name = name});
+  if (!log) return tl::unexpected(log.error());
+  audit_.emplace(std::move(*log));
+  note(audit::Event::begin, "", "", shell_.now());
+  return {};
+}
+
+void Gatekeeper::note(audit::Event event, const std::string& who, const std::string& what,
+                      Time now) {
+  if (audit_ && !audit_->write({now, state_.hand().to_string(), event, who, what}))
+    shell_.status().drop("audit not written");
+}
+
+void Gatekeeper::note_refused(std::string_view reason, const gate::WriterId& writer, Time now) {
+  if (audit_ && !audit_->refuse({now, state_.hand().to_string(), audit::Event::refused,
+                                 name_of(writer), std::string(reason)}))
+    shell_.status().drop("audit not written");
+}
+
+// --- commands
+
+void Gatekeeper::on_command(const v1::HandCommand& message, const dds::SampleInfo& info) {
+  const Time now = shell_.now();
+  const auto passed = gate_.admit(from_message(message, info), now);
+  const bool ours = passed || passed.error() != gate::Refusal::another_hand;
+  if (ours && (writers_.size() < max_writers || writers_.contains(info.participant)))
+    writers_[info.participant] = now;
+  watch_lead(now);
+  if (passed)
+    obey(message, info, *passed, now);
+  else
+    refuse(passed.error(), info, now);
+}
+
+/// Says and notes who leads, and who leads no more.
+void Gatekeeper::watch_lead(Time now) {
+  if (gate_.leads() != leads_) {
+    shell_.status().count("leads", gate_.leads() - leads_);
+    leads_ = gate_.leads();
+  }
+  const auto leader = gate_.leader(now);
+  if (leader == leader_) return;
+  if (leader_) note(audit::Event::lead_end, leader_name_, "", now);
+  leader_ = leader;
+  if (!leader) return;
+  leader_name_ = name_of(*leader);
+  log::info("{} leads the hand", leader_name_);
+  note(audit::Event::lead, leader_name_, "", now);
+}
+
+void Gatekeeper::count(std::string_view reason) {
+  shell_.status().drop(reason);
+  const auto known = counts_.find(reason);
+  if (known != counts_.end())
+    ++known->second;
+  else if (counts_.size() < max_counts)
+    counts_.emplace(std::string(reason), 1);
+}
+
+void Gatekeeper::refuse(gate::Refusal refusal, const dds::SampleInfo& info, Time now) {
+  count(to_string(refusal));
+  note_refused(to_string(refusal), info.participant, now);
+  // What is for another hand, or comes while it must not move, is no fault of the commands.
+  if (refusal == gate::Refusal::another_hand || refusal == gate::Refusal::stopped ||
+      refusal == gate::Refusal::no_consent)
+    return;
+  const Refused refused{std::string(to_string(refusal)), info.participant, now};
+  (refusal == gate::Refusal::second_writer ? second_ : refused_) = refused;
+}
+
+void Gatekeeper::obey(const v1::HandCommand& message, const dds::SampleInfo& info,
+                      const gate::Passed& passed, Time now) {
+  for (std::size_t i = 0; i < gate::cuts; ++i)
+    if (passed.cut[i]) {
+      count(to_string(static_cast<gate::Cut>(i)));
+      note_refused(to_string(static_cast<gate::Cut>(i)), info.participant, now);
+    }
+  if (auto obeyed = robot_.obey(message, passed.place, now); !obeyed) {
+    count(obeyed.error().what);
+    refused_ = Refused{obeyed.error().what, info.participant, now};
+    return;
+  }
+  last_obeyed_ = now;
+  ++obeyed_;
+  shell_.status().count("commands");
+  if (message.origin_ns() != 0)  // a hand that is told to hold still answers no glove frame
+    shell_.status().latency("glove to accepted", now - from_ns(message.origin_ns()));
+  shell_.status().latency("command hop", now - info.sent);
+}
+
+// --- orders
+
+void Gatekeeper::on_order(const v1::OperatorCommand& order, const dds::SampleInfo& info) {
+  const std::string target = order.target().to_string();
+  if (!target.empty() && target != target_name) return;
+  const auto action = order.action();
+  if (action != v1::ACTION_STOP && action != v1::ACTION_RELEASE && action != v1::ACTION_TAKE_OVER)
+    return;
+  const Time now = shell_.now();
+  // Who gives an order as soon as it has come is not known by name yet.
+  std::string by = shell_.writer_of(info);
+  if (by.find('@') == std::string::npos) by = order.id().to_string();
+  if (const auto known = orders_.find(order.id().to_string())) return replies_.publish(*known);
+  const auto executed = execute(order, by, now);
+  v1::OperatorReply reply;
+  reply.id(order.id());
+  reply.stamp_ns(to_ns(now));
+  reply.service(target_name);
+  reply.done(executed.has_value());
+  put(reply.message(), executed ? *executed : executed.error().message(), 255);
+  // One that was refused may be given again, when clocks are known or the writer has come.
+  if (executed) orders_.add(reply);
+  if (!executed) {
+    shell_.status().drop("order refused");
+    note(audit::Event::order_refused, by, executed.error().message(), now);
+  }
+  replies_.publish(reply);
+  if (!shell_.lockstep()) {
+    look_around(now);
+    tell(now);
+  }
+}
+
+/// A stop is obeyed from whom and whenever it comes; what moves the hand again must be meant now,
+/// and by somebody: a recording that is played must not release a robot.
+Expected<std::string> Gatekeeper::execute(const v1::OperatorCommand& order, const std::string& by,
+                                          Time now) {
+  const std::string argument = order.argument().to_string();
+  if (order.action() == v1::ACTION_STOP) return stop(by, argument, now);
+  if (!shell_.lockstep()) {
+    const double age = to_seconds(now - from_ns(order.stamp_ns()));
+    if (std::abs(age) > to_seconds(max_order_age))
+      return fail(fmt::format("the order is of {:.0f} s ago", age), by);
+    if (by.starts_with("replayer@")) return fail("an order that is played is not obeyed", by);
+  }
+  return order.action() == v1::ACTION_RELEASE ? release(by, argument, now)
+                                              : take_over(by, argument, now);
+}
+
+std::string Gatekeeper::stop(const std::string& by, const std::string& reason, Time now) {
+  const bool already = gate_.stopped().has_value();
+  gate_.stop(by, reason, now);
+  if (already)
+    return fmt::format("stopped already, by {}{}{}", gate_.stopped()->by,
+                       gate_.stopped()->reason.empty() ? "" : ": ", gate_.stopped()->reason);
+  robot_.hold();
+  shell_.status().count("stops");
+  note(audit::Event::stop, by, reason, now);
+  log::warning("stopped by {}{}{}", by, reason.empty() ? "" : ": ", reason);
+  return opens_ ? "stopped; the hand opens" : "stopped; the hand holds";
+}
+
+Expected<std::string> Gatekeeper::release(const std::string& by, const std::string& reason,
+                                          Time now) {
+  if (reason.empty()) return fail("a release needs a reason", by);
+  if (!gate_.stopped()) return "was not stopped";
+  robot_.hold();
+  gate_.release();
+  put(state_.reason(), reason, 127);
+  state_.since_ns(to_ns(now));
+  last_obeyed_ = now;
+  note(audit::Event::release, by, reason, now);
+  log::warning("released by {}: {}", by, reason);
+  return "released";
+}
+
+Expected<std::string> Gatekeeper::take_over(const std::string& by, const std::string& name,
+                                            Time now) {
+  std::erase_if(writers_, [&](const auto& entry) { return now - entry.second > noticed; });
+  std::vector<gate::WriterId> meant;
+  std::string heard;
+  for (const auto& [writer, at] : writers_) {
+    const std::string service = name_of(writer);
+    heard += (heard.empty() ? "" : ", ") + service;
+    // «mapping» is the other one of two.
+    if (service == name || (service.starts_with(name + "@") && writer != gate_.leader(now)))
+      meant.push_back(writer);
+  }
+  if (name.empty() || meant.size() != 1)
+    return fail(meant.empty() ? "does not send robot/command" : "several are called so", name,
+                heard.empty() ? "nobody does" : "those who do: " + heard);
+  robot_.hold();
+  note(audit::Event::takeover, by, name_of(meant.front()), now);
+  gate_.take_over(meant.front(), now);
+  watch_lead(now);
+  return name_of(meant.front()) + " leads";
+}
+
+// --- consent
+
+void Gatekeeper::on_consent(const v1::OperatorConsent& consent, const dds::SampleInfo& info) {
+  if (consent.hand().to_string() != state_.hand().to_string()) return;
+  // What somebody consented to then is not consent now.
+  if (!shell_.lockstep() && shell_.writer_of(info).starts_with("replayer@")) return;
+  const Time now = shell_.now();
+  gate_.consent(info.participant, consent.held(), from_ns(consent.stamp_ns()), now);
+  watch_consent(now);
+}
+
+/// Without consent the hand stays at once, not only when the next command is refused.
+void Gatekeeper::watch_consent(Time now) {
+  const bool has = gate_.has_consent(now);
+  if (consented_ && !has) robot_.hold();
+  if (consented_ != has && state_.deadman())
+    note(has ? audit::Event::consent : audit::Event::consent_end, "", "", now);
+  consented_ = has;
+}
+
+// --- what is told
+
+std::string Gatekeeper::name_of(const gate::WriterId& writer) const {
+  return shell_.writer_of({.participant = writer});
+}
+
+/// That the hand holds still then is the robot's own doing.
+std::string Gatekeeper::missing(Time now) const {
+  if (const auto& stop = gate_.stopped())
+    return fmt::format("stopped by {}{}{}; prehend release ends it", stop->by,
+                       stop->reason.empty() ? "" : ": ", stop->reason);
+  if (!consented_) return "the deadman is not held; prehend consent holds it";
+  const bool silent = now - last_obeyed_ > patience;
+  // At the start commands are waited for, unless some come that cannot be obeyed.
+  const bool refused = refused_ && now - refused_->at <= patience && (silent || last_obeyed_ > now);
+  if (refused)
+    return "robot/command is refused: " + refused_->why + ", of " + name_of(refused_->writer) +
+           "; the hand stays as it is";
+  if (silent) return unled;
+  const auto leading = gate_.leader(now);
+  if (leading && second_ && now - second_->at <= noticed && second_->writer != *leading)
+    return "robot/command of " + name_of(second_->writer) + " is refused, for " +
+           name_of(*leading) + " leads";
+  return {};
+}
+
+void Gatekeeper::look_around(Time now) {
+  std::string found = missing(now);
+  if (found == missing_) return;
+  missing_ = std::move(found);
+  if (missing_.empty()) return shell_.status().running();
+  log::warning("{}", missing_);
+  shell_.status().degraded(missing_);
+}
+
+void Gatekeeper::tell(Time now) {
+  v1::GateState state = state_;
+  const auto leading = gate_.leader(now);
+  put(state.leader(), leading ? name_of(*leading) : "", 127);
+  const bool second =
+      leading && second_ && now - second_->at <= noticed && second_->writer != *leading;
+  put(state.refused(), second ? name_of(second_->writer) : "", 127);
+  const auto& stop = gate_.stopped();
+  state.stopped(stop.has_value());
+  state.consent(state.deadman() && consented_);
+  put(state.stopped_by(), stop ? stop->by : "", 127);
+  if (stop) {
+    put(state.reason(), stop->reason, 127);
+    state.since_ns(to_ns(stop->since));
+  }
+  if (now < next_state_ && same(state, state_)) return;
+  next_state_ = now + state_period;
+  state.sequence_number(state_.sequence_number() + 1);
+  state.stamp_ns(to_ns(now));
+  state.obeyed(obeyed_);
+  state.counts().clear();
+  for (const auto& [reason, number] : counts_) {
+    v1::GateCount entry;
+    put(entry.reason(), reason, 63);
+    entry.count(number);
+    state.counts().push_back(entry);
+  }
+  state_ = state;
+  states_.publish(state_);
+}
+
+}  // namespace prehend::robot

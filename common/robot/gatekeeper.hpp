@@ -1,0 +1,108 @@
+#pragma once
+
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/audit/log.hpp"
+#include "common/base/error.hpp"
+#include "common/dds/participant.hpp"
+#include "common/gate/command_gate.hpp"
+#include "common/model/hand_model.hpp"
+#include "common/robot/order_book.hpp"
+#include "common/service/shell.hpp"
+#include "idl/Robot.h"
+
+namespace prehend::robot {
+
+/// What the gate stands before, simulated or real. Called by the shell.
+struct Robot {
+  /// Obeys a command: `place` is what the gate has left of it.
+  std::function<Expected<void>(const v1::HandCommand& command, const gate::Place& place, Time now)>
+      obey;
+  /// Where the hand is kept now; nothing as long as it may be put anywhere.
+  std::function<std::optional<gate::Place>()> where;
+  /// Stays where it is, at once; a grip keeps its squeeze.
+  std::function<void()> hold;
+  /// Goes there, though nobody commands it: to open while it is stopped.
+  std::function<void(const gate::Place& place, Time now)> go;
+};
+
+/// The gate between robot/command and a robot hand, with all that the lab hears of it: the latched
+/// stop and other orders, robot/gate, counts of what was refused or cut, and a status that says
+/// whether the hand is led. Every service that moves a hand has one.
+class Gatekeeper {
+ public:
+  /// hand: key of its topics. Both references must outlive it.
+  static Expected<std::unique_ptr<Gatekeeper>> create(service::Shell& shell,
+                                                      const model::HandModel& hand,
+                                                      const std::string& name, Robot robot);
+
+  /// From the service's tick.
+  void tick(Time now);
+
+  ~Gatekeeper();
+
+ private:
+  Gatekeeper(service::Shell& shell, const model::HandModel& hand, const std::string& name,
+             gate::CommandGate gate, Robot robot);
+  void on_command(const v1::HandCommand& message, const dds::SampleInfo& info);
+  void refuse(gate::Refusal refusal, const dds::SampleInfo& info, Time now);
+  void obey(const v1::HandCommand& message, const dds::SampleInfo& info, const gate::Passed& passed,
+            Time now);
+  void count(std::string_view reason);
+
+  void on_order(const v1::OperatorCommand& order, const dds::SampleInfo& info);
+  Expected<std::string> execute(const v1::OperatorCommand& order, const std::string& by, Time now);
+  std::string stop(const std::string& by, const std::string& reason, Time now);
+  Expected<std::string> release(const std::string& by, const std::string& reason, Time now);
+  Expected<std::string> take_over(const std::string& by, const std::string& name, Time now);
+
+  void on_consent(const v1::OperatorConsent& consent, const dds::SampleInfo& info);
+  void watch_consent(Time now);
+  void watch_lead(Time now);
+  Expected<void> open_audit(const std::string& name);
+  /// A line of the audit log, where there is one.
+  void note(audit::Event event, const std::string& who, const std::string& what, Time now);
+  void note_refused(std::string_view reason, const gate::WriterId& writer, Time now);
+
+  std::string missing(Time now) const;
+  void look_around(Time now);
+  void tell(Time now);
+  std::string name_of(const gate::WriterId& writer) const;
+
+  /// A command that was not obeyed.
+  struct Refused {
+    std::string why;
+    gate::WriterId writer{};
+    Time at{};
+  };
+
+  service::Shell& shell_;
+  std::optional<audit::Log> audit_;
+  Robot robot_;
+  gate::CommandGate gate_;
+  gate::Place open_;    // dof: of the open hand
+  bool opens_ = false;  // at a stop
+  service::Shell::Output<v1::GateState> states_;
+  service::Shell::Output<v1::OperatorReply> replies_;
+  OrderBook orders_;
+  std::uint64_t leads_ = 0;                 // as counted in the status
+  std::map<gate::WriterId, Time> writers_;  // of commands for this hand, when they last came
+  Time last_obeyed_;                        // or when somebody must have commanded at last
+  std::optional<Refused> refused_;          // the last one
+  std::optional<Refused> second_;           // of a second writer
+  std::string missing_;
+  v1::GateState state_;  // as it was told last
+  std::map<std::string, std::uint64_t, std::less<>> counts_;
+  std::optional<gate::WriterId> leader_;  // as noted
+  std::string leader_name_;
+  bool consented_ = false;
+  std::uint64_t obeyed_ = 0;
+  Time next_state_{};
+};
+
+}  // namespace prehend::robot

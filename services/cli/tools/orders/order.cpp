@@ -1,0 +1,163 @@
+#include "services/cli/tools/orders/order.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cstdlib>
+#include <iostream>
+#include <map>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "common/dds/topics.hpp"
+#include "common/service/shell.hpp"
+
+namespace prehend::cli {
+namespace {
+
+/// Between two tries, until all have answered: who is only just being discovered hears a later one.
+constexpr Duration order_period = std::chrono::milliseconds(50);
+/// Once all gates that are known have answered, others may still turn up for so long.
+constexpr Duration grace = std::chrono::milliseconds(300);
+
+/// A gate that was heard of in the rig.
+struct Answer {
+  std::optional<v1::OperatorReply> reply;
+  std::optional<v1::GateState> state;
+};
+
+/// Gives one order in one rig.
+class Giving {
+ public:
+  Giving(service::Shell& shell, const Order& order)
+      : shell_(shell),
+        order_(order),
+        id_(fmt::format("{}-{}-{}", operator_name(), ::getpid(), to_ns(shell.now()))),
+        begun_(shell.now()),
+        orders_(shell.publish(dds::operator_command)) {
+    shell.subscribe(dds::operator_reply, std::function([this](const v1::OperatorReply& reply,
+                                                              const dds::SampleInfo& info) {
+                      if (!info.gone && reply.id().to_string() == id_) answer(info).reply = reply;
+                    }));
+    shell.subscribe(dds::robot_gate,
+                    std::function([this](const v1::GateState& state, const dds::SampleInfo& info) {
+                      if (!info.gone) answer(info).state = state;
+                    }));
+    shell.on_tick(order_period, [this](Time now) { tick(now); });
+    shell.status().running();
+  }
+
+  const std::map<dds::GuidPrefix, Answer>& answers() const { return answers_; }
+
+ private:
+  Answer& answer(const dds::SampleInfo& info) {
+    if (!answers_.contains(info.participant)) newest_ = shell_.now();
+    return answers_[info.participant];
+  }
+
+  static bool done(const Answer& answer) { return answer.reply && answer.reply->done(); }
+
+  void tick(Time now) {
+    const bool all = !answers_.empty() && std::all_of(answers_.begin(), answers_.end(),
+                                                      [](auto& a) { return done(a.second); });
+    // What a gate says of itself comes right behind its reply.
+    const bool told = std::all_of(answers_.begin(), answers_.end(),
+                                  [](auto& a) { return a.second.state.has_value(); });
+    if ((all && told && now - newest_ > grace) || now - begun_ > seconds(order_.timeout))
+      return shell_.stop();
+    v1::OperatorCommand message;
+    message.id(id_.substr(0, 63).c_str());
+    message.stamp_ns(to_ns(now));
+    message.action(order_.action);
+    message.target("gate");
+    message.argument(order_.argument.substr(0, 127).c_str());
+    if (!all) orders_.publish(message);
+  }
+
+  service::Shell& shell_;
+  const Order& order_;
+  std::string id_;
+  Time begun_, newest_{};
+  service::Shell::Output<v1::OperatorCommand> orders_;
+  std::map<dds::GuidPrefix, Answer> answers_;
+};
+
+/// A line, and an entry of the document, a gate; true: it did what was asked.
+bool report(const std::string& rig, const Answer& answer, bool json,
+            nlohmann::ordered_json& document) {
+  const bool done = answer.reply && answer.reply->done();
+  const std::string hand = answer.state ? answer.state->hand().to_string() : "";
+  const std::string message =
+      answer.reply ? answer.reply->message().to_string() : "does not answer";
+  document.push_back({{"rig", rig},
+                      {"hand", hand},
+                      {"done", done},
+                      {"message", message},
+                      {"stopped", answer.state && answer.state->stopped()},
+                      {"leader", answer.state ? answer.state->leader().to_string() : ""}});
+  if (!json) std::cout << fmt::format("{}/{}: {}\n", rig, hand, message);
+  return done;
+}
+
+/// True: all gates of the rig did what was asked, and there is one.
+Expected<bool> give_in(const std::string& rig, const Order& order,
+                       nlohmann::ordered_json& document) {
+  std::vector<std::string> arguments = order.lab.for_service();
+  arguments.insert(arguments.end(), {"--set", "lab.rig=" + rig});
+  const auto shell =
+      service::Shell::create(arguments, {operator_name(), "Gives an order.", "operator", false});
+  if (!shell) return tl::unexpected(shell.error());
+  const Giving giving(**shell, order);
+  if (const auto ended = (*shell)->run(); !ended) return tl::unexpected(ended.error());
+  std::size_t done = 0;
+  for (const auto& [participant, answer] : giving.answers())
+    done += report(rig, answer, order.json, document);
+  if (giving.answers().empty() && !order.json)
+    std::cout << fmt::format("{}: no gate answers; is a robot there? prehend status\n", rig);
+  // Who takes over leads one hand; the gates of others do not know it.
+  return done > 0 && (done == giving.answers().size() || order.action == v1::ACTION_TAKE_OVER);
+}
+
+}  // namespace
+
+void Order::add_to(CLI::App& app) {
+  lab.add_to(app);
+  auto* one = app.add_option("--rig", rigs, "another rig than lab.rig; repeatable")
+                  ->type_size(1)
+                  ->allow_extra_args(false);
+  app.add_flag("--all", all, "every rig of the domain")->excludes(one);
+  app.add_option("--timeout", timeout, "s to wait for answers")
+      ->capture_default_str()
+      ->check(CLI::Range(0.1, 3600.0));
+  app.add_flag("--json", json, "one JSON document on standard output");
+}
+
+std::string operator_name() {
+  const char* user = std::getenv("USER");
+  const std::string name = user && *user ? user : std::to_string(::getuid());
+  return "operator-" + name.substr(0, 40);  // of the 64 characters of a service's name
+}
+
+int give(const Order& order) {
+  const auto config = order.lab.load();
+  if (!config) return service::complain(config.error(), exit_wrong_use);
+  std::vector<std::string> rigs = order.rigs;
+  if (rigs.empty()) rigs.push_back(order.all ? "*" : config->text("lab.rig"));
+  nlohmann::ordered_json gates = nlohmann::ordered_json::array();
+  bool all = true;
+  for (const std::string& rig : rigs) {
+    const auto done = give_in(rig, order, gates);
+    if (!done) return service::complain(done.error());
+    all = all && *done;
+  }
+  if (order.json)
+    std::cout << nlohmann::ordered_json{{"done", all}, {"gates", gates}}.dump(
+                     -1, ' ', false, nlohmann::json::error_handler_t::replace)
+              << "\n";
+  return all ? exit_done : exit_no;
+}
+
+}  // namespace prehend::cli

@@ -1,0 +1,22 @@
+#include "services/cli/tools/orders/stop_command.hpp"
+
+#include <CLI/CLI.hpp>
+
+#include "services/cli/tools/orders/order.hpp"
+
+namespace prehend::cli {
+
+int stop_command(const std::vector<std::string>& arguments) {
+  CLI::App app{
+      "Stops the robots of the rig: they obey nothing any more until `prehend release`. Fingers "
+      "hold or\nopen (safety.on_stop), the base stays. Exit code 1: not every gate has answered.",
+      "prehend stop"};
+  Order order;
+  order.action = v1::ACTION_STOP;
+  order.add_to(app);
+  app.add_option("--reason", order.argument, "why, for those who read of it");
+  if (const auto code = service::parse(app, arguments)) return *code;
+  return give(order);
+}
+
+}  // namespace prehend::cli
