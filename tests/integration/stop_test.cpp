@@ -101,6 +101,21 @@ TEST_F(Stop, ComesAgainAndIsSaidToBeThereAlready) {
   EXPECT_EQ(ordered({"release", "--reason", "done"})["gates"][0]["message"], "was not stopped");
 }
 
+TEST_F(Stop, AnotherRigIsNamed) {
+  start_hand();
+  const auto from_elsewhere = [&](Strings words) {
+    words = with_lab(std::move(words));
+    words.insert(words.end(), {"--set", "lab.rig=" + name_ + "-elsewhere"});
+    return run("prehend", words, 30);
+  };
+  EXPECT_EQ(from_elsewhere({"stop", "--timeout", "0.5"}).exit_code, 1);
+  EXPECT_FALSE(gate_.stopped());
+  const Answer stopped = from_elsewhere({"stop", "--rig", name_});
+  EXPECT_EQ(stopped.exit_code, 0) << stopped.log;
+  EXPECT_NE(stopped.output.find(name_ + "/hand: stopped"), std::string::npos) << stopped.output;
+  EXPECT_TRUE(wait(5, [&] { return gate_.stopped(); }));
+}
+
 TEST_F(Stop, AReleaseNeedsAReasonAndAGate) {
   EXPECT_EQ(order({"release"}).exit_code, 2);
   EXPECT_EQ(order({"release", "--reason", ""}).exit_code, 2);
