@@ -11,6 +11,9 @@ namespace prehend::integration {
 /// Where the hand's base is at first, m.
 inline const Eigen::Vector3d beginning(0, -0.3, 0.5);
 
+/// For tests of who leads: on a loaded machine a leader may be silent for longer than 0.3 s.
+inline const Strings patient{"gate.max_silence=2"};
+
 /// A simulation, what it says, and commands and orders for it.
 class SafetyRig : public Rig {
  protected:

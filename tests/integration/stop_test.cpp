@@ -2,7 +2,9 @@
 // moves the hand until the release, whatever happens to mapping, and then nothing moves it faster
 // than it may.
 #include <csignal>
+#include <map>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "tests/integration/safety_rig.hpp"
 #include "tests/integration/terminal.hpp"
@@ -250,22 +252,22 @@ TEST_F(Stop, TheAuditLogTellsWhoDidWhat) {
   ASSERT_TRUE(simulation_->wait(seconds(5)));
   const Answer answer = order({"audit", "--set", "safety.audit=" + folder, "--json"});
   ASSERT_EQ(answer.exit_code, 0) << answer.log;
-  std::map<std::string, json> events;
+  std::map<std::string, std::set<std::string>> events;
   const json document = json::parse(answer.output);
-  for (const json& event : document["events"]) events.emplace(event["event"], event);
+  for (const json& event : document["events"])
+    events[event["event"]].insert(event.value("what", ""));
   EXPECT_TRUE(events.contains("begin"));
   EXPECT_TRUE(events.contains("lead"));
-  ASSERT_TRUE(events.contains("stop") && events.contains("release") && events.contains("refused"));
-  EXPECT_EQ(events["stop"]["what"], "a noise");
-  EXPECT_EQ(events["release"]["what"], "it was the door");
-  EXPECT_EQ(events["refused"]["what"], "command while stopped");
+  EXPECT_TRUE(events["stop"].contains("a noise")) << answer.output;
+  EXPECT_TRUE(events["release"].contains("it was the door")) << answer.output;
+  EXPECT_TRUE(events["refused"].contains("command while stopped")) << answer.output;
   EXPECT_EQ(order({"audit", folder + "/hand.jsonl"}).exit_code, 0);
   EXPECT_EQ(order({"audit"}).exit_code, 2) << "there is no log";
   EXPECT_EQ(order({"audit", folder + "/none.jsonl"}).exit_code, 3);
 }
 
 TEST_F(Stop, TheLeadIsTakenOverByName) {
-  start_lab();
+  start_lab(patient);
   auto second = start("mapping");
   ASSERT_TRUE(wait(20, [&] { return gate_.refused().to_string().starts_with("mapping@"); }));
   const std::string first = gate_.leader().to_string(), other = gate_.refused().to_string();
