@@ -27,10 +27,10 @@ class Stop : public SafetyRig {
   /// The hand stays within a tenth of a millimetre and, its fingers, a thousandth of a radian, from
   /// now on for so many states.
   void expect_still(int states) {
-    ASSERT_TRUE(wait(5, [&, first = heard_] { return heard_ > first + 5; }));
+    ASSERT_TRUE(wait(20, [&, first = heard_] { return heard_ > first + 5; }));
     const v1::HandState then = state_;
     double moved = 0, turned = 0;
-    ASSERT_TRUE(wait(10, [&, first = heard_] {
+    ASSERT_TRUE(wait(30, [&, first = heard_] {
       moved = std::max(moved, (base() - convert::from_message(then.X_WB().position())).norm());
       for (std::size_t i = 0; i < then.dof().size(); ++i)
         turned = std::max(turned, std::abs(state_.dof()[i] - then.dof()[i]));
@@ -58,7 +58,7 @@ TEST_F(Stop, LatchesWhateverMappingDoesUntilTheRelease) {
   ASSERT_EQ(stopped["gates"].size(), 1u) << stopped;
   EXPECT_EQ(stopped["gates"][0]["hand"], "hand");
   EXPECT_EQ(stopped["gates"][0]["stopped"], true);
-  EXPECT_TRUE(wait(5, [&] { return says("stopped by"); })) << status_.message().to_string();
+  EXPECT_TRUE(wait(20, [&] { return says("stopped by"); })) << status_.message().to_string();
   EXPECT_TRUE(gate_.stopped());
   EXPECT_EQ(gate_.reason().to_string(), "a test");
   EXPECT_NE(gate_.stopped_by().to_string().find("operator-"), std::string::npos)
@@ -66,7 +66,7 @@ TEST_F(Stop, LatchesWhateverMappingDoesUntilTheRelease) {
 
   expect_still(100);  // mapping goes on
   const std::uint64_t refused = dropped("command while stopped");
-  EXPECT_TRUE(wait(5, [&] { return dropped("command while stopped") > refused; }));
+  EXPECT_TRUE(wait(20, [&] { return dropped("command while stopped") > refused; }));
   mapping_->signal(SIGSTOP);
   expect_still(100);
   mapping_->signal(SIGCONT);
@@ -85,11 +85,11 @@ TEST_F(Stop, LatchesWhateverMappingDoesUntilTheRelease) {
   const json released = ordered({"release", "--reason", "the test goes on"});
   EXPECT_EQ(released["gates"][0]["message"], "released");
   EXPECT_TRUE(moves(20));
-  EXPECT_TRUE(wait(5, [&] { return status_.state() == v1::STATE_RUNNING; }));
-  EXPECT_TRUE(wait(5, [&, first = heard_] { return heard_ > first + 100; }));
-  // As the world has it: 1 m/s, and joints of 2.5 rad/s, seen between two states.
-  EXPECT_LT(base_speed_, 1.2);
-  EXPECT_LT(dof_speed_, 1.2 * 2.5);
+  EXPECT_TRUE(wait(20, [&] { return status_.state() == v1::STATE_RUNNING; }));
+  EXPECT_TRUE(wait(20, [&, first = heard_] { return heard_ > first + 100; }));
+  // The gate's limits: 1.2 times what mapping and the joints (2.5 rad/s) may do.
+  EXPECT_LE(base_speed_, 1.2 + 1e-6);
+  EXPECT_LE(dof_speed_, 1.2 * 2.5 + 1e-6);
   EXPECT_FALSE(gate_.stopped());
 }
 
@@ -115,7 +115,7 @@ TEST_F(Stop, AnotherRigIsNamed) {
   const Answer stopped = from_elsewhere({"stop", "--rig", name_});
   EXPECT_EQ(stopped.exit_code, 0) << stopped.log;
   EXPECT_NE(stopped.output.find(name_ + "/hand: stopped"), std::string::npos) << stopped.output;
-  EXPECT_TRUE(wait(5, [&] { return gate_.stopped(); }));
+  EXPECT_TRUE(wait(20, [&] { return gate_.stopped(); }));
 }
 
 TEST_F(Stop, AReleaseNeedsAReasonAndAGate) {
@@ -156,7 +156,7 @@ TEST_F(Stop, OldOrdersStopButDoNotRelease) {
   const auto released = give("release", v1::ACTION_RELEASE);
   ASSERT_TRUE(released);
   EXPECT_FALSE(released->done());
-  EXPECT_TRUE(wait(5, [&] { return gate_.stopped(); }));
+  EXPECT_TRUE(wait(20, [&] { return gate_.stopped(); }));
 }
 
 TEST_F(Stop, OpensTheHandWhereThatIsAsked) {
@@ -209,17 +209,17 @@ TEST_F(Stop, TheHandMovesOnlyWhileTheDeadmanIsHeld) {
       << status_.message().to_string();
   base_speed_ = 0;
   EXPECT_TRUE(send(
-      commands_, 5,
+      commands_, 20,
       [&] {
         terminal.press(" ");
         return circling();
       },
       [&] { return base_speed_ > 0.05; }));
   // Let go: commands come all the same.
-  EXPECT_TRUE(send(commands_, 10, circling, [&] { return !gate_.consent(); }));
+  EXPECT_TRUE(send(commands_, 20, circling, [&] { return !gate_.consent(); }));
   const Vector3d then = base();
   const std::uint64_t refused = dropped("command without consent");
-  EXPECT_TRUE(send(commands_, 10, circling,
+  EXPECT_TRUE(send(commands_, 20, circling,
                    [&] { return dropped("command without consent") > refused + 50; }));
   EXPECT_LT((base() - then).norm(), 0.02);
   EXPECT_TRUE(says("the deadman is not held")) << status_.message().to_string();
@@ -234,9 +234,9 @@ TEST_F(Stop, ConsentIsHeldByScriptsForATimeOrWithAProcess) {
   auto process = start_program("prehend", with_lab({"consent", "--while-pid", "1"}));
   EXPECT_TRUE(wait(20, [&] { return gate_.consent(); }));
   process.signal(SIGKILL);
-  EXPECT_TRUE(wait(5, [&] { return !gate_.consent(); })) << "it must not outlive who holds it";
+  EXPECT_TRUE(wait(20, [&] { return !gate_.consent(); })) << "it must not outlive who holds it";
   EXPECT_EQ(order({"consent", "--for", "0.3"}).exit_code, 0);
-  EXPECT_TRUE(wait(5, [&] { return !gate_.consent(); }));
+  EXPECT_TRUE(wait(20, [&] { return !gate_.consent(); }));
 }
 
 // Who led, stopped and let go is in the log, also when the service is killed.
@@ -245,7 +245,7 @@ TEST_F(Stop, TheAuditLogTellsWhoDidWhat) {
   start_hand({"safety.audit=" + folder});
   ordered({"stop", "--reason", "a noise"});
   EXPECT_TRUE(send(
-      commands_, 5, [&] { return command(beginning); },
+      commands_, 20, [&] { return command(beginning); },
       [&] { return dropped("command while stopped") > 10; }));
   ordered({"release", "--reason", "it was the door"});
   simulation_->signal(SIGKILL);
@@ -272,10 +272,10 @@ TEST_F(Stop, TheLeadIsTakenOverByName) {
   ASSERT_TRUE(wait(20, [&] { return gate_.refused().to_string().starts_with("mapping@"); }));
   const std::string first = gate_.leader().to_string(), other = gate_.refused().to_string();
   ordered({"takeover", "mapping"});
-  EXPECT_TRUE(wait(10, [&] { return gate_.leader().to_string() == other; }))
+  EXPECT_TRUE(wait(20, [&] { return gate_.leader().to_string() == other; }))
       << gate_.leader().to_string();
   ordered({"takeover", first});
-  EXPECT_TRUE(wait(10, [&] { return gate_.leader().to_string() == first; }));
+  EXPECT_TRUE(wait(20, [&] { return gate_.leader().to_string() == first; }));
   const json nobody = ordered({"takeover", "nobody", "--timeout", "1"}, 1);
   const std::string message = nobody["gates"][0]["message"];
   EXPECT_NE(message.find("does not send robot/command"), std::string::npos) << message;
