@@ -14,7 +14,7 @@ using Eigen::Matrix4Xd;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr double unbounded = std::numeric_limits<double>::infinity();
 constexpr double slack = 1e-9;  // of the least effort, for the second program
 
 /// The friction edges of all contacts side by side; a grip is how much of each is used.
@@ -70,10 +70,10 @@ Expected<std::optional<GripForces>> least_torques(const std::vector<Contact>& co
       limits.cwiseInverse().asDiagonal() * jacobian.transpose() * grip.forces;  // per edge
   program.rows.block(6, 0, joints, n) = efforts;
   program.rows.block(6, n, joints, 1).setConstant(-1);
-  program.row_lower.segment(6, joints).setConstant(-infinity);
+  program.row_lower.segment(6, joints).setConstant(-unbounded);
   program.rows.block(6 + joints, 0, joints, n) = efforts;
   program.rows.block(6 + joints, n, joints, 1).setConstant(1);
-  program.row_upper.segment(6 + joints, joints).setConstant(infinity);
+  program.row_upper.segment(6 + joints, joints).setConstant(unbounded);
   auto best = minimise(program);
   if (!best) return tl::unexpected(best.error());
   if (!*best) return std::optional<GripForces>();

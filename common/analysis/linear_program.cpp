@@ -12,7 +12,7 @@ using Eigen::Index;
 using Eigen::VectorXd;
 
 // Of the solver's: how far a constraint may be missed. Its own default is 1e-7.
-constexpr double tolerance = 1e-9;
+constexpr double solver_tolerance = 1e-9;
 
 }  // namespace
 
@@ -40,8 +40,8 @@ Expected<std::optional<VectorXd>> minimise(const LinearProgram& program) {
   ClpSimplex solver;
   solver.setLogLevel(0);
   solver.scaling(0);  // would blow up a row that holds nothing but rounding, and find no solution
-  solver.setPrimalTolerance(tolerance);
-  solver.setDualTolerance(tolerance);
+  solver.setPrimalTolerance(solver_tolerance);
+  solver.setDualTolerance(solver_tolerance);
   solver.loadProblem(columns, rows, starts.data(), indices.data(), program.rows.data(),
                      program.lower.data(), program.upper.data(), program.cost.data(),
                      program.row_lower.data(), program.row_upper.data());

@@ -20,10 +20,10 @@ bool carries_samples(const rtps::Locator_t& local) {
   return local.kind == LOCATOR_KIND_UDPv4 && local.port % 2 == 1;
 }
 
-class Transport final : public PassThroughTransport {
+class SerializingTransport final : public PassThroughTransport {
  public:
-  Transport(const transport::ChainingTransportDescriptor& descriptor,
-            SerializedTransport& serializer)
+  SerializingTransport(const transport::ChainingTransportDescriptor& descriptor,
+                       SerializedTransport& serializer)
       : PassThroughTransport(descriptor), serializer_(serializer) {}
   void receive(transport::TransportReceiverInterface* next, const rtps::octet* bytes,
                std::uint32_t size, const rtps::Locator_t& local,
@@ -39,12 +39,12 @@ class Transport final : public PassThroughTransport {
   SerializedTransport& serializer_;
 };
 
-struct Descriptor final : transport::ChainingTransportDescriptor {
-  Descriptor(std::shared_ptr<transport::TransportDescriptorInterface> lower,
-             SerializedTransport& one)
+struct SerializingDescriptor final : transport::ChainingTransportDescriptor {
+  SerializingDescriptor(std::shared_ptr<transport::TransportDescriptorInterface> lower,
+                        SerializedTransport& one)
       : ChainingTransportDescriptor(std::move(lower)), serializer(one) {}
   transport::TransportInterface* create_transport() const override {
-    return new Transport(*this, serializer);
+    return new SerializingTransport(*this, serializer);
   }
   SerializedTransport& serializer;
 };
@@ -74,7 +74,7 @@ void SerializedTransport::close() {
 std::shared_ptr<transport::TransportDescriptorInterface> serialized(
     std::shared_ptr<transport::TransportDescriptorInterface> lower,
     SerializedTransport& serializer) {
-  return std::make_shared<Descriptor>(std::move(lower), serializer);
+  return std::make_shared<SerializingDescriptor>(std::move(lower), serializer);
 }
 
 std::set<std::uint64_t> packets_in_process() {

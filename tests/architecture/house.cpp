@@ -55,7 +55,7 @@ Target target_of(std::string_view text, std::size_t begin) {
       list = &target.link;
     } else if (word == "PRIVATE") {
       list = &target.private_link;
-    } else if (word == "HOT" || word == "VISION") {
+    } else if (word == "HOT" || word == "COMMANDS" || word == "VISION") {
       // How it is compiled and packed, which is no rule's business.
     } else if (list) {
       list->push_back(word);

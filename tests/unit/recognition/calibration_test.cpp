@@ -21,7 +21,7 @@
 namespace prehend::recognition {
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 const Chessboard board;
 
 CameraModel true_camera() {

@@ -15,7 +15,7 @@
 namespace prehend::recognition {
 namespace {
 
-constexpr int colours = 5;
+constexpr int colour_count = 5;
 
 /// All pairs whose first pixel lies in the rectangle, on every step-th pixel.
 Eigen::VectorXf naive(const Plane& plane, int palette, const std::vector<Offset>& offsets, int left,
@@ -37,22 +37,22 @@ Eigen::VectorXf naive(const Plane& plane, int palette, const std::vector<Offset>
 TEST(WindowSums, EqualNaiveOnes) {
   Random random(3);
   Plane plane(83, 61);
-  for (auto& value : plane.values) value = static_cast<std::uint8_t>(random.index(colours));
+  for (auto& value : plane.values) value = static_cast<std::uint8_t>(random.index(colour_count));
   for (int i = 0; i < 200; ++i) plane.values[static_cast<std::size_t>(i * 17)] = 255;  // left out
   const auto offsets = offsets_at({1, 3, 6});
   for (const int step : {1, 2, 3}) {
-    const WindowSums sums(plane, colours, offsets, 8, step, 3);
+    const WindowSums sums(plane, colour_count, offsets, 8, step, 3);
     std::vector<std::uint16_t> counts(static_cast<std::size_t>(sums.padded()));
     for (const int size : {1, 2, 3})
       for (int j = 0; j + size <= sums.rows(); ++j)
         for (int i = 0; i + size <= sums.columns(); ++i) {
-          const auto expected = naive(plane, colours, offsets, 8 * i, 8 * j, 8 * size, step);
+          const auto expected = naive(plane, colour_count, offsets, 8 * i, 8 * j, 8 * size, step);
           EXPECT_EQ(sums.window(i, j, size, counts), expected.sum());
           for (Eigen::Index b = 0; b < expected.size(); ++b)
             ASSERT_EQ(counts[static_cast<std::size_t>(b)], expected[b]) << size << " " << step;
         }
-    EXPECT_EQ(sums.total(), naive(plane, colours, offsets, 0, 0, 80, step) -
-                                naive(plane, colours, offsets, 0, 56, 80, step));
+    EXPECT_EQ(sums.total(), naive(plane, colour_count, offsets, 0, 0, 80, step) -
+                                naive(plane, colour_count, offsets, 0, 56, 80, step));
   }
 }
 

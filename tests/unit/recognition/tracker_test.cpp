@@ -11,7 +11,7 @@
 namespace prehend::recognition {
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 Sighting box_at(double x, double y, double yaw = 0) {
   Sighting made;
