@@ -111,40 +111,42 @@ Expected<void> check_environment() {
 
 }  // namespace
 
-Expected<Config> Config::load(const std::filesystem::path& file,
-                              const std::vector<std::string>& overrides) {
-  Config config;
-  config.directory_ = std::filesystem::absolute(file).parent_path();
-  for (const ConfigKey& key : config_keys()) config.values_.emplace(key.name, key.fallback);
+namespace {
 
-  const auto set = [&](std::string_view name, const toml::node& node,
-                       const std::string& where) -> Expected<void> {
-    const ConfigKey* key = find_key(name);
-    if (!key) return fail(fmt::format("unknown key {}", name), where, nearest_key(name));
-    auto value = convert(node, key->fallback);
-    if (!value)
-      return fail(fmt::format("{} must be {}", name, type_name(key->fallback)), where,
-                  std::string(key->help));
-    config.values_.find(name)->second = std::move(*value);
-    return {};
-  };
-  /// A value as it stands behind a key in TOML; bare words are texts.
-  const auto set_from_text = [&](std::string_view name, const std::string& text,
-                                 const std::string& where) -> Expected<void> {
-    const ConfigKey* key = find_key(name);
-    if (!key) return fail(fmt::format("unknown key {}", name), where, nearest_key(name));
-    if (std::holds_alternative<std::string>(key->fallback))
-      return set(name, toml::value<std::string>(text), where);
-    try {
-      const toml::table table = toml::parse("value = " + text);
-      return set(name, *table.get("value"), where);
-    } catch (const toml::parse_error&) {
-      return fail(fmt::format("{} must be {}", name, type_name(key->fallback)), where,
-                  std::string(key->help));
-    }
-  };
+using Values = std::map<std::string, Setting, std::less<>>;
 
-  if (const auto known = check_environment(); !known) return tl::unexpected(known.error());
+Expected<void> set(Values& values, std::string_view name, const toml::node& node,
+                   const std::string& where) {
+  const ConfigKey* key = find_key(name);
+  if (!key) return fail(fmt::format("unknown key {}", name), where, nearest_key(name));
+  auto value = convert(node, key->fallback);
+  if (!value)
+    return fail(fmt::format("{} must be {}", name, type_name(key->fallback)), where,
+                std::string(key->help));
+  values.find(name)->second = std::move(*value);
+  return {};
+}
+
+/// A value as it stands behind a key in TOML; bare words are texts.
+Expected<void> set_from_text(Values& values, std::string_view name, const std::string& text,
+                             const std::string& where) {
+  const ConfigKey* key = find_key(name);
+  if (!key) return fail(fmt::format("unknown key {}", name), where, nearest_key(name));
+  if (std::holds_alternative<std::string>(key->fallback))
+    return set(values, name, toml::value<std::string>(text), where);
+  try {
+    const toml::table table = toml::parse("value = " + text);
+    return set(values, name, *table.get("value"), where);
+  } catch (const toml::parse_error&) {
+    return fail(fmt::format("{} must be {}", name, type_name(key->fallback)), where,
+                std::string(key->help));
+  }
+}
+
+Expected<void> set_from_file(Values& values, const std::filesystem::path& file) {
+  const auto place = [&](const toml::node& node) {
+    return fmt::format("{}:{}", file.string(), node.source().begin.line);
+  };
   toml::table root;
   try {
     root = toml::parse_file(file.string());
@@ -159,26 +161,42 @@ Expected<Config> Config::load(const std::filesystem::path& file,
       return fail(fmt::format("unknown key {}", table_name.str()), file.string(),
                   "keys stand in tables");
     for (const auto& [key, value] : *table) {
-      const auto done = set(fmt::format("{}.{}", table_name.str(), key.str()), value,
-                            fmt::format("{}:{}", file.string(), value.source().begin.line));
-      if (!done) return tl::unexpected(done.error());
+      const std::string name = fmt::format("{}.{}", table_name.str(), key.str());
+      if (const auto done = set(values, name, value, place(value)); !done) return done;
     }
   }
+  return {};
+}
 
+Expected<void> set_from_environment(Values& values) {
   for (const ConfigKey& key : config_keys()) {
     const std::string variable = variable_of(key);
     if (const char* text = std::getenv(variable.c_str()))
-      if (const auto done = set_from_text(key.name, text, variable); !done)
-        return tl::unexpected(done.error());
+      if (const auto done = set_from_text(values, key.name, text, variable); !done) return done;
   }
-  for (const std::string& text : overrides) {
-    const std::size_t equals = text.find('=');
-    if (equals == std::string::npos) return fail("must be table.key=value", "--set " + text);
-    if (const auto done =
-            set_from_text(text.substr(0, equals), text.substr(equals + 1), "--set " + text);
-        !done)
-      return tl::unexpected(done.error());
-  }
+  return {};
+}
+
+/// text: «table.key=value».
+Expected<void> set_from_override(Values& values, const std::string& text) {
+  const std::size_t equals = text.find('=');
+  if (equals == std::string::npos) return fail("must be table.key=value", "--set " + text);
+  return set_from_text(values, text.substr(0, equals), text.substr(equals + 1), "--set " + text);
+}
+
+}  // namespace
+
+Expected<Config> Config::load(const std::filesystem::path& file,
+                              const std::vector<std::string>& overrides) {
+  Config config;
+  config.directory_ = std::filesystem::absolute(file).parent_path();
+  for (const ConfigKey& key : config_keys()) config.values_.emplace(key.name, key.fallback);
+  auto done = check_environment();
+  if (done) done = set_from_file(config.values_, file);
+  if (done) done = set_from_environment(config.values_);
+  for (const std::string& text : overrides)
+    if (done) done = set_from_override(config.values_, text);
+  if (!done) return tl::unexpected(done.error());
   return config;
 }
 

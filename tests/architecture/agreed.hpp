@@ -82,10 +82,7 @@ inline constexpr std::string_view older = "older than the rule";
 
 inline constexpr std::array long_functions{
     Exception{"common/dds/participant.cpp", "Participant::join(", older},
-    Exception{"common/service/config.cpp", "Config::load(", older},
     Exception{"common/service/config_keys.cpp", "config_keys(", "a table: a row a key"},
-    Exception{"services/cli/tools/status/status_command.cpp", "status_command(", older},
-    Exception{"services/recorder/tools/replay/main.cpp", "replay(", older},
     Exception{"tests/benchmark/glove_driver.cpp", "measure(", older},
     Exception{"tests/integration/flood_test.cpp", "Flood::flood(", older},
     Exception{"tests/integration/profiles_test.cpp", "SitesBehindRoutersMeetAtForwardedPortsAlone)",

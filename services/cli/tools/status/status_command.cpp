@@ -49,6 +49,69 @@ void show(const std::string& page) {
             << std::flush;
 }
 
+struct Arguments {
+  service::LabArguments lab;
+  std::vector<std::string> awaited;
+  bool json = false, once = false;
+  double timeout = 1.5;
+
+  void add_to(CLI::App& app) {
+    lab.add_to(app);
+    app.add_option("--wait", awaited,
+                   "ends as soon as this service is up, with exit code 1 when it is not in time; "
+                   "repeatable")
+        ->type_size(1)
+        ->allow_extra_args(false);
+    app.add_option("--timeout", timeout, "s to listen, where the table is not renewed")
+        ->capture_default_str()
+        ->check(CLI::Range(0.1, 3600.0));
+    app.add_flag("--once", once, "one table, also on a terminal");
+    app.add_flag("--json", json, "one JSON document on standard output");
+  }
+};
+
+/// What services, their beacons and robots' gates say, on its way into a view.
+class Hearing {
+ public:
+  static Expected<Hearing> create(dds::Participant& participant) {
+    auto statuses = participant.reader(dds::service_status);
+    if (!statuses) return tl::unexpected(statuses.error());
+    auto beacons = participant.reader(dds::lab_beacon);
+    if (!beacons) return tl::unexpected(beacons.error());
+    auto gates = participant.reader(dds::robot_gate);
+    if (!gates) return tl::unexpected(gates.error());
+    return Hearing(std::move(*statuses), std::move(*beacons), std::move(*gates));
+  }
+
+  void tell(StatusView& view, Time now) {
+    for (const auto& sample : statuses_.take())
+      if (sample.info.gone)
+        view.lose(sample.data.service().to_string(), now);
+      else
+        view.hear(sample.data, now);
+    for (const auto& sample : beacons_.take())
+      if (!sample.info.gone) view.hear(sample.data, now);
+    for (const auto& sample : gates_.take())
+      if (!sample.info.gone) view.hear(sample.data, now);
+  }
+
+ private:
+  Hearing(dds::Reader<v1::ServiceStatus> statuses, dds::Reader<v1::ClockBeacon> beacons,
+          dds::Reader<v1::GateState> gates)
+      : statuses_(std::move(statuses)), beacons_(std::move(beacons)), gates_(std::move(gates)) {}
+  dds::Reader<v1::ServiceStatus> statuses_;
+  dds::Reader<v1::ClockBeacon> beacons_;
+  dds::Reader<v1::GateState> gates_;
+};
+
+void clear_terminal() {
+  struct sigaction action {};
+  action.sa_handler = on_end;
+  sigaction(SIGTERM, &action, nullptr);
+  sigaction(SIGINT, &action, nullptr);
+  std::cout << "\x1b[2J";
+}
+
 }  // namespace
 
 int status_command(const std::vector<std::string>& arguments) {
@@ -56,63 +119,33 @@ int status_command(const std::vector<std::string>& arguments) {
       "Who is there and how they fare. On a terminal the table is renewed until q and Enter or "
       "Ctrl-C.",
       "prehend status"};
-  service::LabArguments lab;
-  std::vector<std::string> awaited;
-  bool json = false, once = false;
-  double timeout = 1.5;
-  lab.add_to(app);
-  app.add_option("--wait", awaited,
-                 "ends as soon as this service is up, with exit code 1 when it is not in time; "
-                 "repeatable")
-      ->type_size(1)
-      ->allow_extra_args(false);
-  app.add_option("--timeout", timeout, "s to listen, where the table is not renewed")
-      ->capture_default_str()
-      ->check(CLI::Range(0.1, 3600.0));
-  app.add_flag("--once", once, "one table, also on a terminal");
-  app.add_flag("--json", json, "one JSON document on standard output");
+  Arguments given;
+  given.add_to(app);
   if (const auto code = service::parse(app, arguments)) return *code;
 
-  const auto config = lab.load();
+  const auto config = given.lab.load();
   if (!config) return service::complain(config.error(), exit_wrong_use);
   auto participant = dds::Participant::create(service::membership(*config, "prehend", "viewer"));
   if (!participant) return service::complain(participant.error(), exit_broken);
-  auto statuses = participant->reader(dds::service_status);
-  if (!statuses) return service::complain(statuses.error(), exit_broken);
-  auto beacons = participant->reader(dds::lab_beacon);
-  if (!beacons) return service::complain(beacons.error(), exit_broken);
-  auto gates = participant->reader(dds::robot_gate);
-  if (!gates) return service::complain(gates.error(), exit_broken);
+  auto hearing = Hearing::create(*participant);
+  if (!hearing) return service::complain(hearing.error(), exit_broken);
 
   StatusView view(config->names("lab.services"));
   const auto all_up = [&] {
-    return std::all_of(awaited.begin(), awaited.end(),
+    return std::all_of(given.awaited.begin(), given.awaited.end(),
                        [&](const std::string& name) { return view.is_up(name, process_now()); });
   };
-  const bool live = !json && !once && awaited.empty() && ::isatty(STDOUT_FILENO) == 1;
-  if (live) {
-    struct sigaction action {};
-    action.sa_handler = on_end;
-    sigaction(SIGTERM, &action, nullptr);
-    sigaction(SIGINT, &action, nullptr);
-    std::cout << "\x1b[2J";
-  }
+  const bool live =
+      !given.json && !given.once && given.awaited.empty() && ::isatty(STDOUT_FILENO) == 1;
+  if (live) clear_terminal();
   const Time begin = process_now();
   Time next_page = begin + std::chrono::milliseconds(500);
   while (ended == 0) {
     const Time now = process_now();
-    if (!live && now - begin > prehend::seconds(timeout)) break;
-    if (!awaited.empty() && all_up()) break;
+    if (!live && now - begin > prehend::seconds(given.timeout)) break;
+    if (!given.awaited.empty() && all_up()) break;
     std::this_thread::sleep_for(std::chrono::milliseconds(20));
-    for (const auto& sample : statuses->take())
-      if (sample.info.gone)
-        view.lose(sample.data.service().to_string(), now);
-      else
-        view.hear(sample.data, now);
-    for (const auto& sample : beacons->take())
-      if (!sample.info.gone) view.hear(sample.data, now);
-    for (const auto& sample : gates->take())
-      if (!sample.info.gone) view.hear(sample.data, now);
+    hearing->tell(view, now);
     if (!live) continue;
     if (entered_key() == 'q') break;
     if (now < next_page) continue;
@@ -120,8 +153,8 @@ int status_command(const std::vector<std::string>& arguments) {
     show("rig " + config->text("lab.rig") + ": " + view.page(now));
   }
   const Time now = process_now();
-  if (!live) std::cout << (json ? view.json(now) + "\n" : view.page(now));
-  if (!awaited.empty()) return all_up() ? exit_done : exit_no;
+  if (!live) std::cout << (given.json ? view.json(now) + "\n" : view.page(now));
+  if (!given.awaited.empty()) return all_up() ? exit_done : exit_no;
   return view.empty() ? exit_no : exit_done;
 }
 

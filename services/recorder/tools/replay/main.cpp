@@ -305,6 +305,38 @@ void warn_of_old_commands(const Tape& tape, const Arguments& arguments) {
                  dds::robot_command.name);
 }
 
+/// What processes said of themselves then is not so now: beacons would tell the services wrong
+/// clocks, and a status services that are not there.
+Expected<Tape> open_tape(const Arguments& arguments) {
+  const auto wanted = [&](const std::string& topic) {
+    const dds::TopicInfo* known = dds::find_topic(topic);
+    return !(known && known->content == dds::Content::process) && arguments.topics.wants(topic);
+  };
+  auto tape = Tape::open({arguments.files.begin(), arguments.files.end()}, wanted);
+  if (!tape) return tape;
+  for (const Error& damage : tape->damage()) log::warning("{}", damage.message());
+  warn_of_old_commands(*tape, arguments);
+  return tape;
+}
+
+Expected<std::unique_ptr<service::Shell>> join(const Arguments& arguments) {
+  std::vector<std::string> texts = arguments.lab.for_service();
+  if (!arguments.rig.empty()) texts.insert(texts.end(), {"--set", "lab.rig=" + arguments.rig});
+  return service::Shell::create(std::move(texts), {"replayer", "Plays recordings.", {}, false});
+}
+
+nlohmann::ordered_json document(Player& player) {
+  const Player::Stats figures = player.figures();
+  return {{"published", figures.published},
+          {"refused", figures.refused},
+          {"loops", figures.rounds},
+          {"damage", player.tape().damage().size()},
+          {"late_us",
+           {{"p50", figures.late_p50_us},
+            {"p99", figures.late_p99_us},
+            {"max", figures.late_max_us}}}};
+}
+
 int replay(const Arguments& arguments) {
   std::optional<Time> start_at;
   if (!arguments.start_at.empty()) {
@@ -312,16 +344,8 @@ int replay(const Arguments& arguments) {
     if (!time) return service::complain(time.error(), exit_wrong_use);
     start_at = *time;
   }
-  // What processes said of themselves then is not so now: beacons would tell the services wrong
-  // clocks, and a status services that are not there.
-  const auto wanted = [&](const std::string& topic) {
-    const dds::TopicInfo* known = dds::find_topic(topic);
-    return !(known && known->content == dds::Content::process) && arguments.topics.wants(topic);
-  };
-  auto tape = Tape::open({arguments.files.begin(), arguments.files.end()}, wanted);
+  auto tape = open_tape(arguments);
   if (!tape) return service::complain(tape.error(), exit_broken);
-  for (const Error& damage : tape->damage()) log::warning("{}", damage.message());
-  warn_of_old_commands(*tape, arguments);
   const auto options = player_options(arguments, *tape);
   if (!options) return service::complain(options.error(), exit_wrong_use);
   std::optional<Easing> easing;
@@ -332,39 +356,25 @@ int replay(const Arguments& arguments) {
     easing.emplace(std::move(*made));
   }
 
-  std::vector<std::string> texts = arguments.lab.for_service();
-  if (!arguments.rig.empty()) texts.insert(texts.end(), {"--set", "lab.rig=" + arguments.rig});
-  auto joined =
-      service::Shell::create(std::move(texts), {"replayer", "Plays recordings.", {}, false});
-  if (!joined) return service::complain(joined.error());
-  const std::unique_ptr<service::Shell> shell = std::move(*joined);
+  const auto shell = join(arguments);
+  if (!shell) return service::complain(shell.error());
   const auto types = recording::types::load_contract();
   if (!types) return service::complain(types.error(), exit_broken);
   auto participant =
-      dds::Participant::create(service::membership(shell->config(), "player", "replayer"));
+      dds::Participant::create(service::membership((*shell)->config(), "player", "replayer"));
   if (!participant) return service::complain(participant.error(), exit_broken);
   auto player = Player::create(std::move(*tape), *participant, *types, *options);
   if (!player) return service::complain(player.error(), exit_wrong_use);
 
   const Time start = start_at.value_or(system_now() + seconds(arguments.delay));
-  Replay work(*shell, **player, std::move(easing), start, participant->identity(), arguments);
-  const auto ended = shell->run();
+  Replay work(**shell, **player, std::move(easing), start, participant->identity(), arguments);
+  const auto ended = (*shell)->run();
   if (!ended) return service::complain(ended.error());
   work.finish();
   const Player::Stats figures = (*player)->figures();
   log::info("{} messages played{}", figures.published,
             figures.refused ? fmt::format(", {} could not be", figures.refused) : "");
-  if (arguments.json)
-    std::cout << nlohmann::ordered_json{{"published", figures.published},
-                                        {"refused", figures.refused},
-                                        {"loops", figures.rounds},
-                                        {"damage", (*player)->tape().damage().size()},
-                                        {"late_us",
-                                         {{"p50", figures.late_p50_us},
-                                          {"p99", figures.late_p99_us},
-                                          {"max", figures.late_max_us}}}}
-                     .dump()
-              << "\n";
+  if (arguments.json) std::cout << document(**player).dump() << "\n";
   return *ended;
 }
 
