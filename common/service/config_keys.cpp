@@ -112,6 +112,7 @@ const std::vector<ConfigKey>& config_keys() {
 const std::vector<std::string>& other_variables() {
   static const std::vector<std::string> names{
       "PREHEND_SHARE",        // common/base/paths.hpp
+      "PREHEND_LOG",          // common/tool/program.hpp
       "PREHEND_SEED",         // containers (deploy): the scene, the gateway between sites,
       "PREHEND_GATEWAY",      //
       "PREHEND_TRACKER",      // devices on the host,

@@ -11,6 +11,7 @@
 
 #include "common/base/clock.hpp"
 #include "common/base/log.hpp"
+#include "common/base/log_format.hpp"
 #include "common/base/paths.hpp"
 #include "common/dds/security.hpp"
 #include "common/dds/topics.hpp"
@@ -21,6 +22,7 @@
 #include "common/service/status_publisher.hpp"
 #include "common/service/task_queue.hpp"
 #include "common/service/watchdog.hpp"
+#include "common/tool/program.hpp"
 
 namespace prehend::service {
 
@@ -45,12 +47,9 @@ Expected<Arguments> parse(int argc, char** argv, const Shell::Options& options) 
       ->allow_extra_args(false);
   app.add_flag("--lockstep", made.lockstep, "follow lab/clock instead of the system clock");
   app.add_flag("--verbose", made.verbose, "say more");
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    // It has said what there is to say.
-    return fail({}, {}, {}, app.exit(error) == 0 ? exit_done : exit_wrong_use);
-  }
+  // It has said what there is to say.
+  if (const auto ended = tool::parse(app, argc, argv))
+    return fail({}, {}, {}, static_cast<Exit>(*ended));
   return made;
 }
 
@@ -172,9 +171,9 @@ Shell::~Shell() {
 }
 
 Expected<std::unique_ptr<Shell>> Shell::create(int argc, char** argv, const Options& options) {
+  log::set_name(options.name);
   auto arguments = parse(argc, argv, options);
   if (!arguments) return tl::unexpected(arguments.error());
-  log::set_name(options.name);
   log::set_verbose(arguments->verbose);
   auto config = Config::load(arguments->config, arguments->overrides);
   if (!config) {
@@ -182,6 +181,7 @@ Expected<std::unique_ptr<Shell>> Shell::create(int argc, char** argv, const Opti
     error.exit = exit_wrong_use;
     return tl::unexpected(std::move(error));
   }
+  log::set_rig(config->text("lab.rig"));
   block_stop_signals();
   auto state = std::make_unique<State>(argc, argv, options);
   state->config = std::move(*config);

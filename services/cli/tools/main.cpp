@@ -2,7 +2,7 @@
 
 #include <iostream>
 
-#include "common/base/log.hpp"
+#include "common/tool/program.hpp"
 #include "services/cli/tools/alive_command.hpp"
 #include "services/cli/tools/arguments.hpp"
 #include "services/cli/tools/audit/audit_command.hpp"
@@ -58,6 +58,7 @@ std::string help() {
 
 int main(int argc, char** argv) {
   const std::vector<std::string> arguments(argv + 1, argv + argc);
+  tool::choose_log(arguments);
   if (arguments.empty() || arguments.front() == "--help" || arguments.front() == "-h") {
     (arguments.empty() ? std::cerr : std::cout) << help();
     return arguments.empty() ? exit_wrong_use : exit_done;

@@ -7,6 +7,7 @@
 #include <thread>
 
 #include "common/base/log.hpp"
+#include "common/base/log_format.hpp"
 #include "common/convert/convert.hpp"
 #include "common/recording/types/idl.hpp"
 #include "common/service/arguments.hpp"
@@ -320,7 +321,7 @@ int replay(const Arguments& arguments) {
   };
   auto tape = Tape::open({arguments.files.begin(), arguments.files.end()}, wanted);
   if (!tape) return service::complain(tape.error(), exit_broken);
-  for (const Error& damage : tape->damage()) log::warning("{}", damage.message());
+  for (const Error& damage : tape->damage()) log::warning(damage);
   warn_of_old_commands(*tape, arguments);
   const auto options = player_options(arguments, *tape);
   if (!options) return service::complain(options.error(), exit_wrong_use);
