@@ -20,6 +20,7 @@
 #include "common/service/pulse.hpp"
 #include "common/service/restart.hpp"
 #include "common/service/status_publisher.hpp"
+#include "common/service/supervisor.hpp"
 #include "common/service/task_queue.hpp"
 #include "common/service/watchdog.hpp"
 #include "common/tool/program.hpp"
@@ -68,6 +69,7 @@ struct Shell::State {
   Restart restart;
   Config config;
   Status status;
+  Supervisor supervisor;
   bool lockstep = false;
   std::optional<Error> not_joined;
 
@@ -282,14 +284,14 @@ void Shell::stop(Exit exit) {
   state_->stop();
 }
 
-/// Publishes the status when it is due, and then looks for what else happens seldom. Says when the
-/// next one is due.
+/// Publishes the status when it is due, and then looks for what else happens seldom; tells the
+/// supervisor that the loop runs. Says when the next of these is due.
 Time Shell::beat(Time now) {
   State& state = *state_;
   const bool due = now >= state.status_publisher->next();
   const Time next = state.status_publisher->beat(now, state.status, state.clock_step());
   if (due && state.list_has_changed()) state.again = state.stopping = true;
-  return next;
+  return std::min(next, state.supervisor.beat(now));
 }
 
 void Shell::run_live() {
@@ -343,6 +345,7 @@ Expected<Exit> Shell::run() {
     state.participant.reset();
     state.restart.now();
   }
+  state.supervisor.stopping();
   if (state.options.restarts) log::info("stopped");
   return state.exit.load();
 }

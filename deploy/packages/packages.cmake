@@ -6,6 +6,10 @@ install(FILES ${CMAKE_CURRENT_LIST_DIR}/prehend.bash DESTINATION share/bash-comp
   COMPONENT lab)
 # Made from the commands' own help by deploy/packages/make, so that neither says something else.
 install(DIRECTORY ${CMAKE_BINARY_DIR}/man/ DESTINATION share/man/man1 COMPONENT lab OPTIONAL)
+# Not enabled: deploy/systemd.md says how.
+install(FILES ${CMAKE_CURRENT_LIST_DIR}/systemd/prehend@.service
+              ${CMAKE_CURRENT_LIST_DIR}/systemd/prehend-metrics.service
+  DESTINATION lib/systemd/system COMPONENT lab)
 foreach(component lab vision dev)
   set(package prehend)
   if(NOT component STREQUAL lab)
@@ -36,6 +40,8 @@ set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_LAB_PACKAGE_NAME prehend)
 set(CPACK_DEBIAN_VISION_PACKAGE_NAME prehend-vision)
 set(CPACK_DEBIAN_DEV_PACKAGE_NAME prehend-dev)
+set(CPACK_DEBIAN_LAB_PACKAGE_CONTROL_EXTRA "${CMAKE_CURRENT_LIST_DIR}/postinst"
+  "${CMAKE_CURRENT_LIST_DIR}/prerm" "${CMAKE_CURRENT_LIST_DIR}/postrm")
 set(CPACK_COMPONENT_LAB_DESCRIPTION "leads a robot hand by a human one\n\
  A glove's fingertips and what a camera sees of the object become the joint angles of a robot hand;\n\
  a physics simulation judges the grasp. Services speak over DDS.")
