@@ -124,7 +124,7 @@ TEST_F(Metrics, TellALabAndWhatBecomesOfIt) {
   ASSERT_EQ(stopped.exit_code, 0) << stopped.log;
   EXPECT_TRUE(becomes("prehend_gate_stopped", "hand", is_one));
   EXPECT_TRUE(becomes("prehend_gate_stop_info", R"(reason="a \"hand\" \\ in the cell")", is_one));
-  EXPECT_TRUE(becomes("prehend_gate_refusals_total", "reason=\"stopped\"", is_some));
+  EXPECT_TRUE(becomes("prehend_gate_refusals_total", "reason=\"command while stopped\"", is_some));
 
   mapping.signal(SIGKILL);
   EXPECT_TRUE(becomes("prehend_processes", "service=\"mapping\"", [](double n) { return n == 0; }));
