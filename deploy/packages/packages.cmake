@@ -10,6 +10,16 @@ install(DIRECTORY ${CMAKE_BINARY_DIR}/man/ DESTINATION share/man/man1 COMPONENT 
 install(FILES ${CMAKE_CURRENT_LIST_DIR}/systemd/prehend@.service
               ${CMAKE_CURRENT_LIST_DIR}/systemd/prehend-metrics.service
   DESTINATION lib/systemd/system COMPONENT lab)
+# Headers of these are compiled into the programs: no dependency names them, so the bill of materials
+# and their licences do.
+set(compiled_in libcli11-dev libeigen3-dev libexpected-dev nlohmann-json3-dev)
+execute_process(COMMAND ${CMAKE_SOURCE_DIR}/deploy/sbom records ${compiled_in}
+  OUTPUT_FILE ${CMAKE_BINARY_DIR}/compiled-in.tsv COMMAND_ERROR_IS_FATAL ANY)
+install(FILES ${CMAKE_BINARY_DIR}/compiled-in.tsv DESTINATION share/doc/prehend COMPONENT lab)
+foreach(header_package ${compiled_in})
+  install(FILES /usr/share/doc/${header_package}/copyright DESTINATION share/doc/prehend/compiled-in
+    RENAME ${header_package} COMPONENT lab)
+endforeach()
 foreach(component lab vision dev)
   set(package prehend)
   if(NOT component STREQUAL lab)
@@ -18,6 +28,8 @@ foreach(component lab vision dev)
   install(FILES ${CMAKE_CURRENT_LIST_DIR}/copyright DESTINATION share/doc/${package} COMPONENT ${component})
   install(FILES ${CMAKE_BINARY_DIR}/changelog.Debian.gz DESTINATION share/doc/${package}
     COMPONENT ${component} OPTIONAL)
+  install(FILES ${CMAKE_BINARY_DIR}/sbom/${package}.spdx.json DESTINATION share/doc/${package}
+    RENAME sbom.spdx.json COMPONENT ${component} OPTIONAL)
 endforeach()
 
 install(FILES ${CMAKE_CURRENT_LIST_DIR}/prehend-config.cmake DESTINATION lib/cmake/prehend COMPONENT dev)
