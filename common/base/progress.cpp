@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "common/base/log.hpp"
+#include "common/base/log_format.hpp"
 
 namespace prehend {
 namespace {
@@ -15,7 +16,8 @@ constexpr std::size_t width = 30;  // characters of the bar
 }  // namespace
 
 Progress::Progress(std::string what)
-    : what_(std::move(what)), terminal_(isatty(STDERR_FILENO) != 0) {}
+    : what_(std::move(what)),
+      terminal_(isatty(STDERR_FILENO) != 0 && log::format() == log::Format::text) {}
 
 void Progress::show(std::size_t done, std::size_t all) {
   if (all == 0) return;

@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "common/base/log_format.hpp"
 #include "common/base/paths.hpp"
 
 namespace prehend::service {
@@ -26,7 +27,9 @@ std::vector<std::string> LabArguments::overrides() const {
 }
 
 Expected<Config> LabArguments::load() const {
-  return Config::load(file(), overrides());
+  auto config = Config::load(file(), overrides());
+  if (config) log::set_rig(config->text("lab.rig"));
+  return config;
 }
 
 std::vector<std::string> LabArguments::for_service() const {

@@ -98,6 +98,10 @@ const std::vector<ConfigKey>& config_keys() {
       {"gate.base_turn_speed", 3.6, "rad/s, of the base"},
       {"gate.base_turn_acceleration", 900.0, "rad/s², of the base"},
 
+      {"metrics.address", Text("127.0.0.1"),
+       "where `prehend metrics` answers; 0.0.0.0: at every interface"},
+      {"metrics.port", std::int64_t{9478}, "its TCP port; 0: any that is free"},
+
       {"safety.on_stop", Text("hold"),
        "what the fingers do at a stop: hold (keep their squeeze) or open; the base stays"},
       {"safety.deadman", false,
@@ -112,6 +116,7 @@ const std::vector<ConfigKey>& config_keys() {
 const std::vector<std::string>& other_variables() {
   static const std::vector<std::string> names{
       "PREHEND_SHARE",        // common/base/paths.hpp
+      "PREHEND_LOG",          // common/tool/program.hpp
       "PREHEND_SEED",         // containers (deploy): the scene, the gateway between sites,
       "PREHEND_GATEWAY",      //
       "PREHEND_TRACKER",      // devices on the host,

@@ -11,6 +11,7 @@
 
 #include "common/base/clock.hpp"
 #include "common/base/log.hpp"
+#include "common/base/log_format.hpp"
 #include "common/base/paths.hpp"
 #include "common/dds/security.hpp"
 #include "common/dds/topics.hpp"
@@ -19,8 +20,10 @@
 #include "common/service/pulse.hpp"
 #include "common/service/restart.hpp"
 #include "common/service/status_publisher.hpp"
+#include "common/service/supervisor.hpp"
 #include "common/service/task_queue.hpp"
 #include "common/service/watchdog.hpp"
+#include "common/tool/program.hpp"
 
 namespace prehend::service {
 
@@ -45,12 +48,9 @@ Expected<Arguments> parse(int argc, char** argv, const Shell::Options& options) 
       ->allow_extra_args(false);
   app.add_flag("--lockstep", made.lockstep, "follow lab/clock instead of the system clock");
   app.add_flag("--verbose", made.verbose, "say more");
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    // It has said what there is to say.
-    return fail({}, {}, {}, app.exit(error) == 0 ? exit_done : exit_wrong_use);
-  }
+  // It has said what there is to say.
+  if (const auto ended = tool::parse(app, argc, argv))
+    return fail({}, {}, {}, static_cast<Exit>(*ended));
   return made;
 }
 
@@ -69,6 +69,7 @@ struct Shell::State {
   Restart restart;
   Config config;
   Status status;
+  Supervisor supervisor;
   bool lockstep = false;
   std::optional<Error> not_joined;
 
@@ -172,9 +173,9 @@ Shell::~Shell() {
 }
 
 Expected<std::unique_ptr<Shell>> Shell::create(int argc, char** argv, const Options& options) {
+  log::set_name(options.name);
   auto arguments = parse(argc, argv, options);
   if (!arguments) return tl::unexpected(arguments.error());
-  log::set_name(options.name);
   log::set_verbose(arguments->verbose);
   auto config = Config::load(arguments->config, arguments->overrides);
   if (!config) {
@@ -182,6 +183,7 @@ Expected<std::unique_ptr<Shell>> Shell::create(int argc, char** argv, const Opti
     error.exit = exit_wrong_use;
     return tl::unexpected(std::move(error));
   }
+  log::set_rig(config->text("lab.rig"));
   block_stop_signals();
   auto state = std::make_unique<State>(argc, argv, options);
   state->config = std::move(*config);
@@ -282,14 +284,14 @@ void Shell::stop(Exit exit) {
   state_->stop();
 }
 
-/// Publishes the status when it is due, and then looks for what else happens seldom. Says when the
-/// next one is due.
+/// Publishes the status when it is due, and then looks for what else happens seldom; tells the
+/// supervisor that the loop runs. Says when the next of these is due.
 Time Shell::beat(Time now) {
   State& state = *state_;
   const bool due = now >= state.status_publisher->next();
   const Time next = state.status_publisher->beat(now, state.status, state.clock_step());
   if (due && state.list_has_changed()) state.again = state.stopping = true;
-  return next;
+  return std::min(next, state.supervisor.beat(now));
 }
 
 void Shell::run_live() {
@@ -343,6 +345,7 @@ Expected<Exit> Shell::run() {
     state.participant.reset();
     state.restart.now();
   }
+  state.supervisor.stopping();
   if (state.options.restarts) log::info("stopped");
   return state.exit.load();
 }

@@ -1,9 +1,12 @@
 #include "common/tool/program.hpp"
 
+#include <cstdlib>
 #include <iostream>
+#include <string_view>
 #include <utility>
 
 #include "common/base/log.hpp"
+#include "common/base/log_format.hpp"
 
 namespace prehend::tool {
 
@@ -12,11 +15,48 @@ int complain(const Error& error) {
 }
 
 int complain(const Error& error, int exit_code) {
-  if (const std::string message = error.message(); !message.empty()) log::error("{}", message);
+  if (!error.message().empty()) log::error(error);
   return exit_code;
 }
 
+namespace {
+
+constexpr const char* log_variable = "PREHEND_LOG";
+constexpr std::string_view log_option = "--log";
+
+/// The option is looked for without parsing: what is wrong with the arguments is to be said as it
+/// demands.
+std::optional<log::Format> format_in(const std::vector<std::string>& arguments) {
+  for (std::size_t i = 0; i < arguments.size(); ++i) {
+    const std::string_view text = arguments[i];
+    if (text == log_option && i + 1 < arguments.size()) return log::format_of(arguments[i + 1]);
+    if (text.starts_with("--log=")) return log::format_of(text.substr(6));
+  }
+  return std::nullopt;
+}
+
+/// What is read here was chosen already; CLI11 only lists and checks it.
+void add_log_option(CLI::App& app) {
+  for (CLI::App* command : app.get_subcommands([](CLI::App*) { return true; }))
+    add_log_option(*command);
+  if (app.get_option_no_throw(std::string(log_option))) return;
+  app.add_option(std::string(log_option), "lines of the log: text, or json with one object a line")
+      ->envname(log_variable)
+      ->check(CLI::IsMember({"text", "json"}));
+}
+
+}  // namespace
+
+void choose_log(const std::vector<std::string>& arguments) {
+  auto format = format_in(arguments);
+  if (format) ::setenv(log_variable, *format == log::Format::json ? "json" : "text", 1);
+  if (const char* text = std::getenv(log_variable); text && !format) format = log::format_of(text);
+  log::set_format(format.value_or(log::Format::text));
+}
+
 std::optional<int> parse(CLI::App& app, const std::vector<std::string>& arguments) {
+  choose_log(arguments);
+  add_log_option(app);
   // CLI11 wants them last first.
   std::vector<std::string> reversed(arguments.rbegin(), arguments.rend());
   try {
@@ -31,12 +71,7 @@ std::optional<int> parse(CLI::App& app, const std::vector<std::string>& argument
 }
 
 std::optional<int> parse(CLI::App& app, int argc, char** argv) {
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? exit_done : exit_wrong_use;
-  }
-  return std::nullopt;
+  return parse(app, {argv + 1, argv + argc});
 }
 
 Program::Program(const std::string& name, const std::string& description)

@@ -16,7 +16,13 @@ namespace prehend::tool {
 int complain(const Error& error);
 int complain(const Error& error, int exit_code);
 
-/// Parses; on --help or wrong use it says what there is to say and returns the exit code.
+/// Log lines look from now on as --log among the arguments, or else PREHEND_LOG, says; those of
+/// programs that this one starts, too. parse() does this first; a program that says something
+/// before it parses calls it itself.
+void choose_log(const std::vector<std::string>& arguments);
+
+/// Parses, with --log beside the options of the app and its subcommands. On --help or wrong use it
+/// says what there is to say and returns the exit code.
 std::optional<int> parse(CLI::App& app, const std::vector<std::string>& arguments);
 std::optional<int> parse(CLI::App& app, int argc, char** argv);
 

@@ -6,6 +6,20 @@ install(FILES ${CMAKE_CURRENT_LIST_DIR}/prehend.bash DESTINATION share/bash-comp
   COMPONENT lab)
 # Made from the commands' own help by deploy/packages/make, so that neither says something else.
 install(DIRECTORY ${CMAKE_BINARY_DIR}/man/ DESTINATION share/man/man1 COMPONENT lab OPTIONAL)
+# Not enabled: deploy/systemd.md says how.
+install(FILES ${CMAKE_CURRENT_LIST_DIR}/systemd/prehend@.service
+              ${CMAKE_CURRENT_LIST_DIR}/systemd/prehend-metrics.service
+  DESTINATION lib/systemd/system COMPONENT lab)
+# Headers of these are compiled into the programs: no dependency names them, so the bill of materials
+# and their licences do.
+set(compiled_in libcli11-dev libeigen3-dev libexpected-dev nlohmann-json3-dev)
+execute_process(COMMAND ${CMAKE_SOURCE_DIR}/deploy/sbom records ${compiled_in}
+  OUTPUT_FILE ${CMAKE_BINARY_DIR}/compiled-in.tsv COMMAND_ERROR_IS_FATAL ANY)
+install(FILES ${CMAKE_BINARY_DIR}/compiled-in.tsv DESTINATION share/doc/prehend COMPONENT lab)
+foreach(header_package ${compiled_in})
+  install(FILES /usr/share/doc/${header_package}/copyright DESTINATION share/doc/prehend/compiled-in
+    RENAME ${header_package} COMPONENT lab)
+endforeach()
 foreach(component lab vision dev)
   set(package prehend)
   if(NOT component STREQUAL lab)
@@ -14,6 +28,8 @@ foreach(component lab vision dev)
   install(FILES ${CMAKE_CURRENT_LIST_DIR}/copyright DESTINATION share/doc/${package} COMPONENT ${component})
   install(FILES ${CMAKE_BINARY_DIR}/changelog.Debian.gz DESTINATION share/doc/${package}
     COMPONENT ${component} OPTIONAL)
+  install(FILES ${CMAKE_BINARY_DIR}/sbom/${package}.spdx.json DESTINATION share/doc/${package}
+    RENAME sbom.spdx.json COMPONENT ${component} OPTIONAL)
 endforeach()
 
 install(FILES ${CMAKE_CURRENT_LIST_DIR}/prehend-config.cmake DESTINATION lib/cmake/prehend COMPONENT dev)
@@ -36,6 +52,8 @@ set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_LAB_PACKAGE_NAME prehend)
 set(CPACK_DEBIAN_VISION_PACKAGE_NAME prehend-vision)
 set(CPACK_DEBIAN_DEV_PACKAGE_NAME prehend-dev)
+set(CPACK_DEBIAN_LAB_PACKAGE_CONTROL_EXTRA "${CMAKE_CURRENT_LIST_DIR}/postinst"
+  "${CMAKE_CURRENT_LIST_DIR}/prerm" "${CMAKE_CURRENT_LIST_DIR}/postrm")
 set(CPACK_COMPONENT_LAB_DESCRIPTION "leads a robot hand by a human one\n\
  A glove's fingertips and what a camera sees of the object become the joint angles of a robot hand;\n\
  a physics simulation judges the grasp. Services speak over DDS.")

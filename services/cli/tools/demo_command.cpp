@@ -12,6 +12,7 @@
 #include <thread>
 
 #include "common/base/log.hpp"
+#include "common/base/log_format.hpp"
 #include "common/model/hand_model.hpp"
 #include "common/service/lab.hpp"
 #include "services/cli/service/listener.hpp"
@@ -336,7 +337,9 @@ class Demonstration {
 /// One line that is renewed on a terminal; otherwise a line whenever there is news, but not often.
 class Screen {
  public:
-  explicit Screen(bool quiet) : quiet_(quiet), terminal_(::isatty(STDERR_FILENO) != 0) {}
+  explicit Screen(bool quiet)
+      : quiet_(quiet || log::format() == log::Format::json),
+        terminal_(::isatty(STDERR_FILENO) != 0) {}
   ~Screen() { clear(); }
 
   void show(const std::string& text) {

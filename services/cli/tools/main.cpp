@@ -2,7 +2,7 @@
 
 #include <iostream>
 
-#include "common/base/log.hpp"
+#include "common/tool/program.hpp"
 #include "services/cli/tools/alive_command.hpp"
 #include "services/cli/tools/arguments.hpp"
 #include "services/cli/tools/audit/audit_command.hpp"
@@ -10,6 +10,7 @@
 #include "services/cli/tools/dispatch.hpp"
 #include "services/cli/tools/doctor/doctor_command.hpp"
 #include "services/cli/tools/keys/keys_command.hpp"
+#include "services/cli/tools/metrics/metrics_command.hpp"
 #include "services/cli/tools/orders/consent_command.hpp"
 #include "services/cli/tools/orders/release_command.hpp"
 #include "services/cli/tools/orders/stop_command.hpp"
@@ -31,6 +32,7 @@ constexpr Command commands[] = {
     {"demo", cli::demo_command, "play a demonstration through all services and judge the grasp"},
     {"status", cli::status_command, "who is there and how they fare"},
     {"alive", cli::alive_command, "does a service on this host answer for itself"},
+    {"metrics", cli::metrics_command, "serve what services say of themselves to Prometheus"},
     {"stop", cli::stop_command, "stop the robots of a rig, or of all, until they are released"},
     {"release", cli::release_command, "end a stop"},
     {"consent", cli::consent_command, "hold the deadman of a robot hand"},
@@ -58,6 +60,7 @@ std::string help() {
 
 int main(int argc, char** argv) {
   const std::vector<std::string> arguments(argv + 1, argv + argc);
+  tool::choose_log(arguments);
   if (arguments.empty() || arguments.front() == "--help" || arguments.front() == "-h") {
     (arguments.empty() ? std::cerr : std::cout) << help();
     return arguments.empty() ? exit_wrong_use : exit_done;

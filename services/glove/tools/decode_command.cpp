@@ -6,6 +6,7 @@
 
 #include "common/base/file_text.hpp"
 #include "common/base/log.hpp"
+#include "common/base/log_format.hpp"
 #include "services/glove/devices/bird_capture.hpp"
 #include "services/glove/tools/commands.hpp"
 
@@ -63,14 +64,14 @@ int decode(const DecodeArguments& arguments) {
   for (const std::string& file : arguments.files) {
     const auto text = read_file(file);
     if (!text) {
-      log::error("{}", text.error().message());
+      log::error(text.error());
       unreadable = true;
       continue;
     }
     const auto capture = bird::read_capture(*text, file);
     if (!capture) {
       // Licences lie beside captures: no reason to call the whole decoding a failure.
-      log::warning("{}", capture.error().message());
+      log::warning(capture.error());
       continue;
     }
     if (capture->garbage > 0)

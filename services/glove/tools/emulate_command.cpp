@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "common/base/log.hpp"
+#include "common/base/log_format.hpp"
 #include "common/base/paths.hpp"
 #include "services/glove/devices/device.hpp"
 #include "services/glove/service/options.hpp"
@@ -82,12 +83,12 @@ int run(const EmulateArguments& arguments) {
   }
   const auto options = make_options(arguments);
   if (!options) {
-    log::error("{}", options.error().message());
+    log::error(options.error());
     return 3;
   }
   const auto source = make_source(arguments, *options);
   if (!source) {
-    log::error("{}", source.error().message());
+    log::error(source.error());
     return 3;
   }
   struct sigaction action {};
@@ -100,7 +101,7 @@ int run(const EmulateArguments& arguments) {
   emulation.faults = arguments.faults;
   const auto done = emulate(emulation, **source, [] { return stopped != 0; });
   if (done) return 0;
-  log::error("{}", done.error().message());
+  log::error(done.error());
   return 3;
 }
 

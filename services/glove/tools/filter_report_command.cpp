@@ -4,7 +4,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "common/base/log.hpp"
+#include "common/base/log_format.hpp"
 #include "services/glove/core/filter_report.hpp"
 #include "services/glove/files/hand_recording.hpp"
 #include "services/glove/tools/commands.hpp"
@@ -52,7 +52,7 @@ int report(const FilterReportArguments& arguments) {
     const auto recording = Recording::load(file, {});
     if (!recording) {
       // An index lies beside recordings: no reason to measure none of them.
-      log::warning("{}", recording.error().message());
+      log::warning(recording.error());
       continue;
     }
     const std::vector<Frame> frames = frames_of(*recording, arguments.rate);

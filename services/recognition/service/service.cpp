@@ -9,6 +9,7 @@
 
 #include "common/base/clock.hpp"
 #include "common/base/log.hpp"
+#include "common/base/log_format.hpp"
 #include "common/convert/convert.hpp"
 #include "common/dds/topics.hpp"
 #include "services/recognition/cameras/camera.hpp"
@@ -89,7 +90,7 @@ class Service::CameraThread {
   void complain(const Error& error) {
     shell_.status().drop(error.what);
     shell_.status().degraded(error.message());
-    if (said_ != error.what) log::warning("{}", error.message());
+    if (said_ != error.what) log::warning(error);
     said_ = error.what;
   }
 
@@ -246,7 +247,7 @@ class Service::Topics {
   void refuse(const std::string& reason, const Error& error) {
     shell_.status().drop(reason);
     shell_.status().degraded(error.message());
-    if (said_ != reason) log::warning("{}", error.message());
+    if (said_ != reason) log::warning(error);
     said_ = reason;
   }
 

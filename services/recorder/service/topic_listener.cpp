@@ -3,6 +3,7 @@
 #include <fnmatch.h>
 
 #include "common/base/log.hpp"
+#include "common/base/log_format.hpp"
 
 namespace prehend::recorder {
 
@@ -85,7 +86,7 @@ void TopicListener::read(const dds::DiscoveredWriter& found, const std::string& 
   if (reader)
     reading->reader = std::move(*reader);
   else
-    log::warning("{}", reader.error().message());
+    log::warning(reader.error());
   readers_.emplace(found.topic.name, std::move(reading));
 }
 

@@ -2,19 +2,12 @@
 // validators (what is missing, what has a wrong value) and as a literal of the API's TypeScript type,
 // whose compiler also refuses fields that the API does not know. Then what we promise of every pod.
 // That the check can fail is checked too: a misspelt field must be refused.
-import { execFileSync } from "node:child_process";
 import { readdirSync, existsSync } from "node:fs";
 import assert from "node:assert/strict";
 import ts from "typescript";
-import { parseAllDocuments } from "yaml";
+import { objects, pods, policies } from "./manifests.mjs";
 
 const root = process.argv[2];
-
-/** Objects of an overlay, as `kubectl apply --kustomize` would send them. */
-function objects(overlay) {
-  const text = execFileSync("kubectl", ["kustomize", `${root}/${overlay}`], { encoding: "utf8" });
-  return parseAllDocuments(text).map((document) => document.toJS());
-}
 
 /** What the compiler says of the objects as literals of their types; one source for all. */
 function refusals(list) {
@@ -68,14 +61,43 @@ function promises(overlay, o) {
   }
 }
 
+/** Each pod is shut but for what a policy names, and a policy names no pod, port or address that
+    nothing stands behind. */
+function shut(overlay, list) {
+  const all = pods(list);
+  for (const pod of all) {
+    const where = `${overlay}: ${pod.name}`, held = policies(list, pod);
+    for (const type of ["Ingress", "Egress"])
+      assert.ok(held.some((o) => o.spec.policyTypes.includes(type) && !o.spec.ingress && !o.spec.egress),
+        `${where} is open for ${type}`);
+    // Ports that are named to others are open to somebody.
+    const open = held.flatMap((o) => o.spec.ingress ?? []).flatMap((rule) => rule.ports);
+    for (const port of pod.spec.containers.flatMap((one) => one.ports ?? []))
+      assert.ok(open.some((one) => one.protocol === port.protocol &&
+        (one.port === port.name || (one.port <= port.containerPort &&
+                                    port.containerPort <= (one.endPort ?? one.port)))),
+        `${where}: nobody gets through to port ${port.containerPort}`);
+  }
+  for (const policy of list.filter((o) => o.kind === "NetworkPolicy")) {
+    const where = `${overlay}: ${policy.metadata.name}`;
+    assert.ok(all.some((pod) => policies([policy], pod).length), `${where} holds for no pod`);
+    for (const rule of [...(policy.spec.ingress ?? []), ...(policy.spec.egress ?? [])])
+      assert.ok(rule.ports?.length, `${where} opens every port`);
+  }
+}
+
 /** The two sites have one rig, and what one dials the other forwards to who listens there. */
 function sites() {
-  const find = (overlay, kind) => objects(overlay).find((o) => o.kind === kind);
+  const find = (overlay, kind) => objects(root, overlay).find((o) => o.kind === kind);
   const here = find("robot-site", "ConfigMap").data, there = find("glove-site", "ConfigMap").data;
   assert.equal(here.PREHEND_LAB_RIG, there.PREHEND_LAB_RIG);
   const ports = find("robot-site", "Service").spec.ports;
   const dialled = ports.map((one) => `${here.GATEWAY}:${one.port}`);
   assert.deepEqual(JSON.parse(there.PREHEND_LAB_PEERS), dialled);
+  const out = objects(root, "glove-site").find((o) => o.metadata.name === "robot-site").spec.egress[0];
+  assert.equal(out.to[0].ipBlock.cidr, `${here.GATEWAY}/32`);
+  for (const one of ports)
+    assert.ok(out.ports.some((open) => open.port <= one.port && one.port <= open.endPort), `${one.port}`);
   for (const container of find("robot-site", "Deployment").spec.template.spec.containers) {
     const port = ports.find((one) => one.targetPort === container.name).port;
     assert.ok(container.command.includes(`lab.listen=$(GATEWAY):${port}`), container.name);
@@ -86,11 +108,12 @@ function sites() {
 let count = 0;
 for (const overlay of readdirSync(root)) {
   if (!existsSync(`${root}/${overlay}/kustomization.yaml`)) continue;
-  const list = objects(overlay);
+  const list = objects(root, overlay);
   for (const o of list) {
     await check(o);
     promises(overlay, o);
   }
+  shut(overlay, list);
   assert.deepEqual(refusals(list), [], overlay);
   count += list.length;
 
@@ -102,6 +125,8 @@ for (const overlay of readdirSync(root)) {
   delete wrong.spec.template.spec.containers[0].livenesProbe;
   delete wrong.spec.selector;
   await assert.rejects(check(wrong), "an object without what it must have passes");
+  const open = list.filter((o) => o.metadata.name !== "deny-by-default");
+  assert.throws(() => shut(overlay, open), "pods without a policy pass");
 }
 sites();
 assert.ok(count > 10, `only ${count} objects were found`);

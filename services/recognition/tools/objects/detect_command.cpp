@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "common/base/log.hpp"
+#include "common/base/log_format.hpp"
 #include "common/base/paths.hpp"
 #include "common/service/config.hpp"
 #include "services/recognition/core/detection/detector.hpp"
@@ -109,7 +110,7 @@ int detect(const DetectArguments& arguments) {
   for (const std::string& image : images) {
     auto picture = image == arguments.scene ? see(image, *catalogue, *camera) : load_picture(image);
     if (!picture) {
-      log::error("{}", picture.error().message());
+      log::error(picture.error());
       unreadable = true;
       continue;
     }

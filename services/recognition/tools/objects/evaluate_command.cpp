@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "common/base/log.hpp"
+#include "common/base/log_format.hpp"
 #include "common/base/progress.hpp"
 #include "common/statistics/intervals.hpp"
 #include "services/recognition/core/learning/answer.hpp"
@@ -279,7 +280,7 @@ int evaluate(const EvaluateArguments& arguments) {
   const auto options =
       arguments.choice.options(trial->training ? *trial->training : trial->dataset);
   if (!options) {
-    log::error("{}", options.error().message());
+    log::error(options.error());
     return 2;
   }
   if (arguments.compare) return compare(*trial, *options);

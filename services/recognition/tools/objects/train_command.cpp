@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "common/base/log.hpp"
+#include "common/base/log_format.hpp"
 #include "common/base/paths.hpp"
 #include "common/base/progress.hpp"
 #include "services/recognition/core/rendering/strangers.hpp"
@@ -82,7 +83,7 @@ int train_models(const TrainArguments& arguments) {
                    c.name, c.views.size());
   const auto options = arguments.choice.options(*dataset);
   if (!options) {
-    log::error("{}", options.error().message());
+    log::error(options.error());
     return 2;
   }
   Dataset others;

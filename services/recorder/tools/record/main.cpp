@@ -8,6 +8,7 @@
 
 #include "common/base/file_text.hpp"
 #include "common/base/log.hpp"
+#include "common/base/log_format.hpp"
 #include "common/service/arguments.hpp"
 #include "common/service/membership.hpp"
 #include "common/service/shell.hpp"
@@ -183,7 +184,7 @@ class Recording {
     if (answer)
       log::info("{}", *answer);
     else
-      log::warning("{}", answer.error().message());
+      log::warning(answer.error());
   }
 
   void on_key(int key) {
@@ -274,7 +275,7 @@ int record(const Arguments& arguments) {
   const auto ended = shell->run();
   if (!ended) return service::complain(ended.error());
   const auto finished = recording.finish();
-  if (!finished) log::error("{}", finished.error().message());
+  if (!finished) log::error(finished.error());
   log::info("{}", recording.summary());
   if (arguments.json) std::cout << recording.report() << "\n";
   return finished ? *ended : exit_broken;

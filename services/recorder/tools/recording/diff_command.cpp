@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
-#include "common/base/log.hpp"
+#include "common/base/log_format.hpp"
 #include "common/recording/compare/comparison.hpp"
 #include "common/recording/compare/recorded_topic.hpp"
 #include "services/recorder/tools/recording/commands.hpp"
@@ -41,7 +41,7 @@ class Feed {
   bool step(Comparison& comparison) {
     const auto next = cursor_.next();
     if (!next) {
-      log::error("{}", next.error().message());
+      log::error(next.error());
       damaged = true;
       return true;
     }

@@ -6,7 +6,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "common/base/log.hpp"
+#include "common/base/log_format.hpp"
 #include "common/recording/compare/recorded_topic.hpp"
 #include "services/recorder/tools/recording/commands.hpp"
 #include "services/recorder/tools/recording/copy.hpp"
@@ -33,7 +33,7 @@ void add_common(CLI::App& command, EditArguments& arguments) {
 }
 
 std::function<void(double)> progress_bar() {
-  if (::isatty(STDERR_FILENO) == 0) return {};
+  if (::isatty(STDERR_FILENO) == 0 || log::format() == log::Format::json) return {};
   return [shown = -1](double share) mutable {
     const int percent = static_cast<int>(100 * share);
     if (percent == shown) return;
@@ -78,7 +78,7 @@ int run(const EditArguments& arguments, bool tolerant) {
     };
   const auto result = copy(sources, arguments.to, options);
   if (!result) return complain(result.error(), exit_broken);
-  for (const Error& error : result->damage) log::warning("{}", error.message());
+  for (const Error& error : result->damage) log::warning(error);
   if (arguments.json) {
     nlohmann::ordered_json damage = nlohmann::ordered_json::array();
     for (const Error& error : result->damage) damage.push_back(error.message());

@@ -10,6 +10,7 @@
 #include <set>
 
 #include "common/base/log.hpp"
+#include "common/base/log_format.hpp"
 #include "common/recording/compare/recorded_topic.hpp"
 #include "services/recorder/tools/recording/commands.hpp"
 #include "services/recorder/tools/recording/table.hpp"
@@ -46,7 +47,7 @@ class Export {
     while (true) {
       const auto next = cursor.next();
       if (!next) {
-        log::error("{}", next.error().message());
+        log::error(next.error());
         damaged = true;
         continue;
       }

@@ -5,7 +5,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "common/base/log.hpp"
+#include "common/base/log_format.hpp"
 #include "services/recorder/tools/recording/commands.hpp"
 #include "services/recorder/tools/recording/summary.hpp"
 
@@ -49,7 +49,7 @@ int info(const InfoArguments& arguments) {
     std::cout << document->dump(-1, ' ', false, Json::error_handler_t::replace) << '\n';
   else
     print(*document);
-  for (const Error& error : reader->contents().damage) log::warning("{}", error.message());
+  for (const Error& error : reader->contents().damage) log::warning(error);
   return exit_done;
 }
 

@@ -7,6 +7,7 @@
 #include <thread>
 
 #include "common/base/log.hpp"
+#include "common/base/log_format.hpp"
 #include "common/convert/convert.hpp"
 #include "common/recording/types/idl.hpp"
 #include "common/service/arguments.hpp"
@@ -314,7 +315,7 @@ Expected<Tape> open_tape(const Arguments& arguments) {
   };
   auto tape = Tape::open({arguments.files.begin(), arguments.files.end()}, wanted);
   if (!tape) return tape;
-  for (const Error& damage : tape->damage()) log::warning("{}", damage.message());
+  for (const Error& damage : tape->damage()) log::warning(damage);
   warn_of_old_commands(*tape, arguments);
   return tape;
 }

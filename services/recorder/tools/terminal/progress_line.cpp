@@ -3,9 +3,13 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include "common/base/log_format.hpp"
+
 namespace prehend::recorder {
 
-ProgressLine::ProgressLine(bool quiet) : quiet_(quiet), terminal_(::isatty(STDERR_FILENO) != 0) {}
+ProgressLine::ProgressLine(bool quiet)
+    : quiet_(quiet || log::format() == log::Format::json),
+      terminal_(::isatty(STDERR_FILENO) != 0) {}
 
 void ProgressLine::show(const std::string& text) {
   const auto now = std::chrono::steady_clock::now();

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "common/base/log.hpp"
+#include "common/base/log_format.hpp"
 #include "services/simulation/tools/grasp/planning_commands.hpp"
 #include "services/simulation/tools/planning/export.hpp"
 #include "services/simulation/tools/planning/grasp_file.hpp"
@@ -28,7 +29,7 @@ const std::map<std::string, Table> tables{{"grasps", Table::grasps},
 int write(const ExportArguments& arguments) {
   auto plan = load_plan(arguments.file);
   if (!plan) {
-    log::error("{}", plan.error().message());
+    log::error(plan.error());
     return 2;
   }
   if (arguments.index >= static_cast<int>(plan->grasps.size())) {

@@ -6,7 +6,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "common/base/log.hpp"
+#include "common/base/log_format.hpp"
 #include "common/grasping/blocking.hpp"
 #include "services/simulation/tools/grasp/planning_commands.hpp"
 #include "services/simulation/tools/planning/export.hpp"
@@ -55,7 +55,7 @@ int plan(const PlanArguments& arguments) {
       std::chrono::duration<double>(std::chrono::steady_clock::now() - before).count();
   if (!arguments.output.empty())
     if (const auto saved = save(arguments.output, *planned); !saved) {
-      log::error("{}", saved.error().message());
+      log::error(saved.error());
       return 3;
     }
   if (arguments.json) {

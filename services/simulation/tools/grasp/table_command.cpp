@@ -11,6 +11,7 @@
 #include <optional>
 
 #include "common/base/log.hpp"
+#include "common/base/log_format.hpp"
 #include "services/simulation/tools/grasp/planning_commands.hpp"
 #include "services/simulation/tools/planning/grasp_file.hpp"
 #include "services/simulation/tools/planning/planning_task.hpp"
@@ -142,7 +143,7 @@ int table(const TableArguments& arguments) {
       if (!plan) return tool::complain(plan.error(), exit_wrong_use);
       if (!arguments.save.empty()) {
         if (const auto saved = save(file, *plan); !saved) {
-          log::error("{}", saved.error().message());
+          log::error(saved.error());
           return 3;
         }
       }

@@ -1,0 +1,115 @@
+#include "services/cli/tools/metrics/metrics_command.hpp"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <csignal>
+#include <iostream>
+
+#include "common/base/clock.hpp"
+#include "common/base/log.hpp"
+#include "common/dds/participant.hpp"
+#include "common/dds/topics.hpp"
+#include "common/service/arguments.hpp"
+#include "common/service/membership.hpp"
+#include "common/service/supervisor.hpp"
+#include "services/cli/tools/metrics/http/server.hpp"
+#include "services/cli/tools/metrics/lab_metrics.hpp"
+
+namespace prehend::cli {
+namespace {
+
+constexpr Duration round = std::chrono::milliseconds(50);
+
+volatile std::sig_atomic_t ended = 0;
+extern "C" void on_end_of_metrics(int) {
+  ended = 1;
+}
+
+/// What the lab says on the topics that metrics are made of.
+class Ears {
+ public:
+  static Expected<Ears> create(dds::Participant& participant) {
+    auto statuses = participant.reader(dds::service_status);
+    if (!statuses) return tl::unexpected(statuses.error());
+    auto beacons = participant.reader(dds::lab_beacon);
+    if (!beacons) return tl::unexpected(beacons.error());
+    auto gates = participant.reader(dds::robot_gate);
+    if (!gates) return tl::unexpected(gates.error());
+    return Ears(std::move(*statuses), std::move(*beacons), std::move(*gates));
+  }
+
+  void listen(LabMetrics& metrics, Time now) {
+    for (const auto& sample : statuses_.take())
+      if (sample.info.gone)
+        metrics.lose_service(sample.data.service().to_string());
+      else
+        metrics.hear(sample.data, now);
+    for (const auto& sample : beacons_.take())
+      if (!sample.info.gone) metrics.hear(sample.data, now);
+    for (const auto& sample : gates_.take())
+      if (sample.info.gone)
+        metrics.lose_gate(sample.data.hand().to_string());
+      else
+        metrics.hear(sample.data, now);
+  }
+
+ private:
+  Ears(dds::Reader<v1::ServiceStatus> statuses, dds::Reader<v1::ClockBeacon> beacons,
+       dds::Reader<v1::GateState> gates)
+      : statuses_(std::move(statuses)), beacons_(std::move(beacons)), gates_(std::move(gates)) {}
+
+  dds::Reader<v1::ServiceStatus> statuses_;
+  dds::Reader<v1::ClockBeacon> beacons_;
+  dds::Reader<v1::GateState> gates_;
+};
+
+int serve(const service::Config& config, http::Server& server) {
+  auto participant = dds::Participant::create(service::membership(config, "prehend", "viewer"));
+  if (!participant) return service::complain(participant.error());
+  auto ears = Ears::create(*participant);
+  if (!ears) return service::complain(ears.error());
+  struct sigaction action {};
+  action.sa_handler = on_end_of_metrics;
+  ::sigaction(SIGTERM, &action, nullptr);
+  ::sigaction(SIGINT, &action, nullptr);
+
+  const std::string& address = config.text("metrics.address");
+  std::cout << fmt::format("http://{}:{}/metrics\n",
+                           address.find(':') == std::string::npos ? address : "[" + address + "]",
+                           server.port())
+            << std::flush;
+  LabMetrics metrics(config.names("lab.services"));
+  service::Supervisor supervisor;
+  while (ended == 0) {
+    ears->listen(metrics, process_now());
+    server.serve(round, [&] { return metrics.text(process_now()); });
+    supervisor.beat(process_now());
+  }
+  supervisor.stopping();
+  return exit_done;
+}
+
+}  // namespace
+
+int metrics_command(const std::vector<std::string>& arguments) {
+  CLI::App app{
+      "Serves what all services of the rig say of themselves to Prometheus, over HTTP, at\n"
+      "metrics.address and metrics.port, until SIGTERM or Ctrl-C. Prints the address.",
+      "prehend metrics"};
+  service::LabArguments lab;
+  lab.add_to(app);
+  log::set_name("metrics");
+  if (const auto code = service::parse(app, arguments)) return *code;
+  const auto config = lab.load();
+  if (!config) return service::complain(config.error(), exit_wrong_use);
+  const std::int64_t port = config->integer("metrics.port");
+  if (port < 0 || port > 65535)
+    return service::complain({"is no port", "metrics.port", "0 to 65535"}, exit_wrong_use);
+  auto server = http::Server::listen(
+      {.address = config->text("metrics.address"), .port = static_cast<int>(port)});
+  if (!server) return service::complain(server.error());
+  return serve(*config, *server);
+}
+
+}  // namespace prehend::cli

@@ -1,0 +1,173 @@
+// A server of one page among clients that mean it well and others: who is slow, silent, too long or
+// too many takes nothing from who only wants the page.
+#include "services/cli/tools/metrics/http/server.hpp"
+
+#include <arpa/inet.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <list>
+#include <mutex>
+#include <optional>
+#include <thread>
+
+namespace prehend::cli::http {
+namespace {
+
+const std::string good = "GET /metrics HTTP/1.1\r\nHost: lab\r\n\r\n";
+
+class Client {
+ public:
+  explicit Client(int port) : socket_(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0)) {
+    sockaddr_in address{};
+    address.sin_family = AF_INET;
+    address.sin_port = htons(static_cast<std::uint16_t>(port));
+    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    const timeval limit{30, 0};
+    ::setsockopt(socket_, SOL_SOCKET, SO_RCVTIMEO, &limit, sizeof limit);
+    connected_ = ::connect(socket_, reinterpret_cast<sockaddr*>(&address), sizeof address) == 0;
+  }
+  ~Client() { ::close(socket_); }
+  Client(const Client&) = delete;
+  bool connected() const { return connected_; }
+  void say(std::string_view text) const {
+    (void)::send(socket_, text.data(), text.size(), MSG_NOSIGNAL);
+  }
+  void end() const { ::shutdown(socket_, SHUT_WR); }
+  /// All that comes until the other side ends.
+  std::string hear() const {
+    std::string all;
+    char bytes[4096];
+    for (ssize_t size; (size = ::recv(socket_, bytes, sizeof bytes, 0)) > 0;)
+      all.append(bytes, static_cast<std::size_t>(size));
+    return all;
+  }
+
+ private:
+  int socket_;
+  bool connected_ = false;
+};
+
+class Served : public testing::Test {
+ protected:
+  void SetUp() override { begin({}); }
+  ~Served() override { end(); }
+  void begin(Server::Options options) {
+    end();
+    auto made = Server::listen(options);
+    ASSERT_TRUE(made) << made.error().message();
+    server_.emplace(std::move(*made));
+    stop_ = false;
+    thread_ = std::thread([this] {
+      while (!stop_) {
+        server_->serve(std::chrono::milliseconds(20), [this] { return page(); });
+        clients_ = server_->clients();
+      }
+    });
+  }
+  void end() {
+    stop_ = true;
+    if (thread_.joinable()) thread_.join();
+  }
+  std::string ask(const std::string& request) const {
+    const Client client(server_->port());
+    client.say(request);
+    return client.hear();
+  }
+
+  std::string page() const {
+    const std::scoped_lock lock(mutex_);
+    return page_;
+  }
+  void set_page(std::string text) {
+    const std::scoped_lock lock(mutex_);
+    page_ = std::move(text);
+  }
+
+  mutable std::mutex mutex_;  // guards the page
+  std::string page_ = "prehend_up 1\n";
+  std::optional<Server> server_;
+  std::atomic<bool> stop_ = true;
+  std::atomic<std::size_t> clients_ = 0;
+  std::thread thread_;
+};
+
+TEST_F(Served, AnswersEachInItsOwnWay) {
+  for (int i = 0; i < 20; ++i) EXPECT_TRUE(ask(good).ends_with("\r\n\r\n" + page()));
+  EXPECT_TRUE(ask("HEAD /metrics HTTP/1.1\r\nHost: a\r\n\r\n").ends_with("\r\n\r\n"));
+  EXPECT_TRUE(ask("GET /x HTTP/1.1\r\nHost: a\r\n\r\n").starts_with("HTTP/1.1 404 "));
+  EXPECT_TRUE(ask("POST /metrics HTTP/1.1\r\nHost: a\r\n\r\nbody").starts_with("HTTP/1.1 405 "));
+  EXPECT_TRUE(ask("nonsense\r\n").starts_with("HTTP/1.1 400 "));
+}
+
+TEST_F(Served, APageThatDoesNotFitIntoTheSocketComesWhole) {
+  set_page(std::string(8'000'000, 'x') + "\n");
+  const std::string said = ask(good);
+  EXPECT_TRUE(said.ends_with("x\n"));
+  EXPECT_GT(said.size(), 8'000'000u);
+}
+
+TEST_F(Served, ARequestThatIsTooLongIsRefusedAndTheAnswerArrives) {
+  EXPECT_TRUE(
+      ask("GET /metrics HTTP/1.1\r\nX: " + std::string(60'000, 'x')).starts_with("HTTP/1.1 431 "));
+}
+
+TEST_F(Served, ARequestInPiecesIsWaitedFor) {
+  const Client client(server_->port());
+  for (const char c : good) client.say({&c, 1});
+  EXPECT_TRUE(client.hear().ends_with(page()));
+}
+
+TEST_F(Served, WhoLeavesHalfwayIsForgotten) {
+  {
+    const Client client(server_->port());
+    client.say("GET /met");
+    client.end();
+    EXPECT_EQ(client.hear(), "");
+  }
+  EXPECT_TRUE(ask(good).ends_with(page()));
+}
+
+TEST_F(Served, TheSilentAndTheSlowAreSentAway) {
+  begin({.patience = std::chrono::milliseconds(200)});
+  const Client silent(server_->port()), slow(server_->port());
+  slow.say("GET /metrics HTTP/1.1\r\n");
+  EXPECT_EQ(silent.hear(), "");
+  EXPECT_EQ(slow.hear(), "");
+  set_page(std::string(20'000'000, 'x'));
+  const Client deaf(server_->port());  // asks, and does not take the answer
+  deaf.say(good);
+  while (clients_ == 0) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  set_page("prehend_up 1\n");
+  EXPECT_TRUE(ask(good).ends_with(page()));
+  while (clients_ > 0) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+}
+
+TEST_F(Served, ManySilentOnesTakeNoPlace) {
+  begin({.max_clients = 8, .patience = std::chrono::seconds(600)});
+  std::list<Client> crowd;
+  for (int i = 0; i < 200; ++i) {
+    crowd.emplace_back(server_->port());
+    if (i % 2) crowd.back().say("GET ");
+    EXPECT_LE(clients_, 8u);
+  }
+  for (int i = 0; i < 20; ++i) EXPECT_TRUE(ask(good).ends_with(page())) << i;
+  EXPECT_LE(clients_, 8u);
+}
+
+TEST(Server, SaysWhereItCannotListen) {
+  const auto first = Server::listen({});
+  ASSERT_TRUE(first);
+  const auto second = Server::listen({.port = first->port()});
+  ASSERT_FALSE(second);
+  EXPECT_THAT(second.error().where, testing::HasSubstr(std::to_string(first->port())));
+  EXPECT_FALSE(Server::listen({.address = "lab.example"}));
+  EXPECT_FALSE(Server::listen({.address = "192.0.2.1"})) << "not of this host";
+}
+
+}  // namespace
+}  // namespace prehend::cli::http
