@@ -40,53 +40,37 @@ std::optional<Peers::Undecided> Peers::wait_until_decided(const Guid& own) const
   }
 }
 
-void Peers::on_participant_discovery(DomainParticipant* participant,
-                                     rtps::ParticipantDiscoveryInfo&& found) {
-  using Found = rtps::ParticipantDiscoveryInfo;
-  if (found.status == Found::DISCOVERED_PARTICIPANT) {
-    meet(found.info);
-  } else if (found.status != Found::CHANGED_QOS_PARTICIPANT) {
+void Peers::on_participant(const FoundParticipant& found) {
+  if (found.news == News::found) {
+    meet(found);
+  } else if (found.news == News::gone) {
     const std::scoped_lock lock(mutex_);
-    peers_.erase(found.info.m_guid);
+    peers_.erase(found.guid);
     news_.notify_all();
   }
-  if (next_) next_->on_participant_discovery(participant, std::move(found));
+  if (next_) next_->on_participant(found);
 }
 
-void Peers::onParticipantAuthentication(DomainParticipant* participant,
-                                        rtps::ParticipantAuthenticationInfo&& info) {
-  decide(info.guid, info.status == rtps::ParticipantAuthenticationInfo::AUTHORIZED_PARTICIPANT);
-  if (next_) next_->onParticipantAuthentication(participant, std::move(info));
+void Peers::on_endpoint(const FoundEndpoint& found) {
+  if (next_) next_->on_endpoint(found);
 }
 
-void Peers::on_publisher_discovery(DomainParticipant* participant,
-                                   rtps::WriterDiscoveryInfo&& info) {
-  if (next_) next_->on_publisher_discovery(participant, std::move(info));
-}
-
-void Peers::on_subscriber_discovery(DomainParticipant* participant,
-                                    rtps::ReaderDiscoveryInfo&& info) {
-  if (next_) next_->on_subscriber_discovery(participant, std::move(info));
-}
-
-void Peers::meet(const rtps::ParticipantProxyData& info) {
+void Peers::meet(const FoundParticipant& found) {
   Peer peer;
-  peer.name = info.m_participantName.to_string();
-  for (const rtps::Property& property : info.identity_token_.properties()) {
-    peer.secured = true;
-    if (property.name() == "dds.ca.sn") peer.authority = property.value();
-  }
+  peer.name = found.name;
+  peer.secured = found.secured;
+  peer.authority = found.authority;
   const std::scoped_lock lock(mutex_);
   if (peer.secured && !authority_) note(peer.name + ", which is secured while this process is not");
   // Only who is to be judged, and not without bound.
   if (!authority_ || peers_.size() >= max_peers) return;
   peer.decided = !peer.secured;
   newest_ = peer.met;
-  peers_.insert_or_assign(info.m_guid, std::move(peer));
+  peers_.insert_or_assign(found.guid, std::move(peer));
   news_.notify_all();
 }
 
-void Peers::decide(const Guid& guid, bool let_in) {
+void Peers::on_judged(const Guid& guid, bool let_in) {
   const std::scoped_lock lock(mutex_);
   const auto found = peers_.find(guid);
   if (!let_in) refuse(found == peers_.end() ? Peer{"somebody", {}, true} : found->second);

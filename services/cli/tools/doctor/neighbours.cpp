@@ -6,19 +6,18 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fastdds/dds/domain/DomainParticipantListener.hpp>
 #include <map>
 #include <mutex>
 #include <set>
 #include <thread>
 
+#include "common/dds/discovery_events.hpp"
 #include "common/dds/participant.hpp"
 #include "common/service/membership.hpp"
 #include "services/cli/tools/doctor/wire.hpp"
 
 namespace prehend::cli {
 
-namespace fdds = eprosima::fastdds::dds;
 namespace rtps = dds::rtps;
 
 namespace {
@@ -36,7 +35,7 @@ std::map<std::string, std::string> contract_types() {
 }
 
 /// Everything that discovery tells, in its threads.
-class DiscoveryListener : public fdds::DomainParticipantListener {
+class DiscoveryListener : public dds::DiscoveryEvents {
  public:
   struct Endpoint {
     std::string topic, type;
@@ -47,27 +46,15 @@ class DiscoveryListener : public fdds::DomainParticipantListener {
   std::set<rtps::GuidPrefix_t> peers;
   std::vector<Endpoint> endpoints;
 
-  void on_participant_discovery(fdds::DomainParticipant*,
-                                rtps::ParticipantDiscoveryInfo&& found) override {
-    if (found.status != rtps::ParticipantDiscoveryInfo::DISCOVERED_PARTICIPANT) return;
+  void on_participant(const dds::FoundParticipant& found) override {
+    if (found.news != dds::News::found) return;
     const std::scoped_lock lock(mutex);
-    peers.insert(found.info.m_guid.guidPrefix);
+    peers.insert(found.guid.guidPrefix);
   }
-  void on_publisher_discovery(fdds::DomainParticipant*,
-                              rtps::WriterDiscoveryInfo&& found) override {
-    if (found.status == rtps::WriterDiscoveryInfo::DISCOVERED_WRITER) keep(found.info, true);
-  }
-  void on_subscriber_discovery(fdds::DomainParticipant*,
-                               rtps::ReaderDiscoveryInfo&& found) override {
-    if (found.status == rtps::ReaderDiscoveryInfo::DISCOVERED_READER) keep(found.info, false);
-  }
-
- private:
-  template <class Proxy>
-  void keep(const Proxy& info, bool writes) {
+  void on_endpoint(const dds::FoundEndpoint& found) override {
+    if (found.news != dds::News::found) return;
     const std::scoped_lock lock(mutex);
-    endpoints.push_back({info.topicName().to_string(), info.typeName().to_string(), writes,
-                         info.m_qos.m_partition.getNames()});
+    endpoints.push_back({found.topic, found.type, found.writes, found.rigs});
   }
 };
 
