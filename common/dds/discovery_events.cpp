@@ -94,6 +94,12 @@ FoundEndpoint endpoint(News news, bool writes, const auto& info) {
 
 }  // namespace
 
+GuidPrefix prefix_of(const rtps::GuidPrefix_t& from) {
+  GuidPrefix prefix;
+  std::copy_n(from.value, prefix.size(), prefix.begin());
+  return prefix;
+}
+
 void DiscoveryEvents::onParticipantAuthentication(DomainParticipant*,
                                                   rtps::ParticipantAuthenticationInfo&& info) {
   on_judged(info.guid, info.status == rtps::ParticipantAuthenticationInfo::AUTHORIZED_PARTICIPANT);

@@ -6,11 +6,15 @@
 #include <vector>
 
 #include "common/dds/fastdds.hpp"
+#include "common/dds/packet.hpp"
 #include "common/dds/topic.hpp"
 
 namespace prehend::dds {
 
 enum class News : std::uint8_t { found, changed, gone };
+
+/// The part of an identity that all of a participant share.
+GuidPrefix prefix_of(const rtps::GuidPrefix_t& from);
 
 /// A peer, as discovery tells of it.
 struct FoundParticipant {
@@ -18,7 +22,7 @@ struct FoundParticipant {
   rtps::GUID_t guid;
   std::string name;
   std::string middleware;  // what it speaks with, as «Fast DDS 3.1.2»; empty: it does not tell
-  bool secured = false;    // as far as this release of Fast DDS shows it, like what follows
+  bool secured = false;    // it has keys; Fast DDS 3 does not show it, nor what follows
   std::string authority;   // of its keys
 };
 

@@ -60,6 +60,9 @@ inline constexpr const char* profiles_variable = "FASTRTPS_DEFAULT_PROFILES_FILE
 inline constexpr const char* profiles_file = "DEFAULT_FASTRTPS_PROFILES.xml";
 inline const DdsDuration endless = eprosima::fastrtps::c_TimeInfinite;
 
+/// Of a secured peer the listener is told before the handshake, with its identity token.
+inline constexpr bool hides_secured_peers = false;
+
 inline bool succeeded(bool written) {
   return written;
 }
@@ -109,6 +112,9 @@ using PayloadArgument = rtps::SerializedPayload_t&;  // of TopicDataType::deseri
 inline constexpr const char* profiles_variable = "FASTDDS_DEFAULT_PROFILES_FILE";
 inline constexpr const char* profiles_file = "DEFAULT_FASTDDS_PROFILES.xml";
 inline const DdsDuration endless = fdds::c_TimeInfinite;
+
+/// Of a secured peer the listener is told only when it has been let in, without its identity token.
+inline constexpr bool hides_secured_peers = true;
 
 /// Only this tells whether a call has succeeded: write() returned true then, now it returns 0.
 inline bool succeeded(bool) = delete;

@@ -27,12 +27,6 @@ DdsDuration duration(std::chrono::milliseconds time) {
           static_cast<uint32_t>(time.count() % 1000) * 1'000'000u};
 }
 
-GuidPrefix prefix_of(const rtps::GuidPrefix_t& from) {
-  GuidPrefix prefix;
-  std::copy_n(from.value, prefix.size(), prefix.begin());
-  return prefix;
-}
-
 /// What a writer and a reader of one topic set alike.
 template <class Qos>
 void apply(Qos& qos, const TopicQos& contract, int depth, bool lockstep) {
@@ -187,7 +181,10 @@ Expected<Participant> Participant::join(const ParticipantOptions& options) {
     for (auto& transport : qos->transport().user_transports)
       if (auto* socket = dynamic_cast<transport::SocketTransportDescriptor*>(transport.get()))
         socket->receiveBufferSize = 1 << 24;
-  state->packets.emplace(!options.serves.empty());
+  PacketGuard::Hear hear;
+  if constexpr (hides_secured_peers)
+    hear = [&peers = *state->peers](const Announcement& said) { peers.hear(said); };
+  state->packets.emplace(!options.serves.empty(), std::move(hear));
   // Over TCP Fast DDS does not tell who sent a packet; there TLS decides who connects.
   for (auto& transport : qos->transport().user_transports)
     if (dynamic_cast<transport::UDPv4TransportDescriptor*>(transport.get()))
@@ -232,6 +229,10 @@ const Keys* Participant::keys() const {
 
 std::map<std::string, std::uint64_t> Participant::refused() const {
   return state_->peers->refused();
+}
+
+std::map<GuidPrefix, Peers::Presented> Participant::present() const {
+  return state_->peers->present();
 }
 
 GuidPrefix Participant::identity() const {

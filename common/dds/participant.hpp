@@ -19,6 +19,7 @@
 #include "common/dds/fastdds.hpp"
 #include "common/dds/network.hpp"
 #include "common/dds/packet.hpp"
+#include "common/dds/peers.hpp"
 #include "common/dds/security.hpp"
 #include "common/dds/topics.hpp"
 
@@ -143,6 +144,8 @@ class Participant {
   /// Peers that were refused, or that refuse us, with the reason, and how often: «mallory, whose
   /// keys are of another authority». At most 32 different ones. Safe from every thread.
   std::map<std::string, std::uint64_t> refused() const;
+  /// Peers that are here, by SampleInfo::participant. Safe from every thread.
+  std::map<GuidPrefix, Peers::Presented> present() const;
   /// As others see it in SampleInfo::participant.
   GuidPrefix identity() const;
 

@@ -5,10 +5,10 @@
 #include <map>
 #include <mutex>
 #include <optional>
-#include <set>
 #include <string>
 
 #include "common/dds/discovery_events.hpp"
+#include "common/dds/packet.hpp"
 
 namespace prehend::dds {
 
@@ -21,6 +21,11 @@ class Peers : public DiscoveryEvents {
   Peers(DiscoveryEvents* next, std::optional<std::string> authority)
       : next_(next), authority_(std::move(authority)) {}
 
+  /// A peer as it presents itself: «mapping», «Fast DDS 3.1.2».
+  struct Presented {
+    std::string name, middleware;
+  };
+  std::map<GuidPrefix, Presented> present() const;
   /// With the reason, and how often; at most 32 different ones.
   std::map<std::string, std::uint64_t> refused() const;
 
@@ -34,6 +39,9 @@ class Peers : public DiscoveryEvents {
   };
   std::optional<Undecided> wait_until_decided(const Guid& own) const;
 
+  /// Of the packet guard: what a peer says before Fast DDS is told. Of Fast DDS 3 we hear of a
+  /// secured peer only after it has been let in or refused, and never whose keys it has.
+  void hear(const Announcement& said);
   void on_participant(const FoundParticipant& found) override;
   void on_endpoint(const FoundEndpoint& found) override;
   void on_judged(const Guid& guid, bool let_in) override;
@@ -41,7 +49,7 @@ class Peers : public DiscoveryEvents {
  private:
   using Clock = std::chrono::steady_clock;
   struct Peer {
-    std::string name, authority;
+    std::string name, authority, middleware;
     bool secured = false;
     bool decided = false;
     Clock::time_point met = Clock::now();
@@ -49,6 +57,7 @@ class Peers : public DiscoveryEvents {
 
   void meet(const FoundParticipant& found);
   void refuse(const Peer& peer);
+  bool of_other_release(const Peer& peer) const;
   void note(const std::string& whom);
 
   DiscoveryEvents* next_;

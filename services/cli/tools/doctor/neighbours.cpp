@@ -11,6 +11,7 @@
 #include <set>
 #include <thread>
 
+#include "common/base/printable.hpp"
 #include "common/dds/discovery_events.hpp"
 #include "common/dds/participant.hpp"
 #include "common/service/membership.hpp"
@@ -98,12 +99,30 @@ Check judge_domain(int own, const std::map<int, int>& heard, bool alone) {
           "set lab.domain alike everywhere"};
 }
 
+/// Both releases of Fast DDS understand each other, but not where there are keys.
+Check judge_middleware(const dds::Participant& participant) {
+  std::map<std::string, std::vector<std::string>> by_release;
+  for (const auto& [prefix, peer] : participant.present())
+    if (prefix != participant.identity() && !peer.middleware.empty())
+      by_release[peer.middleware].push_back(printable(peer.name));
+  std::string text = fmt::format("this process has {}", dds::own_middleware);
+  for (auto& [release, names] : by_release) {
+    std::ranges::sort(names);
+    names.erase(std::unique(names.begin(), names.end()), names.end());
+    text += fmt::format("; {} {} {}", fmt::join(names, ", "), names.size() == 1 ? "has" : "have",
+                        release);
+  }
+  return {"dds", true, text, ""};
+}
+
 Check judge_security(const dds::Participant& participant) {
   std::vector<std::string> refused;
   for (const auto& [peer, count] : participant.refused()) refused.push_back(peer);
   if (refused.empty()) return {"security", true, "no peer was refused", ""};
-  return {"security", false, fmt::format("not heard here: {}", fmt::join(refused, "; ")),
-          "give every process keys of one keystore in lab.keys, or none; prehend keys show"};
+  return {
+      "security", false, fmt::format("not heard here: {}", fmt::join(refused, "; ")),
+      "give every process keys of one keystore in lab.keys, or none (prehend keys show), and one "
+      "release of Debian to a secured lab"};
 }
 
 /// Smallest difference between a host's stamp and its arrival here, by host.
@@ -163,6 +182,7 @@ Expected<Findings> check_neighbours(const service::Config& config, Duration list
   }
   findings.push_back(judge_rig(lab.rig, discovered.endpoints));
   findings.push_back(judge_types(discovered.endpoints));
+  findings.push_back(judge_middleware(*participant));
   findings.push_back(judge_security(*participant));
   findings.push_back(judge_clocks(offsets));
   return findings;

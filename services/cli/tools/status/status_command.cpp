@@ -104,11 +104,17 @@ int status_command(const std::vector<std::string>& arguments) {
     if (!live && now - begin > prehend::seconds(timeout)) break;
     if (!awaited.empty() && all_up()) break;
     std::this_thread::sleep_for(std::chrono::milliseconds(20));
-    for (const auto& sample : statuses->take())
+    const auto peers = participant->present();
+    for (const auto& sample : statuses->take()) {
+      const auto peer = peers.find(sample.info.participant);
       if (sample.info.gone)
         view.lose(sample.data.service().to_string(), now);
       else
-        view.hear(sample.data, now);
+        view.hear(sample.data, now, peer == peers.end() ? "" : peer->second.middleware);
+    }
+    std::vector<std::string> refused;
+    for (const auto& [name, count] : participant->refused()) refused.push_back(name);
+    view.refuse(std::move(refused));
     for (const auto& sample : beacons->take())
       if (!sample.info.gone) view.hear(sample.data, now);
     for (const auto& sample : gates->take())
