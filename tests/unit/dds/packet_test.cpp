@@ -23,6 +23,10 @@ bool is_sound(const Bytes& bytes) {
   return read_packet(bytes).has_value();
 }
 
+std::optional<Packet> read(const Bytes& bytes) {
+  return read_packet(bytes);
+}
+
 TEST(Packet, MessagesAsTheyAreSentPass) {
   Message message(glove);
   EXPECT_TRUE(is_sound(message)) << "nothing but a header";
@@ -132,7 +136,7 @@ TEST(Packet, AnAnnouncementTellsWhoSpeaksWithWhatKeysAndWhatMiddleware) {
                          {{0x0062, message.text("the\nglove")},
                           {0x1001, message.token("/CN=lab")},
                           {0x8000, {3, 1, 2, 0}}});
-    const auto packet = read_packet(message);
+    const auto packet = read(message);
     ASSERT_TRUE(packet && packet->announcements.size() == 1);
     const Announcement& said = packet->announcements.front();
     EXPECT_EQ(said.name, "theglove");
@@ -143,7 +147,7 @@ TEST(Packet, AnAnnouncementTellsWhoSpeaksWithWhatKeysAndWhatMiddleware) {
   Message open(mapping);
   open.announcement(mapping, {}, std::chrono::seconds(20),
                     {{0x002c, open.text("Fast DDS 2.9.1")}, {0x0062, open.text("mapping")}});
-  const Announcement said = read_packet(open)->announcements.front();
+  const Announcement said = read(open)->announcements.front();
   EXPECT_EQ(said.middleware, "Fast DDS 2.9.1");
   EXPECT_FALSE(said.secured);
 }
@@ -153,17 +157,17 @@ TEST(Packet, WhatAnAnnouncementTellsMayBeDamaged) {
   const Bytes token = whole.token("/CN=lab"), name = whole.text("glove");
   for (std::size_t size = 0; size <= token.size(); size += 4) {
     Bytes cut(token.begin(), token.begin() + static_cast<long>(size));
-    EXPECT_TRUE(read_packet(
-        Message(glove).announcement(glove, {}, std::chrono::seconds(1), {{0x1001, cut}})));
+    EXPECT_TRUE(
+        read(Message(glove).announcement(glove, {}, std::chrono::seconds(1), {{0x1001, cut}})));
     for (std::size_t at = 0; at + 4 <= cut.size(); at += 4) {
       Bytes lies = cut;
       std::fill_n(lies.begin() + static_cast<long>(at), 4, std::uint8_t{255});
-      EXPECT_TRUE(read_packet(
-          Message(glove).announcement(glove, {}, std::chrono::seconds(1), {{0x1001, lies}})));
+      EXPECT_TRUE(
+          read(Message(glove).announcement(glove, {}, std::chrono::seconds(1), {{0x1001, lies}})));
     }
   }
-  EXPECT_TRUE(read_packet(Message(glove).announcement(glove, {}, std::chrono::seconds(1),
-                                                      {{0x0062, {255, 255, 255, 255}}})));
+  EXPECT_TRUE(read(Message(glove).announcement(glove, {}, std::chrono::seconds(1),
+                                               {{0x0062, {255, 255, 255, 255}}})));
 }
 
 }  // namespace
