@@ -29,8 +29,8 @@ void AddressBook::Entry::update(const Announcement& said, Time now) {
 }
 
 PacketVerdict AddressBook::judge(std::span<const std::uint8_t> message, std::optional<Ipv4> source,
-                                 Time now) {
-  const auto packet = read_packet(message);
+                                 Time now, std::vector<Announcement>* told) {
+  auto packet = read_packet(message);
   if (!packet) return PacketVerdict::malformed;
   if (packet->for_others && !tells_of_others(packet->sender)) return PacketVerdict::in_other_name;
   const auto& all = packet->announcements;
@@ -52,13 +52,14 @@ PacketVerdict AddressBook::judge(std::span<const std::uint8_t> message, std::opt
   if (own != all.end()) found->second.update(*own, now);
   for (const Announcement& other : all) {
     if (other.participant == packet->sender) continue;
-    auto told = entries_.find(other.participant);
-    if (told == entries_.end()) {
+    auto known = entries_.find(other.participant);
+    if (known == entries_.end()) {
       if (other.leaves || !make_room(std::nullopt, now)) continue;
-      told = entries_.try_emplace(other.participant).first;
+      known = entries_.try_emplace(other.participant).first;
     }
-    told->second.update(other, now);
+    known->second.update(other, now);
   }
+  if (told) *told = std::move(packet->announcements);
   return PacketVerdict::pass;
 }
 

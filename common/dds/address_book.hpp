@@ -47,7 +47,9 @@ class AddressBook {
 
   /// source: where it came from, 127.x.x.x for all of this host's own addresses; nothing where the
   /// transport does not tell, then addresses are not compared.
-  PacketVerdict judge(std::span<const std::uint8_t> message, std::optional<Ipv4> source, Time now);
+  /// told: where what a message announces goes that passes.
+  PacketVerdict judge(std::span<const std::uint8_t> message, std::optional<Ipv4> source, Time now,
+                      std::vector<Announcement>* told = nullptr);
 
   /// The participant that asks speaks from this host for ever.
   void add_own(const GuidPrefix& own);

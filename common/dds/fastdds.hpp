@@ -22,10 +22,12 @@
 #else
 #define PREHEND_FAST_DDS 3
 #include <fastdds/config.hpp>
+#include <fastdds/dds/core/ReturnCode.hpp>
 #include <fastdds/rtps/common/Guid.hpp>
 #include <fastdds/rtps/common/InstanceHandle.hpp>
 #include <fastdds/rtps/common/Locator.hpp>
 #include <fastdds/rtps/common/SerializedPayload.hpp>
+#include <fastdds/rtps/common/WriteParams.hpp>
 #include <fastdds/rtps/transport/ChainingTransport.hpp>
 #include <fastdds/rtps/transport/ChainingTransportDescriptor.hpp>
 #include <fastdds/rtps/transport/SocketTransportDescriptor.hpp>
@@ -53,7 +55,13 @@ using DdsDuration = eprosima::fastrtps::Duration_t;
 using DdsTime = eprosima::fastrtps::Time_t;
 using DiscoveryProtocol = rtps::DiscoveryProtocol_t;
 using Md5 = ::MD5;
+using PayloadArgument = rtps::SerializedPayload_t*;  // of TopicDataType::deserialize
+inline constexpr const char* profiles_variable = "FASTRTPS_DEFAULT_PROFILES_FILE";
+inline constexpr const char* profiles_file = "DEFAULT_FASTRTPS_PROFILES.xml";
 inline const DdsDuration endless = eprosima::fastrtps::c_TimeInfinite;
+
+/// Of a secured peer the listener is told before the handshake, with its identity token.
+inline constexpr bool hides_secured_peers = false;
 
 inline bool succeeded(bool written) {
   return written;
@@ -84,6 +92,15 @@ inline bool find_key(fdds::TopicDataType& type, const void* message,
   return type.getKey(const_cast<void*>(message), &handle, false);
 }
 
+/// Types are not described to others: the contract is.
+inline void describe_nothing(fdds::TopicDataType& type) {
+  type.auto_fill_type_object(false);
+  type.auto_fill_type_information(false);
+}
+inline DdsDuration& heartbeat_period(auto& times) {
+  return times.heartbeatPeriod;
+}
+
 #else
 
 namespace rtps = eprosima::fastdds::rtps;
@@ -91,9 +108,13 @@ using DdsDuration = fdds::Duration_t;
 using DdsTime = fdds::Time_t;
 using DiscoveryProtocol = rtps::DiscoveryProtocol;
 using Md5 = eprosima::fastdds::MD5;
+using PayloadArgument = rtps::SerializedPayload_t&;  // of TopicDataType::deserialize
+inline constexpr const char* profiles_variable = "FASTDDS_DEFAULT_PROFILES_FILE";
+inline constexpr const char* profiles_file = "DEFAULT_FASTDDS_PROFILES.xml";
 inline const DdsDuration endless = fdds::c_TimeInfinite;
-inline constexpr auto LOCATOR_KIND_UDPv4 = rtps::LOCATOR_KIND_UDPv4;
-inline constexpr auto LOCATOR_KIND_TCPv4 = rtps::LOCATOR_KIND_TCPv4;
+
+/// Of a secured peer the listener is told only when it has been let in, without its identity token.
+inline constexpr bool hides_secured_peers = true;
 
 /// Only this tells whether a call has succeeded: write() returned true then, now it returns 0.
 inline bool succeeded(bool) = delete;
@@ -123,6 +144,12 @@ inline bool deserialize(fdds::TopicDataType& type, rtps::SerializedPayload_t& pa
 inline bool find_key(fdds::TopicDataType& type, const void* message,
                      rtps::InstanceHandle_t& handle) {
   return type.compute_key(message, handle, false);
+}
+
+/// Types are not described to others: the contract is. Their code is generated without.
+inline void describe_nothing(fdds::TopicDataType&) {}
+inline DdsDuration& heartbeat_period(auto& times) {
+  return times.heartbeat_period;
 }
 
 #endif

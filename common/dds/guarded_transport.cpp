@@ -63,10 +63,12 @@ Ipv4 ip_of(const rtps::Locator_t& locator) {
 
 bool PacketGuard::accepts(std::span<const std::uint8_t> message, const Ipv4& source) {
   PacketVerdict verdict;
+  std::vector<Announcement> told;
   {
     const std::scoped_lock lock(mutex_);
-    verdict = book_.judge(message, source, process_now());
+    verdict = book_.judge(message, source, process_now(), hear_ ? &told : nullptr);
   }
+  for (const Announcement& one : told) hear_(one);
   if (verdict != PacketVerdict::pass) add(verdict, source);
   return verdict == PacketVerdict::pass;
 }

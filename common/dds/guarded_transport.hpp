@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <string>
@@ -17,7 +18,9 @@ Ipv4 ip_of(const rtps::Locator_t& locator);
 /// Judges every packet that one participant receives by UDP, in the threads that receive them.
 class PacketGuard {
  public:
-  explicit PacketGuard(bool serves) : book_(serves) {}
+  using Hear = std::function<void(const Announcement&)>;
+  /// hear: told of every announcement that it lets pass, before Fast DDS is.
+  explicit PacketGuard(bool serves, Hear hear = {}) : book_(serves), hear_(std::move(hear)) {}
   bool accepts(std::span<const std::uint8_t> message, const Ipv4& source);
   void add_own(const GuidPrefix& own);
   void add_server(const GuidPrefix& server, const Ipv4& address);
@@ -25,6 +28,7 @@ class PacketGuard {
  private:
   std::mutex mutex_;
   AddressBook book_;
+  Hear hear_;
 };
 
 /// The same transport, of UDPv4, with a guard before it, which must outlive it. Fast DDS 2.9.1 does

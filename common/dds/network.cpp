@@ -30,15 +30,13 @@ namespace prehend::dds {
 
 namespace {
 
-constexpr const char* profiles_variable = "FASTRTPS_DEFAULT_PROFILES_FILE";
-constexpr const char* profiles_file = "DEFAULT_FASTRTPS_PROFILES.xml";
-
-/// Every variable by which Fast DDS 2.9 lets itself be changed.
+/// Every variable by which Fast DDS lets itself be changed.
 constexpr std::pair<const char*, const char*> variables[] = {
     {profiles_variable, "names profiles that Fast DDS takes as its defaults"},
     {"ROS_DISCOVERY_SERVER", "turns participants into clients of a discovery server"},
     {"FASTDDS_ENVIRONMENT_FILE", "names a file with further variables"},
     {"FASTDDS_STATISTICS", "adds writers to every participant"},
+    {"FASTDDS_BUILTIN_TRANSPORTS", "chooses other transports"},
 };
 
 /// A profile as it stands in its file. Each file is read once.
@@ -131,13 +129,10 @@ Expected<void> use_servers(fdds::DomainParticipantQos& qos, const Network& netwo
   for (const std::string& text : network.servers) {
     const auto address = resolve(text, first_server_port);
     if (!address) return tl::unexpected(address.error());
-    transport::RemoteServerAttributes server;
-    server.guidPrefix = server_prefix(address->port);
-    if (server.guidPrefix == qos.wire_protocol().prefix)
+    if (server_prefix(address->port) == qos.wire_protocol().prefix)
       return fail("linked discovery servers must have different ports", text,
                   "the first listens at 11811, the next at 11812");
-    server.metatrafficUnicastLocatorList.push_back(locator_of(*address));
-    builtin.discovery_config.m_DiscoveryServers.push_back(server);
+    add_server(qos, *address);
   }
   return {};
 }

@@ -27,7 +27,8 @@ constexpr std::uint32_t participants = 0x000100c2, topics = 0x000002c2, writers 
 // Parameters (9.6.3.2).
 constexpr std::uint16_t end_of_list = 0x0001, lease_duration = 0x0002, default_locator = 0x0031,
                         metatraffic_locator = 0x0032, participant_guid = 0x0050,
-                        endpoint_guid = 0x005a, key_hash = 0x0070;
+                        endpoint_guid = 0x005a, key_hash = 0x0070, entity_name = 0x0062,
+                        user_data = 0x002c, identity_token = 0x1001, product_version = 0x8000;
 constexpr std::size_t guid_size = 16, locator_size = 24, ip_in_locator = 20;
 constexpr std::uint32_t udp4 = 1, tcp4 = 4;  // kinds of locators
 constexpr Duration usual_lease = std::chrono::seconds(100);
@@ -67,6 +68,48 @@ std::optional<std::size_t> for_each_parameter(const Numbers& list, Visit visit) 
     at = std::min(at + (length + 3) / 4 * 4, list.bytes.size());
   }
   return std::nullopt;
+}
+
+/// A string with its length before it, as far as it lies within and is printable; at moves past it.
+std::string text_at(const Numbers& value, std::size_t& at, std::size_t max_size = 255) {
+  if (at + 4 > value.bytes.size()) return {};
+  const std::size_t length = value.four(at);
+  at += 4;
+  if (length > value.bytes.size() - at) {
+    at = value.bytes.size();
+    return {};
+  }
+  std::string text;
+  for (const std::uint8_t byte : value.bytes.subspan(at, length))
+    if (byte >= ' ' && byte <= '~' && text.size() < max_size) text += static_cast<char>(byte);
+  at += (length + 3) / 4 * 4;
+  return text;
+}
+
+/// What an announcement says of its participant for people to read.
+void read_word(Announcement& said, std::uint16_t parameter, const Numbers& value) {
+  std::size_t at = 0;
+  if (parameter == entity_name) {
+    said.name = text_at(value, at);
+  } else if (parameter == user_data) {
+    if (std::string text = text_at(value, at, 40); text.starts_with("Fast DDS "))
+      said.middleware = std::move(text);
+  } else if (parameter == product_version && value.bytes.size() >= 4) {
+    if (said.middleware.empty())
+      for (std::size_t i = 0; i < 3; ++i)
+        said.middleware += (i == 0 ? "Fast DDS " : ".") + std::to_string(value.bytes[i]);
+  } else if (parameter == identity_token) {  // DDS Security 1.1, 7.2.1: a class, then properties
+    said.secured = true;
+    text_at(value, at);
+    if (at + 4 > value.bytes.size()) return;
+    std::uint32_t left = value.four(at);
+    at += 4;
+    for (; left > 0 && at < value.bytes.size(); --left) {
+      const std::string property = text_at(value, at);
+      std::string content = text_at(value, at);
+      if (property == "dds.ca.sn") said.authority = std::move(content);
+    }
+  }
 }
 
 /// Reads what discovery tells in one part of a message. False: it is not sound.
@@ -129,6 +172,8 @@ class Telling {
           } else if ((parameter == default_locator || parameter == metatraffic_locator) &&
                      size >= locator_size && (value.four(0) == udp4 || value.four(0) == tcp4)) {
             said.addresses.push_back(array_at<4>(value.bytes, ip_in_locator));
+          } else if (writer == participants) {
+            read_word(said, parameter, value);
           }
         });
     if (!length && whole) return false;

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "common/base/time.hpp"
@@ -22,6 +23,10 @@ struct Announcement {
   std::vector<Ipv4> addresses;  // at which it can be reached
   Duration lease{};             // it is gone when it has been silent for so long
   bool leaves = false;
+  // What it says of itself, printable and cut to a length.
+  std::string name, middleware;
+  bool secured = false;   // it has keys
+  std::string authority;  // of these
 };
 
 /// An RTPS message, as far as it tells who speaks.

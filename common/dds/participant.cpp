@@ -27,12 +27,6 @@ DdsDuration duration(std::chrono::milliseconds time) {
           static_cast<uint32_t>(time.count() % 1000) * 1'000'000u};
 }
 
-GuidPrefix prefix_of(const rtps::GuidPrefix_t& from) {
-  GuidPrefix prefix;
-  std::copy_n(from.value, prefix.size(), prefix.begin());
-  return prefix;
-}
-
 /// What a writer and a reader of one topic set alike.
 template <class Qos>
 void apply(Qos& qos, const TopicQos& contract, int depth, bool lockstep) {
@@ -115,27 +109,18 @@ struct Participant::State {
   /// Told of a discovery server's address, new or known.
   void server_is_at(const Address& address) {
     fdds::DomainParticipantQos qos = participant->get_qos();
-    const auto locator = locator_of(address);
-    for (auto& server : qos.wire_protocol().builtin.discovery_config.m_DiscoveryServers) {
-      auto& known = server.metatrafficUnicastLocatorList;
-      if (server.guidPrefix != server_prefix(address.port) ||
-          std::find(known.begin(), known.end(), locator) != known.end())
-        continue;
-      log::info("the discovery server of port {} is at {} now", address.port,
-                fmt::join(address.ip, "."));
-      packets->add_server(prefix_of(server.guidPrefix), address.ip);
-      known.push_back(locator);
-      participant->set_qos(qos);
-      return;
-    }
+    if (!add_place(qos, address)) return;
+    log::info("the discovery server of port {} is at {} now", address.port,
+              fmt::join(address.ip, "."));
+    packets->add_server(prefix_of(server_prefix(address.port)), address.ip);
+    participant->set_qos(qos);
   }
 
   Expected<fdds::Topic*> topic(std::string_view name, fdds::TypeSupport& type) {
     if (const auto found = topics.find(name); found != topics.end()) return found->second;
     // Several raw topics may have one type.
     if (participant->find_type(type.get_type_name()).empty()) {
-      type.get()->auto_fill_type_object(false);
-      type.get()->auto_fill_type_information(false);
+      describe_nothing(*type.get());
       if (!succeeded(type.register_type(participant)))
         return fail("type of the topic cannot be registered", std::string(name));
     }
@@ -185,6 +170,7 @@ Expected<Participant> Participant::join(const ParticipantOptions& options) {
   auto qos = participant_qos(network, {options.listener != nullptr, options.serves});
   if (!qos) return tl::unexpected(qos.error());
   qos->name(options.name);
+  qos->user_data().setValue({own_middleware.begin(), own_middleware.end()});
   if (state->keys) secure(*qos, *state->keys);
   state->peers.emplace(options.listener,
                        state->keys ? std::optional(state->keys->authority) : std::nullopt);
@@ -195,16 +181,19 @@ Expected<Participant> Participant::join(const ParticipantOptions& options) {
     for (auto& transport : qos->transport().user_transports)
       if (auto* socket = dynamic_cast<transport::SocketTransportDescriptor*>(transport.get()))
         socket->receiveBufferSize = 1 << 24;
-  state->packets.emplace(!options.serves.empty());
+  PacketGuard::Hear hear;
+  if constexpr (hides_secured_peers)
+    hear = [&peers = *state->peers](const Announcement& said) { peers.hear(said); };
+  state->packets.emplace(!options.serves.empty(), std::move(hear));
   // Over TCP Fast DDS does not tell who sent a packet; there TLS decides who connects.
   for (auto& transport : qos->transport().user_transports)
     if (dynamic_cast<transport::UDPv4TransportDescriptor*>(transport.get()))
       transport = guarded(transport, *state->packets);
   for (auto& transport : qos->transport().user_transports)
     transport = serialized(transport, state->serializer);
-  for (const auto& server : qos->wire_protocol().builtin.discovery_config.m_DiscoveryServers)
-    for (const auto& locator : server.metatrafficUnicastLocatorList)
-      state->packets->add_server(prefix_of(server.guidPrefix), ip_of(locator));
+  for (const auto& locator : servers_of(*qos))
+    state->packets->add_server(prefix_of(server_prefix(static_cast<std::uint16_t>(locator.port))),
+                               ip_of(locator));
   auto* factory = fdds::DomainParticipantFactory::get_instance();
   state->participant =
       factory->create_participant(options.domain, *qos, &*state->peers, fdds::StatusMask::none());
@@ -242,6 +231,10 @@ std::map<std::string, std::uint64_t> Participant::refused() const {
   return state_->peers->refused();
 }
 
+std::map<GuidPrefix, Peers::Presented> Participant::present() const {
+  return state_->peers->present();
+}
+
 GuidPrefix Participant::identity() const {
   return prefix_of(state_->participant->guid().guidPrefix);
 }
@@ -270,7 +263,7 @@ Expected<fdds::DataWriter*> Participant::make_writer(std::string_view topic,
   if (!raw && contract.writer_depth == 0)
     qos.endpoint().history_memory_policy = rtps::DYNAMIC_RESERVE_MEMORY_MODE;
   // With the default of 3 s a lost single sample is noticed very late.
-  qos.reliable_writer_qos().times.heartbeatPeriod = duration(std::chrono::milliseconds(100));
+  heartbeat_period(qos.reliable_writer_qos().times) = duration(std::chrono::milliseconds(100));
   qos.reliability().max_blocking_time = duration(std::chrono::milliseconds(100));
   fdds::DataWriter* writer = state_->publisher->create_datawriter(*handle, qos);
   if (!writer)

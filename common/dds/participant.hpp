@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <exception>
-#include <fastdds/dds/domain/DomainParticipantListener.hpp>
 #include <fastdds/dds/publisher/DataWriter.hpp>
 #include <fastdds/dds/subscriber/DataReader.hpp>
 #include <fastdds/dds/subscriber/DataReaderListener.hpp>
@@ -16,9 +15,11 @@
 
 #include "common/base/error.hpp"
 #include "common/base/time.hpp"
+#include "common/dds/discovery_events.hpp"
 #include "common/dds/fastdds.hpp"
 #include "common/dds/network.hpp"
 #include "common/dds/packet.hpp"
+#include "common/dds/peers.hpp"
 #include "common/dds/security.hpp"
 #include "common/dds/topics.hpp"
 
@@ -33,7 +34,7 @@ struct ParticipantOptions {
   /// All topics reliable and complete, without deadlines: for recordings in lockstep.
   bool lockstep = false;
   /// Told of discovery in the whole domain, in its thread; must outlive the participant.
-  eprosima::fastdds::dds::DomainParticipantListener* listener = nullptr;
+  DiscoveryEvents* listener = nullptr;
   /// ADDRESS:PORT at which this is the discovery server of a network of that kind.
   std::string serves = {};
 };
@@ -118,7 +119,7 @@ class Reader {
 template <class P>
 class NoThrowPubSubType final : public P {
  public:
-  bool deserialize(rtps::SerializedPayload_t* payload, void* data) override {
+  bool deserialize(PayloadArgument payload, void* data) override {
     try {
       return P::deserialize(payload, data);
     } catch (const std::exception&) {
@@ -143,6 +144,8 @@ class Participant {
   /// Peers that were refused, or that refuse us, with the reason, and how often: «mallory, whose
   /// keys are of another authority». At most 32 different ones. Safe from every thread.
   std::map<std::string, std::uint64_t> refused() const;
+  /// Peers that are here, by SampleInfo::participant. Safe from every thread.
+  std::map<GuidPrefix, Peers::Presented> present() const;
   /// As others see it in SampleInfo::participant.
   GuidPrefix identity() const;
 

@@ -14,7 +14,12 @@ class PassThroughTransport : public transport::ChainingTransport {
   transport::TransportDescriptorInterface* get_configuration() override {
     return low_level_transport_->get_configuration();
   }
-  bool send(rtps::SenderResource* lower, const rtps::octet* bytes, std::uint32_t size,
+#if PREHEND_FAST_DDS == 2
+  using Bytes = const rtps::octet*;
+#else  // Fast DDS 3 gives a message in pieces
+  using Bytes = const std::vector<transport::NetworkBuffer>&;
+#endif
+  bool send(rtps::SenderResource* lower, Bytes bytes, std::uint32_t size,
             rtps::LocatorsIterator* begin, rtps::LocatorsIterator* end,
             const std::chrono::steady_clock::time_point& timeout) override {
     return lower->send(bytes, size, begin, end, timeout);

@@ -1,6 +1,7 @@
 #include "common/dds/peers.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace prehend::dds {
 
@@ -16,6 +17,14 @@ constexpr std::size_t max_peers = 1024, max_reasons = 32;
 
 }  // namespace
 
+std::map<GuidPrefix, Peers::Presented> Peers::present() const {
+  const std::scoped_lock lock(mutex_);
+  std::map<GuidPrefix, Presented> all;
+  for (const auto& [guid, peer] : peers_)
+    all.emplace(prefix_of(guid.guidPrefix), Presented{peer.name, peer.middleware});
+  return all;
+}
+
 std::map<std::string, std::uint64_t> Peers::refused() const {
   const std::scoped_lock lock(mutex_);
   return refused_;
@@ -29,7 +38,7 @@ std::optional<Peers::Undecided> Peers::wait_until_decided(const Guid& own) const
     auto until = std::max(begin, newest_) + quiet;
     bool all = true;
     for (const auto& [guid, peer] : peers_) {
-      if (peer.decided) continue;
+      if (peer.decided || guid == own) continue;
       const auto end = peer.met + (guid < own ? patience : longer_patience);
       if (now >= end) return Undecided{guid, peer.name};
       until = all ? end : std::min(until, end);
@@ -40,63 +49,86 @@ std::optional<Peers::Undecided> Peers::wait_until_decided(const Guid& own) const
   }
 }
 
-void Peers::on_participant_discovery(DomainParticipant* participant,
-                                     rtps::ParticipantDiscoveryInfo&& found) {
-  using Found = rtps::ParticipantDiscoveryInfo;
-  if (found.status == Found::DISCOVERED_PARTICIPANT) {
-    meet(found.info);
-  } else if (found.status != Found::CHANGED_QOS_PARTICIPANT) {
-    const std::scoped_lock lock(mutex_);
-    peers_.erase(found.info.m_guid);
+void Peers::hear(const Announcement& said) {
+  Guid guid;
+  std::ranges::copy(said.participant, guid.guidPrefix.value);
+  guid.entityId = rtps::c_EntityId_RTPSParticipant;
+  const std::scoped_lock lock(mutex_);
+  const auto known = peers_.find(guid);
+  if (!said.leaves && known == peers_.end()) {
+    meet({News::found, guid, said.name, said.middleware, said.secured, said.authority});
+  } else if (said.leaves && known != peers_.end() && !known->second.decided) {
+    // Of the others Fast DDS knows whether it is true.
+    peers_.erase(known);
     news_.notify_all();
   }
-  if (next_) next_->on_participant_discovery(participant, std::move(found));
 }
 
-void Peers::onParticipantAuthentication(DomainParticipant* participant,
-                                        rtps::ParticipantAuthenticationInfo&& info) {
-  decide(info.guid, info.status == rtps::ParticipantAuthenticationInfo::AUTHORIZED_PARTICIPANT);
-  if (next_) next_->onParticipantAuthentication(participant, std::move(info));
-}
-
-void Peers::on_publisher_discovery(DomainParticipant* participant,
-                                   rtps::WriterDiscoveryInfo&& info) {
-  if (next_) next_->on_publisher_discovery(participant, std::move(info));
-}
-
-void Peers::on_subscriber_discovery(DomainParticipant* participant,
-                                    rtps::ReaderDiscoveryInfo&& info) {
-  if (next_) next_->on_subscriber_discovery(participant, std::move(info));
-}
-
-void Peers::meet(const rtps::ParticipantProxyData& info) {
-  Peer peer;
-  peer.name = info.m_participantName.to_string();
-  for (const rtps::Property& property : info.identity_token_.properties()) {
-    peer.secured = true;
-    if (property.name() == "dds.ca.sn") peer.authority = property.value();
+void Peers::on_participant(const FoundParticipant& found) {
+  if (found.news != News::changed) {
+    const std::scoped_lock lock(mutex_);
+    const auto known = peers_.find(found.guid);
+    if (found.news == News::gone) {
+      peers_.erase(found.guid);
+      news_.notify_all();
+    } else if (known == peers_.end()) {
+      meet(found);
+    } else {  // heard of, or judged, before
+      known->second.name = found.name;
+      known->second.middleware = found.middleware;
+    }
   }
-  const std::scoped_lock lock(mutex_);
+  if (next_) next_->on_participant(found);
+}
+
+void Peers::on_endpoint(const FoundEndpoint& found) {
+  if (next_) next_->on_endpoint(found);
+}
+
+void Peers::meet(const FoundParticipant& found) {
+  Peer peer{found.name, found.authority, found.middleware, found.secured};
   if (peer.secured && !authority_) note(peer.name + ", which is secured while this process is not");
-  // Only who is to be judged, and not without bound.
-  if (!authority_ || peers_.size() >= max_peers) return;
-  peer.decided = !peer.secured;
-  newest_ = peer.met;
-  peers_.insert_or_assign(info.m_guid, std::move(peer));
+  // Not without bound.
+  if (peers_.size() >= max_peers) return;
+  // Only who has keys is judged where there are keys. The releases of Fast DDS do not let each
+  // other in, and their handshake would never end.
+  const bool stranger = authority_ && peer.secured && of_other_release(peer);
+  if (stranger) refuse(peer);
+  peer.decided = !authority_ || !peer.secured || stranger;
+  if (authority_) newest_ = peer.met;
+  peers_.insert_or_assign(found.guid, std::move(peer));
   news_.notify_all();
 }
 
-void Peers::decide(const Guid& guid, bool let_in) {
+void Peers::on_judged(const Guid& guid, bool let_in) {
   const std::scoped_lock lock(mutex_);
   const auto found = peers_.find(guid);
-  if (!let_in) refuse(found == peers_.end() ? Peer{"somebody", {}, true} : found->second);
-  if (found != peers_.end()) found->second.decided = true;
+  if (found == peers_.end()) {
+    Peer peer{"somebody", {}, {}, true, true};
+    if (!let_in)
+      refuse(peer);
+    else if (peers_.size() < max_peers)
+      peers_.emplace(guid, std::move(peer));
+  } else {
+    // Who is of another release was refused when it came.
+    if (!let_in && !of_other_release(found->second)) refuse(found->second);
+    found->second.decided = true;
+  }
   news_.notify_all();
+}
+
+bool Peers::of_other_release(const Peer& peer) const {
+  constexpr std::size_t major = std::string_view("Fast DDS ").size();
+  return peer.middleware.size() > major && peer.middleware.starts_with("Fast DDS ") &&
+         peer.middleware[major] != own_middleware[major];
 }
 
 void Peers::refuse(const Peer& peer) {
   if (!peer.secured)
     note(peer.name + ", which has no keys");
+  else if (of_other_release(peer))
+    note(peer.name + ", which has " + peer.middleware +
+         ", not " PREHEND_FAST_DDS_RELEASE ": a secured lab is all Debian 12 or all Debian 13");
   else if (peer.authority != "/" + *authority_)  // as the plugin writes it
     note(peer.name + ", whose keys are of another authority");
   else

@@ -2,26 +2,30 @@
 
 #include <chrono>
 #include <condition_variable>
-#include <fastdds/dds/domain/DomainParticipantListener.hpp>
 #include <map>
 #include <mutex>
 #include <optional>
 #include <string>
 
+#include "common/dds/discovery_events.hpp"
+#include "common/dds/packet.hpp"
+
 namespace prehend::dds {
 
 /// Hears of every peer before anybody else does: keeps count of those that are refused, and knows
 /// whose handshake is under way.
-class Peers : public eprosima::fastdds::dds::DomainParticipantListener {
+class Peers : public DiscoveryEvents {
  public:
-  using DomainParticipant = eprosima::fastdds::dds::DomainParticipant;
-  using Guid = rtps::GUID_t;
-
   /// next: told of everything as well, or nullptr. authority: of our own keys; nothing: we have
   /// none.
-  Peers(DomainParticipantListener* next, std::optional<std::string> authority)
+  Peers(DiscoveryEvents* next, std::optional<std::string> authority)
       : next_(next), authority_(std::move(authority)) {}
 
+  /// A peer as it presents itself: «mapping», «Fast DDS 3.1.2».
+  struct Presented {
+    std::string name, middleware;
+  };
+  std::map<GuidPrefix, Presented> present() const;
   /// With the reason, and how often; at most 32 different ones.
   std::map<std::string, std::uint64_t> refused() const;
 
@@ -35,30 +39,28 @@ class Peers : public eprosima::fastdds::dds::DomainParticipantListener {
   };
   std::optional<Undecided> wait_until_decided(const Guid& own) const;
 
-  void on_participant_discovery(DomainParticipant* participant,
-                                rtps::ParticipantDiscoveryInfo&& found) override;
-  void onParticipantAuthentication(DomainParticipant* participant,
-                                   rtps::ParticipantAuthenticationInfo&& info) override;
-  void on_publisher_discovery(DomainParticipant* participant,
-                              rtps::WriterDiscoveryInfo&& info) override;
-  void on_subscriber_discovery(DomainParticipant* participant,
-                               rtps::ReaderDiscoveryInfo&& info) override;
+  /// Of the packet guard: what a peer says before Fast DDS is told. Of Fast DDS 3 we hear of a
+  /// secured peer only after it has been let in or refused, and never whose keys it has.
+  void hear(const Announcement& said);
+  void on_participant(const FoundParticipant& found) override;
+  void on_endpoint(const FoundEndpoint& found) override;
+  void on_judged(const Guid& guid, bool let_in) override;
 
  private:
   using Clock = std::chrono::steady_clock;
   struct Peer {
-    std::string name, authority;
+    std::string name, authority, middleware;
     bool secured = false;
     bool decided = false;
     Clock::time_point met = Clock::now();
   };
 
-  void meet(const rtps::ParticipantProxyData& info);
-  void decide(const Guid& guid, bool let_in);
+  void meet(const FoundParticipant& found);
   void refuse(const Peer& peer);
+  bool of_other_release(const Peer& peer) const;
   void note(const std::string& whom);
 
-  DomainParticipantListener* next_;
+  DiscoveryEvents* next_;
   std::optional<std::string> authority_;
   mutable std::mutex mutex_;  // guards what follows
   mutable std::condition_variable news_;

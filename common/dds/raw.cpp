@@ -29,69 +29,104 @@ Guid guid_of(const rtps::InstanceHandle_t& handle) {
 /// came, it is what `key` finds in them.
 class RawType : public fdds::TopicDataType {
  public:
+  using Payload = rtps::SerializedPayload_t;
+  using Handle = rtps::InstanceHandle_t;
+
+#if PREHEND_FAST_DDS == 2
   RawType(const std::string& name, bool keyed, KeyOf key = {}) : key_(std::move(key)) {
     setName(name.c_str());
     m_isGetKeyDefined = keyed;
-    m_typeSize = 256;  // to begin with; histories grow as needed
+    m_typeSize = first_size;
   }
-  bool serialize(void* data, rtps::SerializedPayload_t* payload) override {
-    const auto& bytes = static_cast<const RawSample*>(data)->payload;
-    if (bytes.size() > payload->max_size || bytes.size() < 4) return false;
-    std::memcpy(payload->data, bytes.data(), bytes.size());
-    payload->length = static_cast<std::uint32_t>(bytes.size());
-    payload->encapsulation = bytes[1] & 1 ? CDR_LE : CDR_BE;
-    return true;
+  bool serialize(void* data, Payload* payload) override {
+    return put(bytes(data), *payload);
   }
-  bool deserialize(rtps::SerializedPayload_t* payload, void* data) override {
-    static_cast<RawSample*>(data)->payload.assign(payload->data, payload->data + payload->length);
-    return true;
+  bool deserialize(Payload* payload, void* data) override {
+    return take(*payload, data);
   }
   std::function<std::uint32_t()> getSerializedSizeProvider(void* data) override {
-    return [data] {
-      return static_cast<std::uint32_t>(static_cast<RawSample*>(data)->payload.size());
-    };
+    return [data] { return static_cast<std::uint32_t>(bytes(data).size()); };
   }
-  bool getKey(void* data, rtps::InstanceHandle_t* handle, bool) override {
-    if (!m_isGetKeyDefined) return false;
+  bool getKey(void* data, Handle* handle, bool) override {
+    return find(data, *handle);
+  }
+  void* createData() override {
+    return new RawSample;
+  }
+  void deleteData(void* data) override {
+    delete static_cast<RawSample*>(data);
+  }
+#else
+  RawType(const std::string& name, bool keyed, KeyOf key = {}) : key_(std::move(key)) {
+    set_name(name);
+    is_compute_key_provided = keyed;
+    max_serialized_type_size = first_size;
+  }
+  bool serialize(const void* data, Payload& payload, fdds::DataRepresentationId_t) override {
+    return put(bytes(data), payload);
+  }
+  bool deserialize(Payload& payload, void* data) override {
+    return take(payload, data);
+  }
+  std::uint32_t calculate_serialized_size(const void* data, fdds::DataRepresentationId_t) override {
+    return static_cast<std::uint32_t>(bytes(data).size());
+  }
+  bool compute_key(const void* data, Handle& handle, bool) override {
+    return find(data, handle);
+  }
+  bool compute_key(Payload& payload, Handle& handle, bool) override {
+    RawSample sample;
+    return take(payload, &sample) && find(&sample, handle);
+  }
+  void* create_data() override {
+    return new RawSample;
+  }
+  void delete_data(void* data) override {
+    delete static_cast<RawSample*>(data);
+  }
+#endif
+
+ private:
+  static constexpr std::uint32_t first_size = 256;  // histories grow as needed
+
+  static const std::vector<std::uint8_t>& bytes(const void* data) {
+    return static_cast<const RawSample*>(data)->payload;
+  }
+  static bool put(const std::vector<std::uint8_t>& bytes, Payload& payload) {
+    if (bytes.size() > payload.max_size || bytes.size() < 4) return false;
+    std::memcpy(payload.data, bytes.data(), bytes.size());
+    payload.length = static_cast<std::uint32_t>(bytes.size());
+    payload.encapsulation = bytes[1] & 1 ? CDR_LE : CDR_BE;
+    return true;
+  }
+  static bool take(const Payload& payload, void* data) {
+    static_cast<RawSample*>(data)->payload.assign(payload.data, payload.data + payload.length);
+    return true;
+  }
+  bool find(const void* data, Handle& handle) const {
+    if (!has_key(*this)) return false;
     const auto& sample = *static_cast<const RawSample*>(data);
     const auto found = key_ && !sample.payload.empty() ? key_(sample.payload, false) : std::nullopt;
     const Guid& key = found ? *found : sample.instance;
-    std::copy(key.begin(), key.end(), static_cast<rtps::octet*>(handle->value));
+    std::copy(key.begin(), key.end(), static_cast<rtps::octet*>(handle.value));
     return true;
   }
-  void* createData() override { return new RawSample; }
-  void deleteData(void* data) override { delete static_cast<RawSample*>(data); }
 
- private:
   KeyOf key_;
 };
 
-std::chrono::milliseconds milliseconds_of(const DdsDuration& period) {
-  if (period == endless) return std::chrono::milliseconds(0);
-  return std::chrono::milliseconds(period.to_ns() / 1'000'000);
-}
-
 }  // namespace
 
-void Discovery::on_publisher_discovery(fdds::DomainParticipant*,
-                                       rtps::WriterDiscoveryInfo&& discovered) {
-  const rtps::WriterProxyData& info = discovered.info;
+void Discovery::on_endpoint(const FoundEndpoint& endpoint) {
+  if (!endpoint.writes) return;
   DiscoveredWriter found;
-  found.writer = guid_of(info.guid());
-  found.gone = discovered.status == rtps::WriterDiscoveryInfo::REMOVED_WRITER;
-  found.topic.name = info.topicName().to_string();
-  found.topic.type = info.typeName().to_string();
-  found.topic.keyed = info.topicKind() == rtps::WITH_KEY;
-  TopicQos& qos = found.topic.qos;
-  qos.reliable = info.m_qos.m_reliability.kind == fdds::RELIABLE_RELIABILITY_QOS;
-  // Whatever lasts longer than transient local we can neither ask for nor offer.
-  qos.transient_local = info.m_qos.m_durability.kind != fdds::VOLATILE_DURABILITY_QOS;
-  qos.exclusive_ownership = info.m_qos.m_ownership.kind == fdds::EXCLUSIVE_OWNERSHIP_QOS;
-  qos.deadline = milliseconds_of(info.m_qos.m_deadline.period);
-  qos.lifespan = milliseconds_of(info.m_qos.m_lifespan.duration);
+  found.writer = guid_of(endpoint.guid);
+  found.gone = endpoint.news == News::gone;
+  found.topic = {endpoint.topic, endpoint.type, endpoint.keyed, endpoint.qos};
   const TopicInfo* known = find_topic(found.topic.name);
+  TopicQos& qos = found.topic.qos;
   qos.writer_depth = known ? known->qos.writer_depth : qos.transient_local ? 1 : 64;
-  for (const std::string& name : info.m_qos.m_partition.getNames()) found.rigs.push_back(name);
+  found.rigs = endpoint.rigs;
   found_(found);
 }
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
-#include <fastdds/dds/domain/DomainParticipantListener.hpp>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -11,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "common/dds/discovery_events.hpp"
 #include "common/dds/participant.hpp"
 
 /// Topics whose type is not known here: found by discovery, read and written as the bytes on the
@@ -77,12 +77,11 @@ struct DiscoveredWriter {
 
 /// Tells of every writer in the domain, in the discovery's thread, where no endpoint may be made.
 /// Give it to ParticipantOptions::listener; it must outlive the participant.
-class Discovery : public eprosima::fastdds::dds::DomainParticipantListener {
+class Discovery : public DiscoveryEvents {
  public:
   explicit Discovery(std::function<void(const DiscoveredWriter&)> found)
       : found_(std::move(found)) {}
-  void on_publisher_discovery(eprosima::fastdds::dds::DomainParticipant*,
-                              rtps::WriterDiscoveryInfo&& info) override;
+  void on_endpoint(const FoundEndpoint& endpoint) override;
 
  private:
   std::function<void(const DiscoveredWriter&)> found_;

@@ -19,6 +19,13 @@ rtps::GuidPrefix_t server_prefix(std::uint16_t port);
 /// Where it is reached by UDP.
 rtps::Locator_t locator_of(const Address& address);
 
+/// Makes a participant with this QoS a client of the server there.
+void add_server(fdds::DomainParticipantQos& qos, const Address& address);
+/// Adds this place of a server that is known by its port; false: it is known there, or not at all.
+bool add_place(fdds::DomainParticipantQos& qos, const Address& address);
+/// Of the servers whose client it is: where they are reached.
+std::vector<rtps::Locator_t> servers_of(const fdds::DomainParticipantQos& qos);
+
 /// Looks every two seconds where the names of discovery servers lead to: a container that is
 /// started again comes back at another address.
 class ServerWatch {

@@ -124,8 +124,8 @@ TEST_F(Doctor, NamesWhatInTheEnvironmentWouldChangeDds) {
   auto found =
       ask_in_script("ip link set lo up; export ROS_DISCOVERY_SERVER=10.0.0.1:11811; exec $doctor");
   EXPECT_TRUE(found.contains("environment"));
-  found = ask_in_script("ip link set lo up; cd " + folder_.string() +
-                        "; touch DEFAULT_FASTRTPS_PROFILES.xml; exec $doctor");
+  found = ask_in_script("ip link set lo up; cd " + folder_.string() + "; touch " +
+                        dds::profiles_file + "; exec $doctor");
   EXPECT_TRUE(found.contains("environment"));
 }
 

@@ -155,8 +155,15 @@ class Video final : public Camera {
   }
   /// By which it is to be turned counterclockwise, as telephones write it: 0 to 3.
   int quarter_turns() const {
+#if LIBAVFORMAT_VERSION_MAJOR >= 61  // moved there; the old place is deprecated
+    const AVCodecParameters& codec = *stream_->codecpar;
+    const AVPacketSideData* side = av_packet_side_data_get(
+        codec.coded_side_data, codec.nb_coded_side_data, AV_PKT_DATA_DISPLAYMATRIX);
+    const std::uint8_t* matrix = side == nullptr ? nullptr : side->data;
+#else
     const std::uint8_t* matrix =
         av_stream_get_side_data(stream_, AV_PKT_DATA_DISPLAYMATRIX, nullptr);
+#endif
     if (matrix == nullptr) return 0;
     const double turn = av_display_rotation_get(reinterpret_cast<const std::int32_t*>(matrix));
     return std::isfinite(turn) ? (static_cast<int>(std::lround(turn / 90)) + 4) % 4 : 0;

@@ -97,7 +97,7 @@ void Service::go(const gate::Place& place, Time now) {
   Command command = simulation_->command().value_or(Command{});
   command.stamp = now;
   command.origin = {};
-  command.mode = v1::MODE_HOLD;
+  command.mode = static_cast<int>(v1::MODE_HOLD);
   command.dof = place.dof;
   command.X_WB = place.X_WB;
   if (auto went = simulation_->accept(command, now); !went) shell_.status().drop(went.error().what);

@@ -101,8 +101,28 @@ Message& Message::data(std::uint32_t writer, const Bytes& parameters, const Byte
               static_cast<std::uint8_t>(content_flag | (parameters.empty() ? 0 : parameters_flag)));
 }
 
+Bytes Message::text(std::string_view text) const {
+  Bytes bytes;
+  four(bytes, static_cast<std::uint32_t>(text.size() + 1));
+  bytes.insert(bytes.end(), text.begin(), text.end());
+  bytes.resize((bytes.size() / 4 + 1) * 4);  // ends with a zero, and a multiple of four
+  return bytes;
+}
+
+Bytes Message::token(std::string_view authority) const {
+  Bytes bytes = text("DDS:Auth:PKI-DH:1.0");
+  four(bytes, 2);
+  for (const std::string_view word :
+       {std::string_view("dds.cert.sn"), std::string_view("/CN=somebody"),
+        std::string_view("dds.ca.sn"), authority})
+    append(bytes, text(word));
+  four(bytes, 0);
+  return bytes;
+}
+
 Message& Message::announcement(const dds::GuidPrefix& participant,
-                               const std::vector<dds::Ipv4>& addresses, Duration lease) {
+                               const std::vector<dds::Ipv4>& addresses, Duration lease,
+                               const std::vector<std::pair<std::uint16_t, Bytes>>& more) {
   Bytes content = list_head();
   parameter(content, 0x0015, {2, 3, 0, 0});  // the protocol's version
   parameter(content, 0x0050, guid(participant, participant_entity));
@@ -112,6 +132,7 @@ Message& Message::announcement(const dds::GuidPrefix& participant,
   four(duration, static_cast<std::uint32_t>((lease % std::chrono::seconds(1)).count() *
                                             0x1'0000'0000ll / 1'000'000'000));
   parameter(content, 0x0002, duration);
+  for (const auto& [id, value] : more) parameter(content, id, value);
   parameter(content, 0x0001, {});
   return data(participants, {}, content, data_flag);
 }

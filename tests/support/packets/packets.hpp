@@ -1,5 +1,7 @@
 #pragma once
 
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include "common/dds/packet.hpp"
@@ -19,7 +21,8 @@ class Message {
   Message& source(const dds::GuidPrefix& sender);
   /// SPDP: the participant can be reached at these addresses.
   Message& announcement(const dds::GuidPrefix& participant, const std::vector<dds::Ipv4>& addresses,
-                        Duration lease = std::chrono::seconds(20));
+                        Duration lease = std::chrono::seconds(20),
+                        const std::vector<std::pair<std::uint16_t, Bytes>>& more = {});
   Message& departure(const dds::GuidPrefix& participant);
   /// SEDP: the participant has a writer.
   Message& endpoint(const dds::GuidPrefix& participant);
@@ -27,6 +30,10 @@ class Message {
   Message& liveliness(const dds::GuidPrefix& participant);
   /// A sample of a writer of users.
   Message& sample(std::size_t size = 100);
+
+  /// Values of parameters: a text, and an identity token whose authority has this name.
+  Bytes text(std::string_view text) const;
+  Bytes token(std::string_view authority) const;
 
   const Bytes& bytes() const { return bytes_; }
   operator const Bytes&() const { return bytes_; }

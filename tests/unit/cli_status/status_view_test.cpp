@@ -191,5 +191,22 @@ TEST(StatusView, NothingGrowsWithoutBound) {
   EXPECT_EQ(json::parse(view.json(start + seconds(120)))["services"].size(), 1u);
 }
 
+TEST(StatusView, SaysWhatEachProcessSpeaksWithAndWhoWasNotLetIn) {
+  StatusView view({});
+  EXPECT_THAT(view.page(start), Not(HasSubstr("DDS")));
+  view.refuse({"mapping, which has Fast DDS 3.1.2"});
+  EXPECT_THAT(view.page(start), HasSubstr("not let in: mapping, which has Fast DDS 3.1.2\n"));
+  view.hear(status("glove"), start, "Fast DDS 2.9.1");
+  view.hear(status("simulation"), start);
+  const std::string page = view.page(start);
+  EXPECT_THAT(page, HasSubstr("DDS\n"));
+  EXPECT_THAT(page, HasSubstr(" Fast DDS 2.9.1\n"));
+  EXPECT_THAT(page, HasSubstr("not let in: mapping"));
+  const json document = json::parse(view.json(start));
+  EXPECT_EQ(document["services"][0]["dds"], "Fast DDS 2.9.1");
+  EXPECT_EQ(document["services"][1]["dds"], "");
+  EXPECT_EQ(document["refused"].size(), 1u);
+}
+
 }  // namespace
 }  // namespace prehend::cli

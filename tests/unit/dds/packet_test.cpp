@@ -23,6 +23,10 @@ bool is_sound(const Bytes& bytes) {
   return read_packet(bytes).has_value();
 }
 
+std::optional<Packet> read(const Bytes& bytes) {
+  return read_packet(bytes);
+}
+
 TEST(Packet, MessagesAsTheyAreSentPass) {
   Message message(glove);
   EXPECT_TRUE(is_sound(message)) << "nothing but a header";
@@ -122,6 +126,48 @@ TEST(Packet, AnythingCanBeAsked) {
     for (std::size_t j = 20; j < bytes.size(); ++j) bytes[j] = static_cast<std::uint8_t>(random());
     is_sound(bytes);
   }
+}
+
+// Fast DDS 3 does not hand these on before a handshake has ended well.
+TEST(Packet, AnAnnouncementTellsWhoSpeaksWithWhatKeysAndWhatMiddleware) {
+  for (const bool little_endian : {true, false}) {
+    Message message(glove, little_endian);
+    message.announcement(glove, {}, std::chrono::seconds(20),
+                         {{0x0062, message.text("the\nglove")},
+                          {0x1001, message.token("/CN=lab")},
+                          {0x8000, {3, 1, 2, 0}}});
+    const auto packet = read(message);
+    ASSERT_TRUE(packet && packet->announcements.size() == 1);
+    const Announcement& said = packet->announcements.front();
+    EXPECT_EQ(said.name, "theglove");
+    EXPECT_TRUE(said.secured);
+    EXPECT_EQ(said.authority, "/CN=lab");
+    EXPECT_EQ(said.middleware, "Fast DDS 3.1.2");
+  }
+  Message open(mapping);
+  open.announcement(mapping, {}, std::chrono::seconds(20),
+                    {{0x002c, open.text("Fast DDS 2.9.1")}, {0x0062, open.text("mapping")}});
+  const Announcement said = read(open)->announcements.front();
+  EXPECT_EQ(said.middleware, "Fast DDS 2.9.1");
+  EXPECT_FALSE(said.secured);
+}
+
+TEST(Packet, WhatAnAnnouncementTellsMayBeDamaged) {
+  Message whole(glove);
+  const Bytes token = whole.token("/CN=lab"), name = whole.text("glove");
+  for (std::size_t size = 0; size <= token.size(); size += 4) {
+    Bytes cut(token.begin(), token.begin() + static_cast<long>(size));
+    EXPECT_TRUE(
+        read(Message(glove).announcement(glove, {}, std::chrono::seconds(1), {{0x1001, cut}})));
+    for (std::size_t at = 0; at + 4 <= cut.size(); at += 4) {
+      Bytes lies = cut;
+      std::fill_n(lies.begin() + static_cast<long>(at), 4, std::uint8_t{255});
+      EXPECT_TRUE(
+          read(Message(glove).announcement(glove, {}, std::chrono::seconds(1), {{0x1001, lies}})));
+    }
+  }
+  EXPECT_TRUE(read(Message(glove).announcement(glove, {}, std::chrono::seconds(1),
+                                               {{0x0062, {255, 255, 255, 255}}})));
 }
 
 }  // namespace

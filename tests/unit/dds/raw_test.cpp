@@ -47,8 +47,7 @@ struct Raw : testing::Test {
   int domain = static_cast<int>(std::random_device{}() % 200);
   std::string rig = "raw-" + std::to_string(getpid());
 
-  Participant join(const std::string& where,
-                   eprosima::fastdds::dds::DomainParticipantListener* listener = nullptr) {
+  Participant join(const std::string& where, DiscoveryEvents* listener = nullptr) {
     auto made = Participant::create(
         {.name = "test", .domain = domain, .rig = rig + where, .listener = listener});
     EXPECT_TRUE(made) << made.error().message();

@@ -27,7 +27,12 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr const char* memory_folder = "/dev/shm";
+constexpr std::string_view memory_folder = "/dev/shm";
+
+/// A file of it there, of either release: 2.9 calls them otherwise than 3.1.
+bool is_of_fast_dds(std::string_view name) {
+  return name.starts_with("fastrtps_") || name.starts_with("fastdds_");
+}
 
 Check fault(std::string name, std::string detail, std::string hint) {
   return {std::move(name), false, std::move(detail), std::move(hint)};
@@ -50,7 +55,7 @@ std::vector<Segment> segments() {
   std::error_code code;
   for (const auto& entry : fs::directory_iterator(memory_folder, code)) {
     const std::string name = entry.path().filename();
-    if (!name.starts_with("fastrtps_") || !name.ends_with("_el")) continue;
+    if (!is_of_fast_dds(name) || !name.ends_with("_el")) continue;
     struct ::stat status {};
     const int file = ::open(entry.path().c_str(), O_RDONLY | O_CLOEXEC);
     if (file < 0 || ::fstat(file, &status) != 0) continue;
@@ -68,7 +73,10 @@ std::vector<Sharer> sharers() {
     if (name.find_first_not_of("0123456789") != std::string::npos) continue;
     std::ifstream maps(entry.path() / "maps");
     for (std::string line; std::getline(maps, line);) {
-      if (line.find("/dev/shm/fastrtps_") == std::string::npos) continue;
+      const auto at = line.find(memory_folder);
+      if (at == std::string::npos ||
+          !is_of_fast_dds(std::string_view(line).substr(at + memory_folder.size() + 1)))
+        continue;
       std::string program;
       std::getline(std::ifstream(entry.path() / "comm"), program);
       found.push_back(

@@ -6,19 +6,19 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fastdds/dds/domain/DomainParticipantListener.hpp>
 #include <map>
 #include <mutex>
 #include <set>
 #include <thread>
 
+#include "common/base/printable.hpp"
+#include "common/dds/discovery_events.hpp"
 #include "common/dds/participant.hpp"
 #include "common/service/membership.hpp"
 #include "services/cli/tools/doctor/wire.hpp"
 
 namespace prehend::cli {
 
-namespace fdds = eprosima::fastdds::dds;
 namespace rtps = dds::rtps;
 
 namespace {
@@ -36,7 +36,7 @@ std::map<std::string, std::string> contract_types() {
 }
 
 /// Everything that discovery tells, in its threads.
-class DiscoveryListener : public fdds::DomainParticipantListener {
+class DiscoveryListener : public dds::DiscoveryEvents {
  public:
   struct Endpoint {
     std::string topic, type;
@@ -47,27 +47,15 @@ class DiscoveryListener : public fdds::DomainParticipantListener {
   std::set<rtps::GuidPrefix_t> peers;
   std::vector<Endpoint> endpoints;
 
-  void on_participant_discovery(fdds::DomainParticipant*,
-                                rtps::ParticipantDiscoveryInfo&& found) override {
-    if (found.status != rtps::ParticipantDiscoveryInfo::DISCOVERED_PARTICIPANT) return;
+  void on_participant(const dds::FoundParticipant& found) override {
+    if (found.news != dds::News::found) return;
     const std::scoped_lock lock(mutex);
-    peers.insert(found.info.m_guid.guidPrefix);
+    peers.insert(found.guid.guidPrefix);
   }
-  void on_publisher_discovery(fdds::DomainParticipant*,
-                              rtps::WriterDiscoveryInfo&& found) override {
-    if (found.status == rtps::WriterDiscoveryInfo::DISCOVERED_WRITER) keep(found.info, true);
-  }
-  void on_subscriber_discovery(fdds::DomainParticipant*,
-                               rtps::ReaderDiscoveryInfo&& found) override {
-    if (found.status == rtps::ReaderDiscoveryInfo::DISCOVERED_READER) keep(found.info, false);
-  }
-
- private:
-  template <class Proxy>
-  void keep(const Proxy& info, bool writes) {
+  void on_endpoint(const dds::FoundEndpoint& found) override {
+    if (found.news != dds::News::found) return;
     const std::scoped_lock lock(mutex);
-    endpoints.push_back({info.topicName().to_string(), info.typeName().to_string(), writes,
-                         info.m_qos.m_partition.getNames()});
+    endpoints.push_back({found.topic, found.type, found.writes, found.rigs});
   }
 };
 
@@ -111,12 +99,30 @@ Check judge_domain(int own, const std::map<int, int>& heard, bool alone) {
           "set lab.domain alike everywhere"};
 }
 
+/// Both releases of Fast DDS understand each other, but not where there are keys.
+Check judge_middleware(const dds::Participant& participant) {
+  std::map<std::string, std::vector<std::string>> by_release;
+  for (const auto& [prefix, peer] : participant.present())
+    if (prefix != participant.identity() && !peer.middleware.empty())
+      by_release[peer.middleware].push_back(printable(peer.name));
+  std::string text = fmt::format("this process has {}", dds::own_middleware);
+  for (auto& [release, names] : by_release) {
+    std::ranges::sort(names);
+    names.erase(std::unique(names.begin(), names.end()), names.end());
+    text += fmt::format("; {} {} {}", fmt::join(names, ", "), names.size() == 1 ? "has" : "have",
+                        release);
+  }
+  return {"dds", true, text, ""};
+}
+
 Check judge_security(const dds::Participant& participant) {
   std::vector<std::string> refused;
   for (const auto& [peer, count] : participant.refused()) refused.push_back(peer);
   if (refused.empty()) return {"security", true, "no peer was refused", ""};
-  return {"security", false, fmt::format("not heard here: {}", fmt::join(refused, "; ")),
-          "give every process keys of one keystore in lab.keys, or none; prehend keys show"};
+  return {
+      "security", false, fmt::format("not heard here: {}", fmt::join(refused, "; ")),
+      "give every process keys of one keystore in lab.keys, or none (prehend keys show), and one "
+      "release of Debian to a secured lab"};
 }
 
 /// Smallest difference between a host's stamp and its arrival here, by host.
@@ -176,6 +182,7 @@ Expected<Findings> check_neighbours(const service::Config& config, Duration list
   }
   findings.push_back(judge_rig(lab.rig, discovered.endpoints));
   findings.push_back(judge_types(discovered.endpoints));
+  findings.push_back(judge_middleware(*participant));
   findings.push_back(judge_security(*participant));
   findings.push_back(judge_clocks(offsets));
   return findings;

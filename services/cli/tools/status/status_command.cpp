@@ -70,7 +70,8 @@ struct Arguments {
   }
 };
 
-/// What services, their beacons and robots' gates say, on its way into a view.
+/// What services, their beacons and robots' gates say, on its way into a view. Keeps a reference to
+/// the participant.
 class Hearing {
  public:
   static Expected<Hearing> create(dds::Participant& participant) {
@@ -80,15 +81,21 @@ class Hearing {
     if (!beacons) return tl::unexpected(beacons.error());
     auto gates = participant.reader(dds::robot_gate);
     if (!gates) return tl::unexpected(gates.error());
-    return Hearing(std::move(*statuses), std::move(*beacons), std::move(*gates));
+    return Hearing(participant, std::move(*statuses), std::move(*beacons), std::move(*gates));
   }
 
   void tell(StatusView& view, Time now) {
-    for (const auto& sample : statuses_.take())
+    const auto peers = participant_.present();
+    for (const auto& sample : statuses_.take()) {
+      const auto peer = peers.find(sample.info.participant);
       if (sample.info.gone)
         view.lose(sample.data.service().to_string(), now);
       else
-        view.hear(sample.data, now);
+        view.hear(sample.data, now, peer == peers.end() ? "" : peer->second.middleware);
+    }
+    std::vector<std::string> refused;
+    for (const auto& [name, count] : participant_.refused()) refused.push_back(name);
+    view.refuse(std::move(refused));
     for (const auto& sample : beacons_.take())
       if (!sample.info.gone) view.hear(sample.data, now);
     for (const auto& sample : gates_.take())
@@ -96,9 +103,13 @@ class Hearing {
   }
 
  private:
-  Hearing(dds::Reader<v1::ServiceStatus> statuses, dds::Reader<v1::ClockBeacon> beacons,
-          dds::Reader<v1::GateState> gates)
-      : statuses_(std::move(statuses)), beacons_(std::move(beacons)), gates_(std::move(gates)) {}
+  Hearing(dds::Participant& participant, dds::Reader<v1::ServiceStatus> statuses,
+          dds::Reader<v1::ClockBeacon> beacons, dds::Reader<v1::GateState> gates)
+      : participant_(participant),
+        statuses_(std::move(statuses)),
+        beacons_(std::move(beacons)),
+        gates_(std::move(gates)) {}
+  dds::Participant& participant_;
   dds::Reader<v1::ServiceStatus> statuses_;
   dds::Reader<v1::ClockBeacon> beacons_;
   dds::Reader<v1::GateState> gates_;

@@ -45,7 +45,7 @@ std::string right(const std::string& text, std::size_t width) {
 
 }  // namespace
 
-void StatusView::hear(const v1::ServiceStatus& status, Time now) {
+void StatusView::hear(const v1::ServiceStatus& status, Time now, const std::string& middleware) {
   std::erase_if(services_, [&](const auto& entry) { return now - entry.second.heard > forgotten; });
   const std::string key = status.service().to_string();
   if (!services_.contains(key) && services_.size() >= max_services) return;
@@ -62,6 +62,7 @@ void StatusView::hear(const v1::ServiceStatus& status, Time now) {
   service.status = status;
   service.heard = now;
   service.gone = false;
+  if (!middleware.empty()) service.middleware = middleware;
 }
 
 void StatusView::hear(const v1::ClockBeacon& beacon, Time now) {
@@ -138,7 +139,10 @@ std::string StatusView::state(const Service& service, Time now) const {
 }
 
 std::string StatusView::page(Time now) const {
-  if (services_.empty()) return "no service is there\n";
+  std::string strangers;
+  for (const std::string& peer : refused_)
+    strangers += fmt::format("not let in: {}\n", printable(peer));
+  if (services_.empty()) return "no service is there\n" + strangers;
   std::set<std::string> hosts;
   for (const auto& [key, service] : services_) hosts.insert(service.status.host().to_string());
   std::string text =
@@ -146,8 +150,11 @@ std::string StatusView::page(Time now) const {
                   hosts.size(), hosts.size() == 1 ? "" : "s");
   if (const auto absent = missing(now); !absent.empty())
     text += fmt::format("; missing: {}", fmt::join(absent, ", "));
-  text += fmt::format("\n\n{:<14}{:<18}{:<12}{:>8}{:>9}{}\n", "SERVICE", "HOST", "STATE", "UP",
-                      "MEMORY", right("CLOCK", 24));
+  if (!strangers.empty()) text += "\n" + strangers;
+  const bool told = std::ranges::any_of(
+      services_, [](const auto& entry) { return !entry.second.middleware.empty(); });
+  text += fmt::format("\n\n{:<14}{:<18}{:<12}{:>8}{:>9}{}{}\n", "SERVICE", "HOST", "STATE", "UP",
+                      "MEMORY", right("CLOCK", 24), told ? right("DDS", 15) : "");
   for (const auto& [key, service] : services_) {
     const v1::ServiceStatus& status = service.status;
     const auto offset = clock(key, now);
@@ -156,9 +163,10 @@ std::string StatusView::page(Time now) const {
         : offset->against == key
             ? "the measure"
             : fmt::format("{:+.4f} s ± {}", offset->offset, latency(1e6 * offset->uncertainty));
-    text += fmt::format("{:<14}{:<18}{:<12}{:>8}{:>6.0f} MB{}\n", shown(status.name()),
+    text += fmt::format("{:<14}{:<18}{:<12}{:>8}{:>6.0f} MB{}{}\n", shown(status.name()),
                         shown(status.host()), state(service, now), age(status.uptime()),
-                        status.resident() / 1e6, right(by, 24));
+                        status.resident() / 1e6, right(by, 24),
+                        told ? right(service.middleware, 15) : "");
     if (status.message().size() > 0) text += fmt::format("  {}\n", shown(status.message()));
   }
   if (const std::string hands = gates(now); !hands.empty())
@@ -259,6 +267,7 @@ std::string StatusView::json(Time now) const {
                               : is_silent(service, now) ? "silent"
                                                         : to_string(status.state())},
                     {"message", status.message().to_string()},
+                    {"dds", service.middleware},
                     {"uptime_s", status.uptime()},
                     {"resident_bytes", status.resident()},
                     {"clock", time},
@@ -266,8 +275,9 @@ std::string StatusView::json(Time now) const {
                     {"dropped", dropped},
                     {"latency_us", stages}});
   }
-  return Json{{"services", list}, {"missing", missing(now)}, {"hands", hands}}.dump(
-      -1, ' ', false, Json::error_handler_t::replace);
+  return Json{
+      {"services", list}, {"missing", missing(now)}, {"hands", hands}, {"refused", refused_}}
+      .dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
 }  // namespace prehend::cli

@@ -19,11 +19,15 @@ class StatusView {
   /// expected: names of the services that a complete lab has.
   explicit StatusView(std::vector<std::string> expected) : expected_(std::move(expected)) {}
 
-  void hear(const v1::ServiceStatus& status, Time now);
+  /// middleware: what its process speaks with, as «Fast DDS 3.1.2»; empty: not known.
+  void hear(const v1::ServiceStatus& status, Time now, const std::string& middleware = {});
   void hear(const v1::ClockBeacon& beacon, Time now);
   void hear(const v1::GateState& gate, Time now);
   /// A service has said goodbye, or its process was found to be gone.
   void lose(const std::string& key, Time now);
+
+  /// Peers that this process does not let in, with the reason.
+  void refuse(std::vector<std::string> peers) { refused_ = std::move(peers); }
 
   /// A service of this name says of itself that it works, and does so still.
   bool is_up(std::string_view name, Time now) const;
@@ -40,6 +44,7 @@ class StatusView {
     v1::ServiceStatus status;
     Time heard{};
     bool gone = false;
+    std::string middleware;
     /// Of each reason, what came since the message before.
     std::map<std::string, std::uint64_t> fresh_drops;
   };
@@ -55,7 +60,7 @@ class StatusView {
   std::string state(const Service& service, Time now) const;
   std::string gates(Time now) const;
 
-  std::vector<std::string> expected_;
+  std::vector<std::string> expected_, refused_;
   std::map<std::string, Service> services_;  // by key
   std::map<std::string, std::pair<v1::ClockBeacon, Time>> beacons_;
   std::map<std::string, std::pair<v1::GateState, Time>> gates_;  // by hand

@@ -107,7 +107,10 @@ Eigen::VectorXf fold_counts(const Eigen::VectorXf& fine, const std::vector<int>&
 Eigen::MatrixXf prototypes(const Eigen::MatrixXf& columns, int count) {
   std::vector<Eigen::Index> chosen{0};
   while (static_cast<int>(chosen.size()) < std::min<int>(count, static_cast<int>(columns.cols()))) {
-    const Eigen::MatrixXf nearness = columns(Eigen::all, chosen).transpose() * columns;
+    // Not the vector itself: GCC 14 sees a bound passed where Eigen copies it.
+    const Eigen::Map<const Eigen::VectorX<Eigen::Index>> so_far(
+        chosen.data(), static_cast<Eigen::Index>(chosen.size()));
+    const Eigen::MatrixXf nearness = columns(Eigen::all, so_far).transpose() * columns;
     Eigen::Index furthest;
     if (nearness.colwise().maxCoeff().minCoeff(&furthest) > 0.9999f) break;
     chosen.push_back(furthest);

@@ -1,0 +1,124 @@
+// Who was let in, refused, or never answered, in the order in which either release of Fast DDS
+// tells.
+#include "common/dds/peers.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace prehend::dds {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::Pair;
+
+// The other release of two.
+const std::string other =
+    own_middleware.starts_with("Fast DDS 2") ? "Fast DDS 3.1.2" : "Fast DDS 2.9.1";
+
+Announcement announcement(std::uint8_t n, const std::string& name, const std::string& middleware,
+                          const std::string& authority) {
+  Announcement said;
+  said.participant[11] = n;
+  said.name = name;
+  said.middleware = middleware;
+  said.secured = !authority.empty();
+  said.authority = authority;
+  return said;
+}
+
+rtps::GUID_t guid(std::uint8_t n) {
+  rtps::GUID_t made;
+  made.guidPrefix.value[11] = n;
+  made.entityId = rtps::c_EntityId_RTPSParticipant;
+  return made;
+}
+
+const std::string own(own_middleware);
+
+TEST(Peers, WhoIsLetInAfterItWasHeardOfIsDecided) {
+  Peers peers(nullptr, "CN=lab");
+  peers.hear(announcement(1, "mapping", own, "/CN=lab"));
+  peers.on_judged(guid(1), true);
+  peers.on_participant({News::found, guid(1), "mapping", own, false, ""});
+  EXPECT_FALSE(peers.wait_until_decided(guid(9)));
+  EXPECT_THAT(peers.refused(), IsEmpty());
+  EXPECT_THAT(peers.present(),
+              ElementsAre(Pair(announcement(1, "", "", "").participant,
+                               testing::Field(&Peers::Presented::name, "mapping"))));
+}
+
+// Over TCP nobody is heard of before Fast DDS 3 tells.
+TEST(Peers, WhoIsLetInBeforeItIsKnownIsDecided) {
+  Peers peers(nullptr, "CN=lab");
+  peers.on_judged(guid(1), true);
+  peers.on_participant({News::found, guid(1), "mapping", own, true, "/CN=lab"});
+  EXPECT_FALSE(peers.wait_until_decided(guid(9)));
+  EXPECT_THAT(peers.refused(), IsEmpty());
+}
+
+TEST(Peers, WhoDoesNotAnswerIsNamed) {
+  Peers peers(nullptr, "CN=lab");
+  peers.hear(announcement(1, "mapping", own, "/CN=lab"));
+  const auto undecided = peers.wait_until_decided(guid(9));
+  ASSERT_TRUE(undecided);
+  EXPECT_EQ(undecided->name, "mapping");
+}
+
+TEST(Peers, OneIsNotAStrangerToItself) {
+  Peers peers(nullptr, "CN=lab");
+  peers.hear(announcement(1, "mapping", own, "/CN=lab"));
+  EXPECT_FALSE(peers.wait_until_decided(guid(1)));
+}
+
+TEST(Peers, RefusalsSayWhy) {
+  Peers peers(nullptr, "CN=lab");
+  peers.hear(announcement(1, "mapping", own, "/CN=other"));
+  peers.hear(announcement(2, "stranger", own, ""));
+  peers.hear(announcement(3, "thief", own, "/CN=lab"));
+  for (const std::uint8_t n : {1, 2, 3}) peers.on_judged(guid(n), false);
+  EXPECT_THAT(peers.refused(), ElementsAre(Pair(HasSubstr("mapping, whose keys are of another"), 1),
+                                           Pair(HasSubstr("stranger, which has no keys"), 1),
+                                           Pair(HasSubstr("thief, whose keys are revoked"), 1)));
+}
+
+// Their handshake never ends: nobody waits for it, and what to do is said once.
+TEST(Peers, SecuredPeersOfAnotherReleaseAreRefusedAtOnce) {
+  Peers peers(nullptr, "CN=lab");
+  peers.hear(announcement(1, "mapping", other, "/CN=lab"));
+  peers.hear(announcement(1, "mapping", other, "/CN=lab"));
+  EXPECT_FALSE(peers.wait_until_decided(guid(9)));
+  peers.on_judged(guid(1), false);
+  EXPECT_THAT(peers.refused(),
+              ElementsAre(Pair("mapping, which has " + other +
+                                   ", not " PREHEND_FAST_DDS_RELEASE
+                                   ": a secured lab is all Debian 12 or all Debian 13",
+                               1)));
+}
+
+TEST(Peers, WithoutKeysEveryReleaseIsWelcome) {
+  Peers peers(nullptr, std::nullopt);
+  peers.hear(announcement(1, "mapping", other, ""));
+  peers.hear(announcement(2, "secured", other, "/CN=lab"));
+  EXPECT_THAT(
+      peers.refused(),
+      ElementsAre(Pair(HasSubstr("secured, which is secured while this process is not"), 1)));
+  EXPECT_EQ(peers.present().size(), 2u);
+}
+
+// A plaintext farewell may be forged.
+TEST(Peers, AFarewellThatIsOnlyHeardEndsNobodyWhoWasLetIn) {
+  Peers peers(nullptr, "CN=lab");
+  peers.hear(announcement(1, "mapping", own, "/CN=lab"));
+  peers.on_judged(guid(1), true);
+  Announcement farewell = announcement(1, "", "", "");
+  farewell.leaves = true;
+  peers.hear(farewell);
+  EXPECT_EQ(peers.present().size(), 1u);
+  peers.on_participant({News::gone, guid(1), "", "", false, ""});
+  EXPECT_THAT(peers.present(), IsEmpty());
+}
+
+}  // namespace
+}  // namespace prehend::dds
