@@ -150,7 +150,7 @@ std::string StatusView::page(Time now) const {
                   hosts.size(), hosts.size() == 1 ? "" : "s");
   if (const auto absent = missing(now); !absent.empty())
     text += fmt::format("; missing: {}", fmt::join(absent, ", "));
-  if (!strangers.empty()) text += "\n" + strangers;
+  if (!strangers.empty()) text += "\n" + strangers.substr(0, strangers.size() - 1);
   const bool told = std::ranges::any_of(
       services_, [](const auto& entry) { return !entry.second.middleware.empty(); });
   text += fmt::format("\n\n{:<14}{:<18}{:<12}{:>8}{:>9}{}{}\n", "SERVICE", "HOST", "STATE", "UP",
