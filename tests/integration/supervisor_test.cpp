@@ -25,12 +25,14 @@ class Supervised : public Rig {
   }
   ~Supervised() override { ::close(socket_); }
 
-  service::Process start_supervised(const std::string& name, const std::string& watchdog_us,
+  service::Process start_supervised(Strings command, const std::string& watchdog_us,
                                     const Strings& sets = {}) {
     service::Process::Options options;
-    options.command = {program("prehend-" + name)};
+    options.log = folder_ / (command.front() + ".log");
+    options.output = folder_ / (command.front() + ".out");
+    command.front() = program(command.front());
+    options.command = command;
     for (const std::string& argument : lab_arguments(sets)) options.command.push_back(argument);
-    options.log = folder_ / (name + ".log");
     options.environment = {{"NOTIFY_SOCKET", path_}, {"WATCHDOG_USEC", watchdog_us}};
     auto process = service::Process::start(options);
     if (!process) throw std::runtime_error(process.error().message());
@@ -56,7 +58,7 @@ class Supervised : public Rig {
 TEST_F(Supervised, EachServiceIsReadyWhenItAnswersAndSaysThatItStops) {
   const std::string shown = "lab.scene=" + scene(1);
   for (const char* name : {"glove", "recognition", "mapping", "simulation"}) {
-    auto process = start_supervised(name, "600000000", {shown});
+    auto process = start_supervised({"prehend-" + std::string(name)}, "600000000", {shown});
     ASSERT_EQ(next(60), "READY=1") << name;
     EXPECT_TRUE(answers(name)) << name;
     ASSERT_EQ(next(10), "WATCHDOG=1") << name;
@@ -68,8 +70,18 @@ TEST_F(Supervised, EachServiceIsReadyWhenItAnswersAndSaysThatItStops) {
   }
 }
 
+TEST_F(Supervised, SoDoesTheExporterOfMetrics) {
+  auto process = start_supervised({"prehend", "metrics"}, "1000000", {"metrics.port=0"});
+  ASSERT_EQ(next(60), "READY=1");
+  for (int i = 0; i < 3; ++i) ASSERT_EQ(next(20), "WATCHDOG=1");
+  process.signal(SIGTERM);
+  std::string heard = next(20);
+  while (heard == "WATCHDOG=1") heard = next(20);
+  EXPECT_EQ(heard, "STOPPING=1");
+}
+
 TEST_F(Supervised, OneThatCannotStartIsNeverReady) {
-  auto process = start_supervised("simulation", "600000000", {"simulation.hand=claw"});
+  auto process = start_supervised({"prehend-simulation"}, "600000000", {"simulation.hand=claw"});
   const auto exit = process.wait(seconds(30));
   ASSERT_TRUE(exit);
   EXPECT_EQ(exit->code, 3);
@@ -77,7 +89,7 @@ TEST_F(Supervised, OneThatCannotStartIsNeverReady) {
 }
 
 TEST_F(Supervised, TheWatchdogHearsAProcessUntilItIsFrozen) {
-  auto process = start_supervised("simulation", "1000000");
+  auto process = start_supervised({"prehend-simulation"}, "1000000");
   ASSERT_EQ(next(60), "READY=1");
   for (int i = 0; i < 5; ++i) ASSERT_EQ(next(20), "WATCHDOG=1");
   process.signal(SIGSTOP);
