@@ -8,6 +8,7 @@
 
 #include "common/dds/address_book.hpp"
 #include "common/dds/fastdds.hpp"
+#include "common/dds/members.hpp"
 
 namespace prehend::dds {
 
@@ -17,15 +18,31 @@ Ipv4 ip_of(const rtps::Locator_t& locator);
 /// Judges every packet that one participant receives by UDP, in the threads that receive them.
 class PacketGuard {
  public:
-  explicit PacketGuard(bool serves) : book_(serves) {}
+  /// serves: for a discovery server. secured: for a participant with keys.
+  explicit PacketGuard(bool serves, bool secured = false);
+  ~PacketGuard();
+  PacketGuard(const PacketGuard&) = delete;
+  PacketGuard& operator=(const PacketGuard&) = delete;
   bool accepts(std::span<const std::uint8_t> message, const Ipv4& source);
   void add_own(const GuidPrefix& own);
   void add_server(const GuidPrefix& server, const Ipv4& address);
 
+  /// What became of a peer: see Members.
+  void let_in(const GuidPrefix& peer);
+  void lost(const GuidPrefix& peer);
+  bool shook_hands(const GuidPrefix& peer) const;
+  bool is_stranded() const;
+
  private:
-  std::mutex mutex_;
+  PacketVerdict judge(std::span<const std::uint8_t> message, const Ipv4& source);
+
+  mutable std::mutex mutex_;
   AddressBook book_;
+  Members members_;
 };
+
+/// A participant of this process has lost a peer that it meets again only when it joins anew.
+bool anybody_stranded();
 
 /// The same transport, of UDPv4, with a guard before it, which must outlive it. Fast DDS 2.9.1 does
 /// not tell the source of what comes over TCP, so that is not guarded.

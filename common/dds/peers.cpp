@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "common/dds/guarded_transport.hpp"
+
 namespace prehend::dds {
 
 using std::chrono::milliseconds;
@@ -13,6 +15,15 @@ constexpr milliseconds quiet{400};
 // A handshake takes some 100 ms, and a lost message of it is sent again after 500 ms.
 constexpr milliseconds patience{1500}, longer_patience{3000};
 constexpr std::size_t max_peers = 1024, max_reasons = 32;
+// So many that only announce themselves and never shake hands are no lab that starts: nobody waits
+// for them.
+constexpr int max_mute = 16;
+
+GuidPrefix prefix_of(const rtps::GUID_t& guid) {
+  GuidPrefix prefix;
+  std::copy_n(guid.guidPrefix.value, prefix.size(), prefix.begin());
+  return prefix;
+}
 
 }  // namespace
 
@@ -26,10 +37,11 @@ std::optional<Peers::Undecided> Peers::wait_until_decided(const Guid& own) const
   const auto begin = Clock::now();
   while (true) {
     const auto now = Clock::now();
-    auto until = std::max(begin, newest_) + quiet;
+    const bool flooded = is_flooded();
+    auto until = (flooded ? begin + quiet : std::max(begin, newest_)) + quiet;
     bool all = true;
     for (const auto& [guid, peer] : peers_) {
-      if (peer.decided) continue;
+      if (peer.decided || (flooded && !guard_.shook_hands(prefix_of(guid)))) continue;
       const auto end = peer.met + (guid < own ? patience : longer_patience);
       if (now >= end) return Undecided{guid, peer.name};
       until = all ? end : std::min(until, end);
@@ -40,12 +52,19 @@ std::optional<Peers::Undecided> Peers::wait_until_decided(const Guid& own) const
   }
 }
 
+bool Peers::is_flooded() const {
+  return std::count_if(peers_.begin(), peers_.end(), [this](const auto& entry) {
+           return !entry.second.decided && !guard_.shook_hands(prefix_of(entry.first));
+         }) > max_mute;
+}
+
 void Peers::on_participant_discovery(DomainParticipant* participant,
                                      rtps::ParticipantDiscoveryInfo&& found) {
   using Found = rtps::ParticipantDiscoveryInfo;
   if (found.status == Found::DISCOVERED_PARTICIPANT) {
     meet(found.info);
   } else if (found.status != Found::CHANGED_QOS_PARTICIPANT) {
+    guard_.lost(prefix_of(found.info.m_guid));
     const std::scoped_lock lock(mutex_);
     peers_.erase(found.info.m_guid);
     news_.notify_all();
@@ -55,7 +74,9 @@ void Peers::on_participant_discovery(DomainParticipant* participant,
 
 void Peers::onParticipantAuthentication(DomainParticipant* participant,
                                         rtps::ParticipantAuthenticationInfo&& info) {
-  decide(info.guid, info.status == rtps::ParticipantAuthenticationInfo::AUTHORIZED_PARTICIPANT);
+  const bool in = info.status == rtps::ParticipantAuthenticationInfo::AUTHORIZED_PARTICIPANT;
+  if (in) guard_.let_in(prefix_of(info.guid));
+  decide(info.guid, in);
   if (next_) next_->onParticipantAuthentication(participant, std::move(info));
 }
 

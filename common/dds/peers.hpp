@@ -8,7 +8,11 @@
 #include <optional>
 #include <string>
 
+#include "common/dds/fastdds.hpp"
+
 namespace prehend::dds {
+
+class PacketGuard;
 
 /// Hears of every peer before anybody else does: keeps count of those that are refused, and knows
 /// whose handshake is under way.
@@ -18,9 +22,9 @@ class Peers : public eprosima::fastdds::dds::DomainParticipantListener {
   using Guid = rtps::GUID_t;
 
   /// next: told of everything as well, or nullptr. authority: of our own keys; nothing: we have
-  /// none.
-  Peers(DomainParticipantListener* next, std::optional<std::string> authority)
-      : next_(next), authority_(std::move(authority)) {}
+  /// none. guard: told who is let in and who is lost.
+  Peers(DomainParticipantListener* next, std::optional<std::string> authority, PacketGuard& guard)
+      : next_(next), authority_(std::move(authority)), guard_(guard) {}
 
   /// With the reason, and how often; at most 32 different ones.
   std::map<std::string, std::uint64_t> refused() const;
@@ -53,6 +57,7 @@ class Peers : public eprosima::fastdds::dds::DomainParticipantListener {
     Clock::time_point met = Clock::now();
   };
 
+  bool is_flooded() const;
   void meet(const rtps::ParticipantProxyData& info);
   void decide(const Guid& guid, bool let_in);
   void refuse(const Peer& peer);
@@ -60,6 +65,7 @@ class Peers : public eprosima::fastdds::dds::DomainParticipantListener {
 
   DomainParticipantListener* next_;
   std::optional<std::string> authority_;
+  PacketGuard& guard_;
   mutable std::mutex mutex_;  // guards what follows
   mutable std::condition_variable news_;
   Clock::time_point newest_{};  // when somebody came last

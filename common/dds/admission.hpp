@@ -1,0 +1,33 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "common/base/time.hpp"
+#include "common/dds/packet.hpp"
+
+namespace prehend::dds {
+
+/// Who may come next. A few are admitted at once; in a crowd, whoever announces itself again. Those
+/// who are there do so twice a second, a flood of invented ones does not. Pure; takes memory only
+/// in a crowd.
+class Admission {
+ public:
+  bool admits(const GuidPrefix& newcomer, Time now);
+
+  static constexpr double at_once = 48, rate = 8;  // newcomers, and so many more a second
+  // Announcements of one participant are this far apart.
+  static constexpr Duration min_apart = std::chrono::milliseconds(200),
+                            max_apart = std::chrono::milliseconds(2500);
+
+ private:
+  struct Waiting {
+    std::uint64_t who = 0;
+    Time since{};
+  };
+  double free_ = at_once;
+  Time last_{};
+  std::vector<Waiting> waiting_;  // each at a place of its own, unless two have the same
+};
+
+}  // namespace prehend::dds
