@@ -26,7 +26,7 @@ enum class PacketVerdict : std::uint8_t {
   contradicts,
   forged_departure,
   endless,
-  dropped_silently
+  kept
 };
 /// The reasons, as a status gives them.
 inline constexpr std::array<std::string_view, 11> verdict_names{

@@ -17,7 +17,7 @@ class Admission {
 
   static constexpr double at_once = 48, rate = 8;  // newcomers, and so many more a second
   // Announcements of one participant are this far apart.
-  static constexpr Duration min_apart = std::chrono::milliseconds(200),
+  static constexpr Duration min_apart = std::chrono::milliseconds(50),
                             max_apart = std::chrono::milliseconds(2500);
 
  private:

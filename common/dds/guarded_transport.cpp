@@ -49,6 +49,9 @@ class Transport final : public PassThroughTransport {
     const Ipv4 source =
         low_level_transport_->is_local_locator(remote) ? Ipv4{127, 0, 0, 1} : ip_of(remote);
     if (guard_.accepts({bytes, size}, source)) next->OnDataReceived(bytes, size, local, remote);
+    if (local.port % 2 == 1) return;  // ports of discovery are even
+    for (const auto& late : guard_.take_departures())
+      next->OnDataReceived(late.data(), static_cast<std::uint32_t>(late.size()), local, remote);
   }
 
  private:
@@ -91,8 +94,8 @@ PacketVerdict PacketGuard::judge(std::span<const std::uint8_t> message, const Ip
       return PacketVerdict::not_encrypted;
     case Members::Verdict::contradicts:
       return PacketVerdict::contradicts;
-    case Members::Verdict::drop:
-      return PacketVerdict::dropped_silently;
+    case Members::Verdict::keep:
+      return PacketVerdict::kept;
     case Members::Verdict::pass:
       break;
   }
@@ -110,6 +113,11 @@ bool PacketGuard::accepts(std::span<const std::uint8_t> message, const Ipv4& sou
   if (forged > 0) add(PacketVerdict::forged_departure, source, forged);
   if (!verdict_names[static_cast<std::size_t>(verdict)].empty()) add(verdict, source);
   return verdict == PacketVerdict::pass;
+}
+
+std::vector<std::vector<std::uint8_t>> PacketGuard::take_departures() {
+  const std::scoped_lock lock(mutex_);
+  return members_.take_departures(process_now());
 }
 
 void PacketGuard::let_in(const GuidPrefix& peer) {

@@ -27,6 +27,8 @@ class PacketGuard {
   void add_own(const GuidPrefix& own);
   void add_server(const GuidPrefix& server, const Ipv4& address);
 
+  /// What was kept and counts by now: see Members.
+  std::vector<std::vector<std::uint8_t>> take_departures();
   /// What became of a peer: see Members.
   void let_in(const GuidPrefix& peer);
   void lost(const GuidPrefix& peer);

@@ -9,7 +9,10 @@ namespace {
 using std::chrono::milliseconds;
 
 // What was sent before a departure may come after it.
-constexpr Duration on_its_way = milliseconds(500);
+constexpr Duration on_its_way = milliseconds(1000);
+// Who has left is silent for this time; it is half of the usual lease.
+constexpr Duration gone = std::chrono::seconds(10), look_period = milliseconds(250);
+constexpr std::size_t max_departure = 2048;  // bytes
 // Who is met again has ended its handshake within this time, or at least begun it.
 constexpr Duration meeting = milliseconds(1200), longer_meeting = milliseconds(3000);
 // Announcements come every half second.
@@ -38,13 +41,16 @@ Members::Verdict Members::judge(const GuidPrefix& sender, std::span<const std::u
   if (member->departures > 0 && !said.departs && now - member->departed > on_its_way) {
     forged_ += member->departures;
     member->departures = 0;
+    member->departure.clear();
   }
   member->heard = now;
   member->shook_hands |= said.shakes_hands;
   if (said.departs) {
     ++member->departures;
     member->departed = now;
-    return matters && member->is_in ? Verdict::drop : Verdict::pass;
+    if (!matters || !member->is_in) return Verdict::pass;
+    if (message.size() <= max_departure) member->departure.assign(message.begin(), message.end());
+    return Verdict::keep;
   }
   if (!matters || said.announcements.empty()) return Verdict::pass;
   if (!agrees(*member, said)) return Verdict::contradicts;
@@ -82,6 +88,16 @@ Members::Member* Members::find_or_make(const GuidPrefix& peer, Time now) {
   Member& made = all_[peer];
   made.heard = now;
   return &made;
+}
+
+std::vector<std::vector<std::uint8_t>> Members::take_departures(Time now) {
+  std::vector<std::vector<std::uint8_t>> due;
+  if (now < next_look_) return due;
+  next_look_ = now + look_period;
+  for (auto& [peer, member] : all_)
+    if (!member.departure.empty() && now - member.heard > gone)
+      due.push_back(std::exchange(member.departure, {}));
+  return due;
 }
 
 std::uint64_t Members::take_forged() {

@@ -66,13 +66,34 @@ std::vector<Message> departures(const GuidPrefix& of) {
 
 TEST_F(MembersTest, AMemberDoesNotLeaveInPlainText) {
   let_in();
-  for (const Message& message : departures(member)) EXPECT_EQ(judge(message, 1), Verdict::drop);
+  for (const Message& message : departures(member)) EXPECT_EQ(judge(message, 1), Verdict::keep);
   EXPECT_EQ(members_.take_forged(), 0u) << "nobody knows yet";
-  EXPECT_EQ(judge(announcement(), 1.1), Verdict::pass) << "still on its way";
+  EXPECT_EQ(judge(announcement(), 1.9), Verdict::pass) << "still on its way";
   EXPECT_EQ(members_.take_forged(), 0u);
-  EXPECT_EQ(judge(announcement(), 2), Verdict::pass);
+  EXPECT_EQ(judge(announcement(), 2.5), Verdict::pass);
   EXPECT_EQ(members_.take_forged(), departures(member).size());
   EXPECT_EQ(members_.take_forged(), 0u);
+}
+
+TEST_F(MembersTest, WhoIsSilentAfterItsDepartureHasLeft) {
+  let_in();
+  const Message departure = Message(member).departure(member);
+  judge(departure, 1);
+  EXPECT_TRUE(members_.take_departures(beginning + seconds(10.9)).empty());
+  EXPECT_EQ(members_.take_departures(beginning + seconds(11.2)),
+            std::vector<Bytes>{departure.bytes()});
+  EXPECT_TRUE(members_.take_departures(beginning + seconds(12.0)).empty());
+}
+
+TEST_F(MembersTest, WhoSpeaksAfterItsDepartureHasNot) {
+  let_in();
+  judge(Message(member).departure(member), 1);
+  judge(announcement(), 3);
+  judge(Message(member).departure(member), 4);
+  for (double s = 5; s < 30; s += 0.5) {
+    EXPECT_TRUE(members_.take_departures(beginning + seconds(s)).empty()) << s;
+    judge(announcement(), s);
+  }
 }
 
 TEST_F(MembersTest, WhoIsNotLetInMayLeave) {
@@ -92,7 +113,7 @@ TEST_F(MembersTest, WithoutKeysDeparturesAreBelievedAndCounted) {
   say(Message(without_keys).announcement(without_keys, {}), 0);
   EXPECT_EQ(say(Message(without_keys).departure(without_keys), 1), Verdict::pass);
   EXPECT_EQ(plain.take_forged(), 0u);
-  EXPECT_EQ(say(Message(without_keys).sample(), 2), Verdict::pass);
+  EXPECT_EQ(say(Message(without_keys).sample(), 2.5), Verdict::pass);
   EXPECT_EQ(plain.take_forged(), 1u);
   EXPECT_FALSE(plain.is_stranded(beginning + seconds(9.0))) << "it is met again by itself";
 }
@@ -155,7 +176,7 @@ TEST_F(MembersTest, WhoWasLostAndIsStillThereIsMetAnew) {
 
 TEST_F(MembersTest, WhoSaidThatItLeavesAndDidIsNotMissed) {
   let_in();
-  EXPECT_EQ(judge(Message(member).departure(member), 1), Verdict::drop);
+  EXPECT_EQ(judge(Message(member).departure(member), 1), Verdict::keep);
   members_.lost(member);
   for (double s = 30; s < 40; s += 0.5) judge(announcement(), s);
   EXPECT_FALSE(members_.is_stranded(beginning + seconds(40.0)))
