@@ -38,7 +38,8 @@ PacketVerdict AddressBook::judge(std::span<const std::uint8_t> message, std::opt
   const auto own = std::find_if(all.begin(), all.end(), [&](const Announcement& one) {
     return one.participant == packet->sender;
   });
-  if (own != all.end() && own->lease > max_lease) return PacketVerdict::endless;
+  if (own != all.end() && own->lease > (secured_ ? max_lease_secured : max_lease))
+    return PacketVerdict::endless;
   auto found = entries_.find(packet->sender);
   if (found == entries_.end()) {
     if (own == all.end() || own->leaves) return PacketVerdict::unannounced;

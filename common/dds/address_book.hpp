@@ -39,7 +39,7 @@ inline constexpr std::array<std::string_view, 11> verdict_names{
     "packet that its participant would encrypt",
     "announcement that contradicts an earlier one",
     "departure of a participant that is still there",
-    "announcement that would hold for longer than ten minutes",
+    "announcement that would hold for too long",
     ""};
 
 /// Which participant speaks from which addresses. In a lab without keys anybody on the network can
@@ -75,7 +75,8 @@ class AddressBook {
   static constexpr std::size_t max_of_one = 256;  // that first spoke from one other host
   static constexpr std::size_t max_here = 1024;   // programs of this host
   static constexpr std::size_t max_addresses = 16;
-  static constexpr Duration max_lease = std::chrono::minutes(10);
+  static constexpr Duration max_lease = std::chrono::minutes(10),
+                            max_lease_secured = std::chrono::seconds(100);
 
  private:
   struct Entry {

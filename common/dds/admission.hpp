@@ -9,13 +9,15 @@
 namespace prehend::dds {
 
 /// Who may come next. A few are admitted at once; in a crowd, whoever announces itself again. Those
-/// who are there do so twice a second, a flood of invented ones does not. Pure; takes memory only
+/// who are there do so twice a second, a flood of invented ones does not. Fast DDS
+/// shakes hands with a hundred at a time, and invented ones stay among these for their lease.
+/// Pure; takes memory only
 /// in a crowd.
 class Admission {
  public:
   bool admits(const GuidPrefix& newcomer, Time now);
 
-  static constexpr double at_once = 48, rate = 8;  // newcomers, and so many more a second
+  static constexpr double at_once = 32, rate = 0.5;  // newcomers, and so many more a second
   // Announcements of one participant are this far apart.
   static constexpr Duration min_apart = std::chrono::milliseconds(50),
                             max_apart = std::chrono::milliseconds(2500);

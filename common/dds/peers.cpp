@@ -42,7 +42,7 @@ std::optional<Peers::Undecided> Peers::wait_until_decided(const Guid& own) const
     bool all = true;
     for (const auto& [guid, peer] : peers_) {
       if (peer.decided || (flooded && !guard_.shook_hands(prefix_of(guid)))) continue;
-      const auto end = peer.met + (guid < own ? patience : longer_patience);
+      const auto end = peer.met + (guid < own && !flooded ? patience : longer_patience);
       if (now >= end) return Undecided{guid, peer.name};
       until = all ? end : std::min(until, end);
       all = false;

@@ -134,6 +134,15 @@ std::vector<std::pair<std::string, Message>> attacks(const GuidPrefix& of) {
   return all;
 }
 
+/// As Fast DDS 2.9.1 believed it.
+Message departure(const GuidPrefix& of) {
+  const Message in(of);
+  return Message(in).data(
+      {.sequence = 1'000'000,
+       .parameters = in.list({{0x0070, test::guid(of)}, {0x0071, {0, 0, 0, 3}}}),
+       .content_flag = 0});
+}
+
 std::uint64_t dropped(dds::PacketVerdict reason) {
   for (const dds::Dropped& one : dds::dropped_packets())
     if (one.reason == reason) return one.count;
@@ -250,8 +259,9 @@ TEST_F(Forgery, WithKeysAFloodOfNewcomersDoesNotKeepOutOneWhoJoins) {
   ASSERT_TRUE(eventually(10, [&] { return sent > 5000; }));
   const std::int64_t begin = now_ns();
   auto mapping = member("mapping");
+  std::cout << "joined after " << 1e-9 * static_cast<double>(now_ns() - begin) << " s\n";
   auto reader = *mapping.reader(dds::object_detection);
-  const bool found = eventually(8, [&] {
+  const bool found = eventually(10, [&] {
     v1::ObjectDetection message;
     message.stamp_ns(now_ns());
     writer.write(message);
@@ -264,7 +274,7 @@ TEST_F(Forgery, WithKeysAFloodOfNewcomersDoesNotKeepOutOneWhoJoins) {
   EXPECT_GT(dropped(dds::PacketVerdict::too_many), 10'000u);
 }
 
-class ForgeryBefore : public Forgery {
+class ForgeryOfServices : public Forgery {
  protected:
   /// Until the service says that it has seen a forged departure.
   static bool is_counted(dds::Reader<v1::ServiceStatus>& statuses) {
@@ -280,7 +290,7 @@ class ForgeryBefore : public Forgery {
   }
 };
 
-TEST_F(ForgeryBefore, ASecuredServiceGoesOnAndSaysWhatWasTried) {
+TEST_F(ForgeryOfServices, ASecuredServiceGoesOnAndSaysWhatWasTried) {
   make_keys();
   auto simulation = start("simulation", {"lab.keys=" + keys_});
   network_.keys = keys_;
@@ -290,20 +300,20 @@ TEST_F(ForgeryBefore, ASecuredServiceGoesOnAndSaysWhatWasTried) {
   auto statuses = reader(dds::service_status);
   const auto any = [](const auto&) { return true; };
   ASSERT_TRUE(hear<v1::HandState>(states, 20, any));
-  stranger_.send(Message(participant_->identity()).departure(participant_->identity()));
+  stranger_.send(departure(participant_->identity()));
   EXPECT_TRUE(is_counted(statuses));
   EXPECT_EQ(matched(states), 1);
   EXPECT_TRUE(hear<v1::HandState>(states, 5, any));
   EXPECT_FALSE(simulation.exit());
 }
 
-TEST_F(ForgeryBefore, WithoutKeysItHealsAndIsCounted) {
+TEST_F(ForgeryOfServices, WithoutKeysItHealsAndIsCounted) {
   auto simulation = start("simulation");
   auto states = reader(dds::robot_state);
   auto statuses = reader(dds::service_status);
   const auto any = [](const auto&) { return true; };
   ASSERT_TRUE(hear<v1::HandState>(states, 20, any));
-  stranger_.send(Message(participant_->identity()).departure(participant_->identity()));
+  stranger_.send(departure(participant_->identity()));
   const std::int64_t sent = now_ns();
   EXPECT_TRUE(hear<v1::HandState>(
       states, 5, [&](const auto& state) { return state.stamp_ns() > sent + 600'000'000; }));

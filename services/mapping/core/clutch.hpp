@@ -15,9 +15,9 @@ struct ClutchOptions {
   double turn_speed = 0.5;
   /// Their fingers come together at this speed, rad/s, or what radian_of() makes of it.
   double finger_speed = 0.5;
-  /// After a longer time without a posture that was answered, they are taken to be apart.
+  /// Fingers that have changed in a longer time without a posture that was answered have swept.
   Duration max_pause = std::chrono::milliseconds(300);
-  /// A hand that moves or turns this far from one posture to the next has jumped, m, rad.
+  /// A hand that is this far from where it was when it was answered last has jumped, m, rad.
   double jump = 0.15, turned = 1.0;
 };
 

@@ -77,14 +77,19 @@ void Mapping::on_gate(bool obeys) {
   obeyed_ = obeys;
 }
 
-bool Mapping::robot_is_elsewhere() const {
-  if (!state_ || command_.dof.size() == 0) return false;
+/// Have fingers become so different that they would sweep from one posture to the other?
+bool Mapping::are_apart(const Eigen::VectorXd& a, const Eigen::VectorXd& b) const {
   for (std::size_t i = 0; i < hand_.dofs().size(); ++i) {
     const auto k = static_cast<Eigen::Index>(i);
-    if (std::abs(state_->dof[k] - command_.dof[k]) > fingers_elsewhere * radian_of(hand_.dofs()[i]))
-      return true;
+    if (std::abs(a[k] - b[k]) > fingers_elsewhere * radian_of(hand_.dofs()[i])) return true;
   }
-  return (state_->X_WB.translation() - command_.X_WB.translation()).norm() > elsewhere ||
+  return false;
+}
+
+bool Mapping::robot_is_elsewhere() const {
+  if (!state_ || command_.dof.size() == 0) return false;
+  return are_apart(state_->dof, command_.dof) ||
+         (state_->X_WB.translation() - command_.X_WB.translation()).norm() > elsewhere ||
          angle_between(state_->X_WB.linear(), command_.X_WB.linear()) > turned_elsewhere;
 }
 
@@ -103,7 +108,7 @@ Expected<Command> Mapping::on_posture(const Posture& posture, Time now) {
   if (command_.dof.size() == 0 && !start(X_WG_human, posture.stamp, now))
     return fail("no robot state yet");
   const Duration elapsed = motion_.step(posture.stamp - time_);
-  const Pose X_WG = clutch(X_WG_human, posture.stamp, elapsed);
+  const Pose X_WG = clutch(X_WG_human, elapsed);
   time_ = std::max(time_, posture.stamp);
 
   const auto seen = select_target(X_WG, posture.stamp);
@@ -114,7 +119,9 @@ Expected<Command> Mapping::on_posture(const Posture& posture, Time now) {
       grasp_type(mean_closing(hand_, fingers->dof), X_WG, model_.is_precision(*features));
   place(X_WG, seen, elapsed);
   const Eigen::VectorXd dof = grip_.squeeze(follow_through(fingers->dof, elapsed));
-  if (interrupted_) clutch_.hold(dof, command_.dof);
+  const bool paused = posture.stamp - last_stamp_ > options_.clutch.max_pause;
+  if (interrupted_ || (paused && last_X_WG_ && are_apart(dof, command_.dof)))
+    clutch_.hold(dof, command_.dof);
   interrupted_ = !obeyed_;
   last_X_WG_ = X_WG_human;
   last_stamp_ = std::max(last_stamp_, posture.stamp);
@@ -161,11 +168,9 @@ bool Mapping::start(const Pose& X_WG, Time stamp, Time now) {
 }
 
 /// What the human hand stands for: itself, unless there was an interruption.
-Pose Mapping::clutch(const Pose& X_WG, Time stamp, Duration elapsed) {
+Pose Mapping::clutch(const Pose& X_WG, Duration elapsed) {
   clutch_.fade(elapsed);
-  if (last_X_WG_ &&
-      (stamp - last_stamp_ > options_.clutch.max_pause || clutch_.is_jump(*last_X_WG_, X_WG)))
-    interrupted_ = true;
+  if (last_X_WG_ && clutch_.is_jump(*last_X_WG_, X_WG)) interrupted_ = true;
   if (interrupted_) clutch_.hold(X_WG, placement_.X_WG(command_.X_WB));
   return clutch_.X_WG(X_WG);
 }

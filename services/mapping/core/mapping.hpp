@@ -108,7 +108,8 @@ class Mapping {
   // The steps of a posture, in order; numbers are those of README.md.
   Expected<Features> features_of(const Posture& posture, Time now) const;  // 1, 2
   bool start(const Pose& X_WG, Time stamp, Time now);                      // 3
-  Pose clutch(const Pose& X_WG, Time stamp, Duration elapsed);             // 3
+  Pose clutch(const Pose& X_WG, Duration elapsed);                         // 3
+  bool are_apart(const Eigen::VectorXd& a, const Eigen::VectorXd& b) const;
   bool robot_is_elsewhere() const;
   void take_place_of_robot();
   std::optional<GraspTarget> select_target(const Pose& X_WG, Time now);  // 4

@@ -157,6 +157,31 @@ TEST_P(Interrupted, AfterAPauseTheHandComesSlowlyAndInTheEnd) {
   EXPECT_LT(to_operator(there), 1e-3);
 }
 
+// A hand that has stayed where it was needs no clutch.
+TEST_P(Interrupted, APauseAloneChangesNothing) {
+  operate(3000, here, 0.2);
+  const Command before = *last_;
+  pause(1000);
+  operate(20, here, 0.2);
+  EXPECT_EQ(last_->X_WB.matrix(), before.X_WB.matrix());
+  EXPECT_EQ(last_->dof, before.dof);
+}
+
+TEST_P(Interrupted, FingersThatChangedInAPauseComeSlowly) {
+  operate(3000, here, 0.1);
+  const Eigen::VectorXd before = last_->dof;
+  pause(500);
+  forget();
+  operate(20'000, here, 0.9);
+  const Eigen::ArrayXd way = (last_->dof - before).array().abs();
+  bool far = false;
+  for (std::size_t i = 0; i < hand_.dofs().size(); ++i)
+    far = far || way[static_cast<Eigen::Index>(i)] > 0.6 * radian_of(hand_.dofs()[i]);
+  if (far) {
+    EXPECT_LE(finger_step_, slow_finger);
+  }
+}
+
 TEST_P(Interrupted, AJumpIsNoMotion) {
   operate(3000, here, 0.2);
   forget();
