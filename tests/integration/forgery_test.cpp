@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include <atomic>
+#include <csignal>
 #include <iostream>
 #include <thread>
 
@@ -305,6 +306,33 @@ TEST_F(ForgeryOfServices, ASecuredServiceGoesOnAndSaysWhatWasTried) {
   EXPECT_EQ(matched(states), 1);
   EXPECT_TRUE(hear<v1::HandState>(states, 5, any));
   EXPECT_FALSE(simulation.exit());
+}
+
+// One is lost by its lease of 20 s and comes back: they were strangers until somebody started one
+// of them anew.
+TEST_F(ForgeryOfServices, WithKeysOneThatWasLostIsMetAgain) {
+  make_keys();
+  const Strings sets{"lab.keys=" + keys_, "lab.scene=" + scene(1)};
+  auto simulation = start("simulation", sets), mapping = start("mapping", sets),
+       glove = start("glove", sets);
+  participant_.reset();
+  participant_ = member("viewer");
+  auto gates = reader(dds::robot_gate);
+  std::uint64_t obeyed = 0;
+  const auto is_obeyed = [&](const v1::GateState& gate) {
+    const bool more = gate.obeyed() > obeyed;
+    obeyed = gate.obeyed();
+    return more;
+  };
+  ASSERT_TRUE(hear<v1::GateState>(gates, 40, is_obeyed));
+  mapping.signal(SIGSTOP);
+  EXPECT_FALSE(eventually(23, [] { return false; })) << "longer than the lease";
+  for (const auto& sample : gates.take()) obeyed = std::max(obeyed, sample.data.obeyed());
+  mapping.signal(SIGCONT);
+  const std::int64_t begin = now_ns();
+  EXPECT_TRUE(hear<v1::GateState>(gates, 20, is_obeyed));
+  std::cout << "met again after " << 1e-9 * static_cast<double>(now_ns() - begin) << " s\n";
+  EXPECT_FALSE(mapping.exit() || simulation.exit() || glove.exit());
 }
 
 TEST_F(ForgeryOfServices, WithoutKeysItHealsAndIsCounted) {
