@@ -6,6 +6,7 @@ namespace prehend::dds {
 namespace {
 
 constexpr Ipv4 here{127, 0, 0, 1};
+constexpr Duration handshake = std::chrono::seconds(5);
 constexpr Duration still_on_its_way = std::chrono::seconds(10);  // of one that has left
 bool is_here(const Ipv4& address) {
   return address[0] == here[0];
@@ -37,12 +38,18 @@ PacketVerdict AddressBook::judge(std::span<const std::uint8_t> message, std::opt
   const auto own = std::find_if(all.begin(), all.end(), [&](const Announcement& one) {
     return one.participant == packet->sender;
   });
+  if (own != all.end() && own->lease > (secured_ ? max_lease_secured : max_lease))
+    return PacketVerdict::endless;
   auto found = entries_.find(packet->sender);
   if (found == entries_.end()) {
     if (own == all.end() || own->leaves) return PacketVerdict::unannounced;
+    const bool has_quota = source && !is_here(*source);
+    if ((secured_ || !has_quota) && !admission_.admits(packet->sender, now))
+      return PacketVerdict::too_many;
     if (!make_room(source, now)) return PacketVerdict::too_many;
     found = entries_.try_emplace(packet->sender).first;
     found->second.origin = source;
+    found->second.admitted = now;
   } else if (!found->second.speaks_from(source) &&
              (own == all.end() || !found->second.silent(now))) {
     return PacketVerdict::elsewhere;
@@ -72,6 +79,10 @@ void AddressBook::add_server(const GuidPrefix& server, const Ipv4& address) {
   entries_[server].add(address);
 }
 
+void AddressBook::let_in(const GuidPrefix& peer) {
+  if (const auto found = entries_.find(peer); found != entries_.end()) found->second.is_in = true;
+}
+
 bool AddressBook::tells_of_others(const GuidPrefix& sender) const {
   return servers_.contains(sender) || (serves_ && is_server(sender));
 }
@@ -81,17 +92,27 @@ bool AddressBook::make_room(const std::optional<Ipv4>& origin, Time now) {
     return entry.second.lease == Duration::zero() && now - entry.second.heard > still_on_its_way &&
            !servers_.contains(entry.first);
   });
-  const bool counted = origin && !is_here(*origin);
-  const auto of_one = [&] {
-    return static_cast<std::size_t>(
-        std::count_if(entries_.begin(), entries_.end(),
-                      [&](const auto& entry) { return entry.second.origin == origin; }));
-  };
-  if (entries_.size() < max_participants && (!counted || of_one() < max_of_one)) return true;
+  if (!is_crowded(origin)) return true;
   std::erase_if(entries_, [&](const auto& entry) {
     return entry.second.silent(now) && !servers_.contains(entry.first);
   });
-  return entries_.size() < max_participants && (!counted || of_one() < max_of_one);
+  if (!secured_ || !is_crowded(origin)) return !is_crowded(origin);
+  // Whoever has keys has been let in by now.
+  std::erase_if(entries_, [&](const auto& entry) {
+    return !entry.second.is_in && entry.second.lease != Duration::max() &&
+           now - entry.second.admitted > handshake;
+  });
+  return !is_crowded(origin);
+}
+
+/// Is there no room for one more from there? Those who were let in take none of it.
+bool AddressBook::is_crowded(const std::optional<Ipv4>& origin) const {
+  if (entries_.size() >= max_participants) return true;
+  if (!origin) return false;
+  const auto of_one = std::count_if(entries_.begin(), entries_.end(), [&](const auto& entry) {
+    return entry.second.origin == origin && !entry.second.is_in;
+  });
+  return static_cast<std::size_t>(of_one) >= (is_here(*origin) ? max_here : max_of_one);
 }
 
 }  // namespace prehend::dds

@@ -3,9 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <set>
 
 #include "common/base/clock.hpp"
 #include "common/dds/pass_through_transport.hpp"
+#include "common/dds/rtps_parts.hpp"
 
 namespace prehend::dds {
 
@@ -20,11 +22,20 @@ Count& count() {
   return *instance;
 }
 
-void add(PacketVerdict reason, const Ipv4& source) {
+struct Guards {
+  std::mutex mutex;
+  std::set<const PacketGuard*> all;
+};
+Guards& guards() {
+  static auto* instance = new Guards;  // outlives the threads that look
+  return *instance;
+}
+
+void add(PacketVerdict reason, const Ipv4& source, std::uint64_t times = 1) {
   const std::scoped_lock lock(count().mutex);
   Dropped& dropped = count().dropped[static_cast<std::size_t>(reason)];
   dropped.reason = reason;
-  ++dropped.count;
+  dropped.count += times;
   dropped.last_source = fmt::format("{}", fmt::join(source, "."));
 }
 
@@ -38,6 +49,9 @@ class Transport final : public PassThroughTransport {
     const Ipv4 source =
         low_level_transport_->is_local_locator(remote) ? Ipv4{127, 0, 0, 1} : ip_of(remote);
     if (guard_.accepts({bytes, size}, source)) next->OnDataReceived(bytes, size, local, remote);
+    if (local.port % 2 == 1) return;  // ports of discovery are even
+    for (const auto& late : guard_.take_departures())
+      next->OnDataReceived(late.data(), static_cast<std::uint32_t>(late.size()), local, remote);
   }
 
  private:
@@ -61,16 +75,81 @@ Ipv4 ip_of(const rtps::Locator_t& locator) {
   return address;
 }
 
+PacketGuard::PacketGuard(bool serves, bool secured, Hear hear)
+    : book_(serves, secured), members_(secured), hear_(std::move(hear)) {
+  const std::scoped_lock lock(guards().mutex);
+  guards().all.insert(this);
+}
+
+PacketGuard::~PacketGuard() {
+  const std::scoped_lock lock(guards().mutex);
+  guards().all.erase(this);
+}
+
+PacketVerdict PacketGuard::judge(std::span<const std::uint8_t> message, const Ipv4& source,
+                                 std::vector<Announcement>* told) {
+  const Time now = process_now();
+  const PacketVerdict verdict = book_.judge(message, source, now, told);
+  if (verdict != PacketVerdict::pass) return verdict;
+  switch (members_.judge(wire::array_at<12>(message, 8), message, now)) {
+    case Members::Verdict::not_encrypted:
+      return PacketVerdict::not_encrypted;
+    case Members::Verdict::contradicts:
+      return PacketVerdict::contradicts;
+    case Members::Verdict::keep:
+      return PacketVerdict::kept;
+    case Members::Verdict::pass:
+      break;
+  }
+  return PacketVerdict::pass;
+}
+
 bool PacketGuard::accepts(std::span<const std::uint8_t> message, const Ipv4& source) {
   PacketVerdict verdict;
+  std::uint64_t forged;
   std::vector<Announcement> told;
   {
     const std::scoped_lock lock(mutex_);
-    verdict = book_.judge(message, source, process_now(), hear_ ? &told : nullptr);
+    verdict = judge(message, source, hear_ ? &told : nullptr);
+    forged = members_.take_forged();
   }
-  for (const Announcement& one : told) hear_(one);
-  if (verdict != PacketVerdict::pass) add(verdict, source);
+  if (verdict == PacketVerdict::pass)
+    for (const Announcement& one : told) hear_(one);
+  if (forged > 0) add(PacketVerdict::forged_departure, source, forged);
+  if (!verdict_names[static_cast<std::size_t>(verdict)].empty()) add(verdict, source);
   return verdict == PacketVerdict::pass;
+}
+
+std::vector<std::vector<std::uint8_t>> PacketGuard::take_departures() {
+  const std::scoped_lock lock(mutex_);
+  return members_.take_departures(process_now());
+}
+
+void PacketGuard::let_in(const GuidPrefix& peer) {
+  const std::scoped_lock lock(mutex_);
+  book_.let_in(peer);
+  members_.let_in(peer);
+}
+
+void PacketGuard::lost(const GuidPrefix& peer) {
+  const std::scoped_lock lock(mutex_);
+  members_.lost(peer);
+}
+
+bool PacketGuard::shook_hands(const GuidPrefix& peer) const {
+  const std::scoped_lock lock(mutex_);
+  return members_.shook_hands(peer);
+}
+
+bool PacketGuard::is_stranded() const {
+  const std::scoped_lock lock(mutex_);
+  return members_.is_stranded(process_now());
+}
+
+bool anybody_stranded() {
+  const std::scoped_lock lock(guards().mutex);
+  return std::any_of(guards().all.begin(), guards().all.end(),
+                     [](const PacketGuard* guard) { return guard->is_stranded(); });
 }
 
 void PacketGuard::add_own(const GuidPrefix& own) {

@@ -9,6 +9,7 @@
 
 #include "common/dds/address_book.hpp"
 #include "common/dds/fastdds.hpp"
+#include "common/dds/members.hpp"
 
 namespace prehend::dds {
 
@@ -19,17 +20,36 @@ Ipv4 ip_of(const rtps::Locator_t& locator);
 class PacketGuard {
  public:
   using Hear = std::function<void(const Announcement&)>;
-  /// hear: told of every announcement that it lets pass, before Fast DDS is.
-  explicit PacketGuard(bool serves, Hear hear = {}) : book_(serves), hear_(std::move(hear)) {}
+  /// serves: for a discovery server. secured: for a participant with keys. hear: told of every
+  /// announcement that it lets pass, before Fast DDS is.
+  explicit PacketGuard(bool serves, bool secured = false, Hear hear = {});
+  ~PacketGuard();
+  PacketGuard(const PacketGuard&) = delete;
+  PacketGuard& operator=(const PacketGuard&) = delete;
   bool accepts(std::span<const std::uint8_t> message, const Ipv4& source);
   void add_own(const GuidPrefix& own);
   void add_server(const GuidPrefix& server, const Ipv4& address);
 
+  /// What was kept and counts by now: see Members.
+  std::vector<std::vector<std::uint8_t>> take_departures();
+  /// What became of a peer: see Members.
+  void let_in(const GuidPrefix& peer);
+  void lost(const GuidPrefix& peer);
+  bool shook_hands(const GuidPrefix& peer) const;
+  bool is_stranded() const;
+
  private:
-  std::mutex mutex_;
+  PacketVerdict judge(std::span<const std::uint8_t> message, const Ipv4& source,
+                      std::vector<Announcement>* told);
+
+  mutable std::mutex mutex_;
   AddressBook book_;
+  Members members_;
   Hear hear_;
 };
+
+/// A participant of this process has lost a peer that it meets again only when it joins anew.
+bool anybody_stranded();
 
 /// The same transport, of UDPv4, with a guard before it, which must outlive it. Fast DDS 2.9.1 does
 /// not tell the source of what comes over TCP, so that is not guarded.

@@ -1,74 +1,18 @@
 #include "common/dds/packet.hpp"
 
 #include <algorithm>
-#include <string_view>
+
+#include "common/dds/rtps_parts.hpp"
 
 namespace prehend::dds {
 namespace {
 
-using Bytes = std::span<const std::uint8_t>;
+using namespace wire;
 
-// Kinds of parts (DDSI-RTPS 2.3, 9.4.5.1.1).
-constexpr std::uint8_t pad = 0x01, info_timestamp = 0x09;  // may say a length of 0 and mean it
-constexpr std::uint8_t info_source = 0x0c, data = 0x15, data_fragment = 0x16;
-constexpr std::uint8_t first_secured = 0x30, last_secured = 0x34;  // DDS Security 1.1, 7.3.6
-constexpr std::uint8_t statistics = 0x80;                          // of Fast DDS
-
-constexpr std::size_t header_size = 20, part_header_size = 4, statistics_size = 56;
-constexpr std::size_t info_source_size = 20, prefix_in_info_source = 8;
-constexpr std::size_t min_data_size = 20, min_fragment_size = 32;
-
-// Flags of data.
-constexpr std::uint8_t little_endian_flag = 0x01, parameters_flag = 0x02, data_flag = 0x04,
-                       key_flag = 0x08;
-// Who writes what discovery tells (9.3.1.5), in the order of the bytes.
-constexpr std::uint32_t participants = 0x000100c2, topics = 0x000002c2, writers = 0x000003c2,
-                        readers = 0x000004c2, liveliness = 0x000200c2;
-// Parameters (9.6.3.2).
-constexpr std::uint16_t end_of_list = 0x0001, lease_duration = 0x0002, default_locator = 0x0031,
-                        metatraffic_locator = 0x0032, participant_guid = 0x0050,
-                        endpoint_guid = 0x005a, key_hash = 0x0070, entity_name = 0x0062,
-                        user_data = 0x002c, identity_token = 0x1001, product_version = 0x8000;
+constexpr std::size_t statistics_size = 56, info_source_size = 20, prefix_in_info_source = 8;
 constexpr std::size_t guid_size = 16, locator_size = 24, ip_in_locator = 20;
 constexpr std::uint32_t udp4 = 1, tcp4 = 4;  // kinds of locators
 constexpr Duration usual_lease = std::chrono::seconds(100);
-
-/// Numbers in one order of bytes. The caller has seen to it that they are there.
-struct Numbers {
-  Bytes bytes;
-  bool little_endian;
-  std::uint16_t two(std::size_t at) const {
-    const std::uint16_t a = bytes[at], b = bytes[at + 1];
-    return static_cast<std::uint16_t>(little_endian ? a | b << 8 : a << 8 | b);
-  }
-  std::uint32_t four(std::size_t at) const {
-    const std::uint32_t a = two(at), b = two(at + 2);
-    return little_endian ? a | b << 16 : a << 16 | b;
-  }
-};
-
-template <std::size_t n>
-std::array<std::uint8_t, n> array_at(Bytes bytes, std::size_t at) {
-  std::array<std::uint8_t, n> part;
-  std::copy_n(bytes.begin() + static_cast<long>(at), n, part.begin());
-  return part;
-}
-
-/// Calls visit(parameter, its value) for each of a list and returns the list's length; nothing when
-/// it has no end.
-template <class Visit>
-std::optional<std::size_t> for_each_parameter(const Numbers& list, Visit visit) {
-  for (std::size_t at = 0; list.bytes.size() - at >= 4;) {
-    const std::uint16_t parameter = list.two(at);
-    const std::size_t length = list.two(at + 2);
-    at += 4;
-    if (parameter == end_of_list) return at;
-    if (length > list.bytes.size() - at) return std::nullopt;
-    visit(parameter, Numbers{list.bytes.subspan(at, length), list.little_endian});
-    at = std::min(at + (length + 3) / 4 * 4, list.bytes.size());
-  }
-  return std::nullopt;
-}
 
 /// A string with its length before it, as far as it lies within and is printable; at moves past it.
 std::string text_at(const Numbers& value, std::size_t& at, std::size_t max_size = 255) {
@@ -120,8 +64,9 @@ class Telling {
   bool read(Bytes part, std::uint8_t kind, std::uint8_t flags) {
     const Numbers numbers{part, (flags & little_endian_flag) != 0};
     if (part.size() < (kind == data ? min_data_size : min_fragment_size)) return false;
-    // Entities are not numbers: their bytes do not change places.
-    const std::uint32_t writer = Numbers{part, false}.four(8);
+    // Fast DDS gives a reader of participants whatever is directed to it.
+    const std::uint32_t writer =
+        entity_at(part, 4) == participants_reader ? participants : entity_at(part, 8);
     if (writer != participants && writer != topics && writer != writers && writer != readers &&
         writer != liveliness)
       return true;
@@ -133,6 +78,7 @@ class Telling {
                              [&](std::uint16_t parameter, const Numbers& value) {
                                if (parameter == key_hash && value.bytes.size() >= guid_size)
                                  is_said_of(value.bytes);
+                               ends_ |= is_end(parameter, value.bytes);
                              });
       if (!length) return false;
       at += *length;
@@ -149,6 +95,12 @@ class Telling {
  private:
   bool read_content(Bytes content, std::uint32_t writer, bool whole, bool says_all) {
     if (content.size() < 4) return false;
+    // Fast DDS takes so short a key as it stands.
+    if (!says_all && content.size() <= guid_size) {
+      if (content.size() == guid_size) is_said_of(content);
+      if (writer == participants) announce({}, true);
+      return true;
+    }
     const bool little_endian = content[1] & 1;
     content = content.subspan(4);
     if (writer == liveliness) {
@@ -180,7 +132,7 @@ class Telling {
     if (writer != participants) return true;
     // An announcement that does not say whose it is could be taken for anybody's.
     if (says_all && !named) return false;
-    announce(std::move(said), !says_all);
+    announce(std::move(said), !says_all || ends_);
     return true;
   }
 
@@ -196,37 +148,25 @@ class Telling {
 
   Packet& packet_;
   std::optional<GuidPrefix> subject_;
+  bool ends_ = false;
 };
 
 }  // namespace
 
 std::optional<Packet> read_packet(Bytes message) {
-  constexpr std::string_view name = "RTPS";
-  if (message.size() < header_size || !std::equal(name.begin(), name.end(), message.begin()))
-    return std::nullopt;
+  if (message.size() < header_size) return std::nullopt;
   Packet packet;
   packet.sender = array_at<12>(message, 8);
-  for (std::size_t at = header_size; at < message.size();) {
-    if (message.size() - at < part_header_size) return std::nullopt;
-    const std::uint8_t kind = message[at], flags = message[at + 1];
-    std::size_t length = Numbers{message.subspan(at), (flags & little_endian_flag) != 0}.two(2);
-    at += part_header_size;
-    const std::size_t left = message.size() - at;
-    // The last part may leave its length to the message's.
-    if (length == 0 && kind != pad && kind != info_timestamp) length = left;
-    if (length > left) return std::nullopt;
-    const Bytes part = message.subspan(at, length);
-    if (kind == statistics && (length != statistics_size || length != left)) return std::nullopt;
-    if (kind == info_source) {
-      if (length != info_source_size) return std::nullopt;
-      packet.for_others |= array_at<12>(part, prefix_in_info_source) != packet.sender;
-    }
-    if ((kind == data || kind == data_fragment) && !Telling(packet).read(part, kind, flags))
-      return std::nullopt;
-    // Parts begin at multiples of four, those within a secured message where the last one ends.
-    if (kind < first_secured || kind > last_secured) length = std::min((length + 3) / 4 * 4, left);
-    at += length;
-  }
+  const bool sound =
+      for_each_part(message, [&](std::uint8_t kind, std::uint8_t flags, Bytes part, bool is_last) {
+        if (kind == statistics) return part.size() == statistics_size && is_last;
+        if (kind == info_source) {
+          if (part.size() != info_source_size) return false;
+          packet.for_others |= array_at<12>(part, prefix_in_info_source) != packet.sender;
+        }
+        return (kind != data && kind != data_fragment) || Telling(packet).read(part, kind, flags);
+      });
+  if (!sound) return std::nullopt;
   return packet;
 }
 

@@ -87,8 +87,8 @@ struct Participant::State {
   ParticipantOptions options;
   std::optional<Keys> keys;
   // These outlive the participant.
-  std::optional<Peers> peers;
   std::optional<PacketGuard> packets;
+  std::optional<Peers> peers;
   SerializedTransport serializer;
   fdds::DomainParticipant* participant = nullptr;
   fdds::Publisher* publisher = nullptr;
@@ -172,8 +172,13 @@ Expected<Participant> Participant::join(const ParticipantOptions& options) {
   qos->name(options.name);
   qos->user_data().setValue({own_middleware.begin(), own_middleware.end()});
   if (state->keys) secure(*qos, *state->keys);
+  PacketGuard::Hear hear;
+  if constexpr (hides_secured_peers)
+    hear = [at = state.get()](const Announcement& said) { at->peers->hear(said); };
+  state->packets.emplace(!options.serves.empty(), state->keys.has_value(), std::move(hear));
   state->peers.emplace(options.listener,
-                       state->keys ? std::optional(state->keys->authority) : std::nullopt);
+                       state->keys ? std::optional(state->keys->authority) : std::nullopt,
+                       *state->packets);
   // Who listens to the whole domain is a recorder: pictures that come while it has no processor
   // wait in the socket (as far as net.core.rmem_max allows), for on best effort topics nothing else
   // holds them.
@@ -181,10 +186,6 @@ Expected<Participant> Participant::join(const ParticipantOptions& options) {
     for (auto& transport : qos->transport().user_transports)
       if (auto* socket = dynamic_cast<transport::SocketTransportDescriptor*>(transport.get()))
         socket->receiveBufferSize = 1 << 24;
-  PacketGuard::Hear hear;
-  if constexpr (hides_secured_peers)
-    hear = [&peers = *state->peers](const Announcement& said) { peers.hear(said); };
-  state->packets.emplace(!options.serves.empty(), std::move(hear));
   // Over TCP Fast DDS does not tell who sent a packet; there TLS decides who connects.
   for (auto& transport : qos->transport().user_transports)
     if (dynamic_cast<transport::UDPv4TransportDescriptor*>(transport.get()))

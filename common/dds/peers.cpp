@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "common/dds/guarded_transport.hpp"
+
 namespace prehend::dds {
 
 using std::chrono::milliseconds;
@@ -14,6 +16,9 @@ constexpr milliseconds quiet{400};
 // A handshake takes some 100 ms, and a lost message of it is sent again after 500 ms.
 constexpr milliseconds patience{1500}, longer_patience{3000};
 constexpr std::size_t max_peers = 1024, max_reasons = 32;
+// So many that only announce themselves and never shake hands are no lab that starts: nobody waits
+// for them.
+constexpr int max_mute = 16;
 
 }  // namespace
 
@@ -35,11 +40,13 @@ std::optional<Peers::Undecided> Peers::wait_until_decided(const Guid& own) const
   const auto begin = Clock::now();
   while (true) {
     const auto now = Clock::now();
-    auto until = std::max(begin, newest_) + quiet;
+    const bool flooded = is_flooded();
+    auto until = (flooded ? begin + quiet : std::max(begin, newest_)) + quiet;
     bool all = true;
     for (const auto& [guid, peer] : peers_) {
       if (peer.decided || guid == own) continue;
-      const auto end = peer.met + (guid < own ? patience : longer_patience);
+      if (flooded && !guard_.shook_hands(prefix_of(guid.guidPrefix))) continue;
+      const auto end = peer.met + (guid < own && !flooded ? patience : longer_patience);
       if (now >= end) return Undecided{guid, peer.name};
       until = all ? end : std::min(until, end);
       all = false;
@@ -47,6 +54,12 @@ std::optional<Peers::Undecided> Peers::wait_until_decided(const Guid& own) const
     if (all && now >= until) return std::nullopt;
     news_.wait_until(lock, until);
   }
+}
+
+bool Peers::is_flooded() const {
+  return std::ranges::count_if(peers_, [this](const auto& entry) {
+           return !entry.second.decided && !guard_.shook_hands(prefix_of(entry.first.guidPrefix));
+         }) > max_mute;
 }
 
 void Peers::hear(const Announcement& said) {
@@ -65,6 +78,7 @@ void Peers::hear(const Announcement& said) {
 }
 
 void Peers::on_participant(const FoundParticipant& found) {
+  if (found.news == News::gone) guard_.lost(prefix_of(found.guid.guidPrefix));
   if (found.news != News::changed) {
     const std::scoped_lock lock(mutex_);
     const auto known = peers_.find(found.guid);
@@ -101,6 +115,7 @@ void Peers::meet(const FoundParticipant& found) {
 }
 
 void Peers::on_judged(const Guid& guid, bool let_in) {
+  if (let_in) guard_.let_in(prefix_of(guid.guidPrefix));
   const std::scoped_lock lock(mutex_);
   const auto found = peers_.find(guid);
   if (found == peers_.end()) {

@@ -12,14 +12,16 @@
 
 namespace prehend::dds {
 
+class PacketGuard;
+
 /// Hears of every peer before anybody else does: keeps count of those that are refused, and knows
 /// whose handshake is under way.
 class Peers : public DiscoveryEvents {
  public:
   /// next: told of everything as well, or nullptr. authority: of our own keys; nothing: we have
-  /// none.
-  Peers(DiscoveryEvents* next, std::optional<std::string> authority)
-      : next_(next), authority_(std::move(authority)) {}
+  /// none. guard: told who is let in and who is lost.
+  Peers(DiscoveryEvents* next, std::optional<std::string> authority, PacketGuard& guard)
+      : next_(next), authority_(std::move(authority)), guard_(guard) {}
 
   /// A peer as it presents itself: «mapping», «Fast DDS 3.1.2».
   struct Presented {
@@ -55,6 +57,7 @@ class Peers : public DiscoveryEvents {
     Clock::time_point met = Clock::now();
   };
 
+  bool is_flooded() const;
   void meet(const FoundParticipant& found);
   void refuse(const Peer& peer);
   bool of_other_release(const Peer& peer) const;
@@ -62,6 +65,7 @@ class Peers : public DiscoveryEvents {
 
   DiscoveryEvents* next_;
   std::optional<std::string> authority_;
+  PacketGuard& guard_;
   mutable std::mutex mutex_;  // guards what follows
   mutable std::condition_variable news_;
   Clock::time_point newest_{};  // when somebody came last

@@ -70,7 +70,7 @@ inline constexpr Topic<v1::GateStatePubSubType> robot_gate{
     {.name = "robot/gate",
      .qos = {.transient_local = true},
      .writers = Role::simulation | Role::robot,
-     .readers = Role::operator_,
+     .readers = Role::mapping | Role::operator_,
      .open = true,
      .content = Content::process,
      .rate = "on change, 1 Hz",

@@ -253,7 +253,9 @@ void Gatekeeper::on_order(const v1::OperatorCommand& order, const dds::SampleInf
   if (executed) orders_.add(reply);
   if (!executed) {
     shell_.status().drop("order refused");
-    note(audit::Event::order_refused, by, executed.error().message(), now);
+    // It is repeated until it expires.
+    if (orders_.refuse(order.id().to_string()))
+      note(audit::Event::order_refused, by, executed.error().message(), now);
   }
   replies_.publish(reply);
   if (!shell_.lockstep()) {

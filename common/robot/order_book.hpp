@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <deque>
 #include <optional>
 #include <string>
@@ -19,11 +20,20 @@ class OrderBook {
   }
   void add(const v1::OperatorReply& reply) {
     replies_.push_back(reply);
-    if (replies_.size() > 64) replies_.pop_front();
+    if (replies_.size() > max_kept) replies_.pop_front();
+  }
+  /// Is it refused for the first time?
+  bool refuse(const std::string& id) {
+    if (std::find(refused_.begin(), refused_.end(), id) != refused_.end()) return false;
+    refused_.push_back(id);
+    if (refused_.size() > max_kept) refused_.pop_front();
+    return true;
   }
 
  private:
+  static constexpr std::size_t max_kept = 64;
   std::deque<v1::OperatorReply> replies_;
+  std::deque<std::string> refused_;
 };
 
 }  // namespace prehend::robot

@@ -81,6 +81,9 @@ const std::vector<ConfigKey>& config_keys() {
       {"mapping.model", Text(""), "trained mapping model; empty: share:trained/HAND.mapping"},
       {"mapping.intelligent", true, "let detections improve the mapping"},
       {"mapping.placement", true, "let them correct the hand's placement as well"},
+      {"mapping.clutch_speed", 0.1, "m/s, at which the hands come together after an interruption"},
+      {"mapping.clutch_turn_speed", 0.5, "rad/s, at which their orientations do"},
+      {"mapping.clutch_finger_speed", 0.5, "rad/s, at which their fingers do"},
       {"mapping.mode", Text(""),
        "how fingers are answered, see services/mapping; empty: by the trained network"},
 

@@ -83,8 +83,8 @@ struct Shell::State {
   TaskQueue tasks;
   std::atomic<bool> stopping = false;
   std::atomic<Exit> exit = exit_done;
-  bool again = false;   // start anew after the end
-  std::string revoked;  // the list of revoked keys that has been spoken of last
+  std::atomic<bool> again = false;  // start anew after the end
+  std::string revoked;              // the list of revoked keys that has been spoken of last
 
   std::vector<std::unique_ptr<fdds::DataReaderListener>> listeners;
   std::unique_ptr<ClockSync> clock_sync;  // live only
@@ -118,6 +118,14 @@ struct Shell::State {
     return false;
   }
 
+  /// A peer that was lost is still there.
+  void join_anew() {
+    if (!may_restart() || stopping) return;
+    log::warning("a peer was lost and is still there: joining anew");
+    again = true;
+    stop();
+  }
+
   void watch() {
     watchdog.emplace(Watchdog::Options{.on_stop = [this] { stop(); },
                                        .on_deadlock =
@@ -125,6 +133,7 @@ struct Shell::State {
                                              if (options.restarts && !stopping) restart.now();
                                              std::_Exit(exit_broken);
                                            },
+                                       .on_stranded = [this] { join_anew(); },
                                        .looks_for_deadlock = !lockstep});
   }
 

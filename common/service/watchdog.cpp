@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "common/base/log.hpp"
+#include "common/dds/guarded_transport.hpp"
 #include "common/dds/serialized_transport.hpp"
 
 namespace prehend::service {
@@ -50,6 +51,8 @@ void Watchdog::watch() {
     } else if (options_.looks_for_deadlock && deadlock.look()) {
       log::error("Fast DDS has locked itself up and receives nothing any more");
       options_.on_deadlock();
+    } else if (options_.on_stranded && dds::anybody_stranded()) {
+      options_.on_stranded();
     }
   }
 }

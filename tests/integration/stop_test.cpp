@@ -118,6 +118,42 @@ TEST_F(Stop, AnotherRigIsNamed) {
   EXPECT_TRUE(wait(20, [&] { return gate_.stopped(); }));
 }
 
+// On a domain of its own, of which nobody else knows.
+TEST_F(Stop, AllRigsOfTheDomainStop) {
+  start_hand();
+  const Strings elsewhere{"lab.rig=" + name_ + "-b", "simulation.hand_name=other"};
+  auto second = start("simulation", elsewhere);
+  const auto gates_of = [](const json& answer) {
+    std::set<std::string> gates;
+    for (const json& gate : answer["gates"]) gates.insert(gate["hand"].get<std::string>());
+    return gates;
+  };
+  const std::set<std::string> both{"hand", "other"};
+  // The second one may not be there yet; who is stopped already says so.
+  json answer;
+  EXPECT_TRUE(eventually(30, [&] {
+    answer =
+        json::parse(order({"stop", "--all", "--reason", "both", "--json"}).output, nullptr, false);
+    return answer.is_object() && gates_of(answer) == both && answer["done"] == true;
+  })) << answer;
+  for (const json& gate : answer["gates"]) EXPECT_EQ(gate["stopped"], true) << answer;
+  EXPECT_TRUE(wait(20, [&] { return gate_.stopped(); }));
+  const json released = ordered({"release", "--all", "--reason", "both again"});
+  EXPECT_EQ(gates_of(released), both) << released;
+}
+
+// A refused order is repeated until it expires.
+TEST_F(Stop, ARefusedOrderIsNotedOnce) {
+  const std::string folder = (folder_ / "audit").string();
+  start_hand({"safety.audit=" + folder});
+  ordered({"takeover", "nobody", "--timeout", "1"}, 1);
+  const Answer answer = order({"audit", "--set", "safety.audit=" + folder, "--json"});
+  int noted = 0;
+  const json document = json::parse(answer.output);
+  for (const json& event : document["events"]) noted += event["event"] == "order_refused";
+  EXPECT_EQ(noted, 1) << answer.output;
+}
+
 TEST_F(Stop, AReleaseNeedsAReasonAndAGate) {
   EXPECT_EQ(order({"release"}).exit_code, 2);
   EXPECT_EQ(order({"release", "--reason", ""}).exit_code, 2);

@@ -8,6 +8,12 @@ namespace prehend::mapping {
 
 namespace {
 
+// A robot hand that has been silent for longer may have been started anew.
+constexpr Duration max_state_pause = std::chrono::milliseconds(500);
+// It is not where it was told to be, m and rad: it lags behind by less, and what a finger touches
+// stops it nearer.
+constexpr double elsewhere = 0.05, turned_elsewhere = 0.2, fingers_elsewhere = 0.5;
+
 /// Two fingers of a hand at X_WB with this posture reach into the object.
 bool closes_on(const FingerDistances& fingers, const Eigen::VectorXd& dof, const Pose& X_WB,
                const Detection& object) {
@@ -37,6 +43,7 @@ Mapping::Mapping(const model::HandModel& hand, const MappingModel& model,
       trust_(options.trust, options.ramp),
       direct_(hand, options.ramp),
       placement_(hand, options.placement),
+      clutch_(hand, options.clutch),
       follow_through_(hand),
       grip_(hand, options.grip),
       motion_(hand, options.motion),
@@ -56,18 +63,52 @@ Expected<void> Mapping::on_state(const RobotState& state) {
   if (!state.dof.allFinite() || !state.velocity.allFinite() || !state.torque.allFinite() ||
       !is_finite(state.X_WB))
     return fail("robot state not finite");
+  // One that was started anew is somewhere else: what it was told before does not count.
+  const bool returns = state_ && (std::chrono::abs(state.stamp - state_->stamp) > max_state_pause ||
+                                  clutch_.is_jump(state_->X_WB, state.X_WB));
   grip_.observe(state, command_.dof);
   state_ = state;
+  if (command_.dof.size() > 0 && (returns || !obeyed_)) take_place_of_robot();
   return {};
+}
+
+void Mapping::on_gate(bool obeys) {
+  if (obeys != obeyed_) interrupted_ = true;
+  obeyed_ = obeys;
+}
+
+/// Have fingers become so different that they would sweep from one posture to the other?
+bool Mapping::are_apart(const Eigen::VectorXd& a, const Eigen::VectorXd& b) const {
+  for (std::size_t i = 0; i < hand_.dofs().size(); ++i) {
+    const auto k = static_cast<Eigen::Index>(i);
+    if (std::abs(a[k] - b[k]) > fingers_elsewhere * radian_of(hand_.dofs()[i])) return true;
+  }
+  return false;
+}
+
+bool Mapping::robot_is_elsewhere() const {
+  if (!state_ || command_.dof.size() == 0) return false;
+  return are_apart(state_->dof, command_.dof) ||
+         (state_->X_WB.translation() - command_.X_WB.translation()).norm() > elsewhere ||
+         angle_between(state_->X_WB.linear(), command_.X_WB.linear()) > turned_elsewhere;
+}
+
+/// The next command counts from where the robot hand is, unless that is where it was told to be.
+void Mapping::take_place_of_robot() {
+  if (!robot_is_elsewhere()) return;
+  interrupted_ = true;
+  command_.dof = grip_.squeeze(hand_.clamp(state_->dof));
+  command_.X_WB = state_->X_WB;
 }
 
 Expected<Command> Mapping::on_posture(const Posture& posture, Time now) {
   const auto features = features_of(posture, now);
   if (!features) return tl::unexpected(features.error());
-  const Pose X_WG = posture.X_WH * model::HumanHand(posture.hand_scale).X_HG();
-  if (command_.dof.size() == 0 && !start(X_WG, posture.stamp, now))
+  const Pose X_WG_human = posture.X_WH * model::HumanHand(posture.hand_scale).X_HG();
+  if (command_.dof.size() == 0 && !start(X_WG_human, posture.stamp, now))
     return fail("no robot state yet");
   const Duration elapsed = motion_.step(posture.stamp - time_);
+  const Pose X_WG = clutch(X_WG_human, elapsed);
   time_ = std::max(time_, posture.stamp);
 
   const auto seen = select_target(X_WG, posture.stamp);
@@ -78,7 +119,13 @@ Expected<Command> Mapping::on_posture(const Posture& posture, Time now) {
       grasp_type(mean_closing(hand_, fingers->dof), X_WG, model_.is_precision(*features));
   place(X_WG, seen, elapsed);
   const Eigen::VectorXd dof = grip_.squeeze(follow_through(fingers->dof, elapsed));
-  move_toward(dof, placement_.X_WB(X_WG), elapsed);
+  const bool paused = posture.stamp - last_stamp_ > options_.clutch.max_pause;
+  if (interrupted_ || (paused && last_X_WG_ && are_apart(dof, command_.dof)))
+    clutch_.hold(dof, command_.dof);
+  interrupted_ = !obeyed_;
+  last_X_WG_ = X_WG_human;
+  last_stamp_ = std::max(last_stamp_, posture.stamp);
+  move_toward(clutch_.dof(dof), placement_.X_WB(X_WG), elapsed);
 
   command_.stamp = posture.stamp;
   command_.origin = posture.origin;
@@ -118,6 +165,14 @@ bool Mapping::start(const Pose& X_WG, Time stamp, Time now) {
   command_.X_WB = state_->X_WB;
   if (grip_.touching()) placement_.start(X_WG, state_->X_WB);
   return true;
+}
+
+/// What the human hand stands for: itself, unless there was an interruption.
+Pose Mapping::clutch(const Pose& X_WG, Duration elapsed) {
+  clutch_.fade(elapsed);
+  if (last_X_WG_ && clutch_.is_jump(*last_X_WG_, X_WG)) interrupted_ = true;
+  if (interrupted_) clutch_.hold(X_WG, placement_.X_WG(command_.X_WB));
+  return clutch_.X_WG(X_WG);
 }
 
 /// The object to reach for, as it is seen now.

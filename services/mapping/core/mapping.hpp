@@ -9,6 +9,7 @@
 #include "common/base/time.hpp"
 #include "common/model/hand_model.hpp"
 #include "services/mapping/core/arbitration.hpp"
+#include "services/mapping/core/clutch.hpp"
 #include "services/mapping/core/direct_fingers.hpp"
 #include "services/mapping/core/features.hpp"
 #include "services/mapping/core/finger_distances.hpp"
@@ -57,6 +58,8 @@ struct MappingOptions {
   GripOptions grip;
   /// How far one command goes from the one before.
   MotionLimitOptions motion;
+  /// How the hands come together again after an interruption.
+  ClutchOptions clutch;
   /// When the hand is told to stay.
   HoldTimerOptions hold;
   /// What is blended (the intelligent answer, the trust in it, and the fingertips' share of the
@@ -70,7 +73,9 @@ struct MappingOptions {
 
 /// From postures, detections and robot states to commands. Pure and deterministic; time comes as
 /// values. Every command keeps the velocity limits relative to the one before, whatever happens;
-/// the first one starts from where the robot hand is. Keeps references to the hand and the model.
+/// the first one starts from where the robot hand is, and so does the first one after it was
+/// stopped or started anew. After an interruption the hands come together slowly (Clutch). Keeps
+/// references to the hand and the model.
 class Mapping {
  public:
   /// Fails when the hand does not allow the mode of the fingers.
@@ -89,6 +94,9 @@ class Mapping {
   void on_detection_gone(std::uint32_t track) { tracks_.remove(track); }
   /// Refuses what has not this hand's sizes or is not finite.
   Expected<void> on_state(const RobotState& state);
+  /// Whether the robot hand obeys anybody, as its gate says. While it does not, commands stay where
+  /// it is.
+  void on_gate(bool obeys);
   /// A command to stay, once no posture has been answered for a while (HoldTimerOptions).
   std::optional<Command> tick(Time now);
 
@@ -100,8 +108,12 @@ class Mapping {
   // The steps of a posture, in order; numbers are those of README.md.
   Expected<Features> features_of(const Posture& posture, Time now) const;  // 1, 2
   bool start(const Pose& X_WG, Time stamp, Time now);                      // 3
-  std::optional<GraspTarget> select_target(const Pose& X_WG, Time now);    // 4
-  void weigh(const std::optional<GraspTarget>& seen, Duration elapsed);    // 5, 6
+  Pose clutch(const Pose& X_WG, Duration elapsed);                         // 3
+  bool are_apart(const Eigen::VectorXd& a, const Eigen::VectorXd& b) const;
+  bool robot_is_elsewhere() const;
+  void take_place_of_robot();
+  std::optional<GraspTarget> select_target(const Pose& X_WG, Time now);  // 4
+  void weigh(const std::optional<GraspTarget>& seen, Duration elapsed);  // 5, 6
   Expected<NetworkAnswer> answer(const Posture& posture, const Features& features,
                                  Duration elapsed);                                        // 7, 8
   void place(const Pose& X_WG, const std::optional<GraspTarget>& seen, Duration elapsed);  // 10, 11
@@ -123,14 +135,19 @@ class Mapping {
   Trust trust_;
   DirectFingers direct_;
   Placement placement_;
+  Clutch clutch_;
   FollowThrough follow_through_;
   GripController grip_;
   MotionLimits motion_;
   HoldTimer hold_;
   std::optional<RobotState> state_;
   std::optional<Time> first_posture_;
-  Time time_{};      // that the last command is for
-  Command command_;  // the last one; dof empty before the first
+  bool interrupted_ = false;       // since the last posture that was answered
+  bool obeyed_ = true;             // by the robot hand, as its gate says
+  std::optional<Pose> last_X_WG_;  // of that posture
+  Time last_stamp_{};              // of that posture
+  Time time_{};                    // that the last command is for
+  Command command_;                // the last one; dof empty before the first
 };
 
 }  // namespace prehend::mapping

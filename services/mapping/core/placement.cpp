@@ -74,4 +74,8 @@ Pose Placement::X_WB(const Pose& X_WG) const {
   return X_WG * correction_ * hand_.X_BG().inverse();
 }
 
+Pose Placement::X_WG(const Pose& X_WB) const {
+  return X_WB * hand_.X_BG() * correction_.inverse();
+}
+
 }  // namespace prehend::mapping

@@ -57,6 +57,8 @@ class Placement {
 
   /// The base for a human hand whose grasp frame is at X_WG.
   Pose X_WB(const Pose& X_WG) const;
+  /// The human hand's grasp frame for a base at X_WB.
+  Pose X_WG(const Pose& X_WB) const;
 
  private:
   Pose place_of(const GraspTarget& target) const;

@@ -8,6 +8,7 @@
 #include "common/base/paths.hpp"
 #include "common/convert/convert.hpp"
 #include "common/dds/topics.hpp"
+#include "services/mapping/core/glove_lead.hpp"
 #include "services/mapping/core/mapping.hpp"
 #include "services/mapping/core/mapping_model.hpp"
 #include "services/mapping/core/mapping_modes.hpp"
@@ -98,6 +99,10 @@ class Service::Topics {
                     Handler<v1::ObjectDetection>([this](auto& s, auto& i) { on_detection(s, i); }));
     shell.subscribe(dds::robot_state,
                     Handler<v1::HandState>([this](auto& s, auto& i) { on_state(s, i); }));
+    // In lockstep there is none.
+    if (!shell.lockstep())
+      shell.subscribe(dds::robot_gate,
+                      Handler<v1::GateState>([this](auto& s, auto& i) { on_gate(s, i); }));
     shell.subscribe(dds::operator_command,
                     Handler<v1::OperatorCommand>([this](auto& s, auto& i) { on_order(s, i); }));
     shell.on_tick(std::chrono::milliseconds(20), [this](Time now) {
@@ -117,6 +122,11 @@ class Service::Topics {
     if (info.gone) return;
     const Time now = shell_.now();
     service::Status& status = shell_.status();
+    if (!gloves_.admits(info.participant, now)) {
+      status.drop("posture of a second glove");
+      gloves_.refused(info.participant, now);
+      return;
+    }
     const auto posture = posture_from_message(message);
     const auto command =
         posture.and_then([&](const Posture& value) { return mapping_.on_posture(value, now); });
@@ -126,6 +136,7 @@ class Service::Topics {
       return;
     }
     publish(*command);
+    gloves_.followed(info.participant, now);
     last_posture_ = now;
     last_reject_.clear();
     status.latency("posture hop", now - info.sent);
@@ -149,6 +160,13 @@ class Service::Topics {
     const auto taken = from_message(message).and_then(
         [&](const RobotState& state) { return mapping_.on_state(state); });
     if (!taken) shell_.status().drop(taken.error().what);
+  }
+
+  void on_gate(const v1::GateState& message, const dds::SampleInfo& info) {
+    if (message.hand().to_string() != hand_name_) return;
+    // Of a gate that is gone nothing is known.
+    mapping_.on_gate(info.gone ||
+                     (!message.stopped() && (!message.deadman() || message.consent())));
   }
 
   /// «Set mode», for us or for all; other orders are not ours.
@@ -189,6 +207,10 @@ class Service::Topics {
     else if (std::any_of(seen_.begin(), seen_.end(),
                          [&](const auto& track) { return now - track.second > camera_patience; }))
       missing = "recognition has fallen silent; objects are no longer known";
+    else if (const auto second = gloves_.second(now))
+      missing = "hand/posture of " + shell_.writer_of({.participant = *second}) +
+                " is refused, for " + shell_.writer_of({.participant = *gloves_.followed()}) +
+                " leads";
     if (missing == missing_) return;
     missing_ = missing;
     if (missing.empty()) {
@@ -217,6 +239,7 @@ class Service::Topics {
   std::unique_ptr<const model::HandModel> hand_;  // the mapping refers to both
   std::unique_ptr<const MappingModel> model_;
   Mapping mapping_;
+  GloveLead gloves_;
   MappingModes modes_;
   std::string hand_name_;
   service::Shell::Output<v1::HandCommand> output_;
@@ -253,6 +276,12 @@ Expected<std::unique_ptr<Service>> Service::create(service::Shell& shell) {
   modes.placement = config.flag("mapping.placement");
   MappingOptions options;
   options.modes = effective(modes);
+  options.clutch.speed = config.number("mapping.clutch_speed");
+  options.clutch.turn_speed = config.number("mapping.clutch_turn_speed");
+  options.clutch.finger_speed = config.number("mapping.clutch_finger_speed");
+  const auto& clutch = options.clutch;
+  if (!(clutch.speed > 0 && clutch.turn_speed > 0 && clutch.finger_speed > 0))
+    return wrong_use("must be above 0", "mapping.clutch_speed, _turn_speed, _finger_speed");
   auto mapping = Mapping::create(*hand, *model, options);
   if (!mapping) return tl::unexpected(mapping.error());
 

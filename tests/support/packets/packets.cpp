@@ -6,23 +6,25 @@ namespace prehend::test {
 namespace {
 
 constexpr std::uint8_t info_timestamp = 0x09, info_source = 0x0c, data_kind = 0x15;
-constexpr std::uint8_t parameters_flag = 0x02, data_flag = 0x04, key_flag = 0x08;
-constexpr std::uint32_t participants = 0x000100c2, writers = 0x000003c2,
-                        liveliness_writer = 0x000200c2, a_user = 0x00000103;
-constexpr std::uint32_t participant_entity = 0x000001c1;
-
-Bytes guid(const dds::GuidPrefix& prefix, std::uint32_t entity) {
-  Bytes bytes(prefix.begin(), prefix.end());
-  for (int shift = 24; shift >= 0; shift -= 8)
-    bytes.push_back(static_cast<std::uint8_t>(entity >> shift));
-  return bytes;
-}
+constexpr std::uint8_t parameters_flag = 0x02, key_flag = 0x08;
+constexpr std::uint32_t writers = 0x000003c2, liveliness_writer = 0x000200c2, a_user = 0x00000103;
 
 void append(Bytes& to, std::span<const std::uint8_t> more) {
   for (const std::uint8_t byte : more) to.push_back(byte);
 }
 
+void entity(Bytes& to, std::uint32_t value) {
+  for (int shift = 24; shift >= 0; shift -= 8)
+    to.push_back(static_cast<std::uint8_t>(value >> shift));
+}
+
 }  // namespace
+
+Bytes guid(const dds::GuidPrefix& prefix, std::uint32_t of) {
+  Bytes bytes(prefix.begin(), prefix.end());
+  entity(bytes, of);
+  return bytes;
+}
 
 dds::GuidPrefix participant(std::uint8_t n) {
   return {1, 15, n, 2, 3, 4, 5, 6, 7, 8, 9, n};
@@ -85,20 +87,54 @@ Bytes Message::locator(const dds::Ipv4& address) const {
   return bytes;
 }
 
-Message& Message::data(std::uint32_t writer, const Bytes& parameters, const Bytes& content,
-                       std::uint8_t content_flag) {
+Bytes Message::lease(Duration lease) const {
+  Bytes bytes;
+  four(bytes, static_cast<std::uint32_t>(lease / std::chrono::seconds(1)));
+  four(bytes, static_cast<std::uint32_t>((lease % std::chrono::seconds(1)).count() *
+                                         0x1'0000'0000ll / 1'000'000'000));
+  return bytes;
+}
+
+Bytes Message::list(const std::vector<Parameter>& parameters) const {
+  Bytes bytes;
+  for (const auto& [id, value] : parameters) parameter(bytes, id, value);
+  parameter(bytes, 0x0001, {});
+  return bytes;
+}
+
+Message& Message::data(const Data& data) {
   Bytes bytes;
   two(bytes, 0);
-  two(bytes, 16);  // to what follows the number of the sample
-  append(bytes, Bytes(4));
-  for (int shift = 24; shift >= 0; shift -= 8)
-    bytes.push_back(static_cast<std::uint8_t>(writer >> shift));
+  two(bytes, data.fragment ? 28 : 16);  // to what follows the number of the sample
+  entity(bytes, data.reader);
+  entity(bytes, data.writer);
   four(bytes, 0);
-  four(bytes, 1);
-  append(bytes, parameters);
-  append(bytes, content);
-  return part(data_kind, bytes,
-              static_cast<std::uint8_t>(content_flag | (parameters.empty() ? 0 : parameters_flag)));
+  four(bytes, data.sequence);
+  if (data.fragment) {
+    four(bytes, 1);  // the first
+    two(bytes, 1);   // of one
+    two(bytes, static_cast<std::uint32_t>(data.content.size()));
+    four(bytes, static_cast<std::uint32_t>(data.content.size()));
+  }
+  append(bytes, data.parameters);
+  append(bytes, data.content);
+  // A fragment has its key flag elsewhere, and no flag for data.
+  const int flag = data.fragment ? (data.content_flag == key_flag ? 0x04 : 0) : data.content_flag;
+  return part(data.fragment ? 0x16 : data_kind, bytes,
+              static_cast<std::uint8_t>(flag | (data.parameters.empty() ? 0 : parameters_flag)));
+}
+
+Message& Message::samples(std::uint8_t kind, std::uint32_t writer, std::uint32_t first,
+                          std::uint32_t last) {
+  Bytes bytes;
+  entity(bytes, 0);
+  entity(bytes, writer);
+  four(bytes, 0);
+  four(bytes, first);
+  four(bytes, 0);
+  four(bytes, last);
+  four(bytes, kind == 7 ? last : 0);  // a heartbeat's count; the length of a gap's further set
+  return part(kind, bytes);
 }
 
 Bytes Message::text(std::string_view text) const {
@@ -125,26 +161,21 @@ Message& Message::announcement(const dds::GuidPrefix& participant,
                                const std::vector<std::pair<std::uint16_t, Bytes>>& more) {
   Bytes content = list_head();
   parameter(content, 0x0015, {2, 3, 0, 0});  // the protocol's version
-  parameter(content, 0x0050, guid(participant, participant_entity));
+  parameter(content, 0x0050, guid(participant));
   for (const dds::Ipv4& address : addresses) parameter(content, 0x0031, locator(address));
-  Bytes duration;
-  four(duration, static_cast<std::uint32_t>(lease / std::chrono::seconds(1)));
-  four(duration, static_cast<std::uint32_t>((lease % std::chrono::seconds(1)).count() *
-                                            0x1'0000'0000ll / 1'000'000'000));
-  parameter(content, 0x0002, duration);
+  parameter(content, 0x0002, this->lease(lease));
   for (const auto& [id, value] : more) parameter(content, id, value);
   parameter(content, 0x0001, {});
-  return data(participants, {}, content, data_flag);
+  return data({.content = content});
 }
 
 Message& Message::departure(const dds::GuidPrefix& participant) {
-  Bytes parameters, content = list_head();
-  parameter(parameters, 0x0070, guid(participant, participant_entity));
-  parameter(parameters, 0x0071, {0, 0, 0, 3});  // disposed, unregistered
-  parameter(parameters, 0x0001, {});
-  parameter(content, 0x0050, guid(participant, participant_entity));
-  parameter(content, 0x0001, {});
-  return data(participants, parameters, content, key_flag);
+  Bytes content = list_head();
+  append(content, list({{0x0050, guid(participant)}}));
+  // Disposed, unregistered.
+  return data({.parameters = list({{0x0070, guid(participant)}, {0x0071, {0, 0, 0, 3}}}),
+               .content = content,
+               .content_flag = key_flag});
 }
 
 Message& Message::endpoint(const dds::GuidPrefix& participant) {
@@ -152,21 +183,21 @@ Message& Message::endpoint(const dds::GuidPrefix& participant) {
   parameter(content, 0x005a, guid(participant, a_user));
   parameter(content, 0x0005, {4, 0, 0, 0, 'a', 'b', 'c', 0});  // the topic's name
   parameter(content, 0x0001, {});
-  return data(writers, {}, content, data_flag);
+  return data({.writer = writers, .content = content});
 }
 
 Message& Message::liveliness(const dds::GuidPrefix& participant) {
   Bytes content(4 + participant.size() + 8);
   content[1] = little_endian_ ? 1 : 0;
   std::copy(participant.begin(), participant.end(), content.begin() + 4);
-  return data(liveliness_writer, {}, content, data_flag);
+  return data({.writer = liveliness_writer, .content = content});
 }
 
 Message& Message::sample(std::size_t size) {
   Bytes content(4 + size, 0x3f);
   content[0] = content[2] = content[3] = 0;
   content[1] = 1;
-  return data(a_user, {}, content, data_flag);
+  return data({.writer = a_user, .content = content});
 }
 
 }  // namespace prehend::test

@@ -5,6 +5,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "common/dds/guarded_transport.hpp"
+
 namespace prehend::dds {
 namespace {
 
@@ -38,7 +40,8 @@ rtps::GUID_t guid(std::uint8_t n) {
 const std::string own(own_middleware);
 
 TEST(Peers, WhoIsLetInAfterItWasHeardOfIsDecided) {
-  Peers peers(nullptr, "CN=lab");
+  PacketGuard guard(false, true);
+  Peers peers(nullptr, "CN=lab", guard);
   peers.hear(announcement(1, "mapping", own, "/CN=lab"));
   peers.on_judged(guid(1), true);
   peers.on_participant({News::found, guid(1), "mapping", own, false, ""});
@@ -51,7 +54,8 @@ TEST(Peers, WhoIsLetInAfterItWasHeardOfIsDecided) {
 
 // Over TCP nobody is heard of before Fast DDS 3 tells.
 TEST(Peers, WhoIsLetInBeforeItIsKnownIsDecided) {
-  Peers peers(nullptr, "CN=lab");
+  PacketGuard guard(false, true);
+  Peers peers(nullptr, "CN=lab", guard);
   peers.on_judged(guid(1), true);
   peers.on_participant({News::found, guid(1), "mapping", own, true, "/CN=lab"});
   EXPECT_FALSE(peers.wait_until_decided(guid(9)));
@@ -59,7 +63,8 @@ TEST(Peers, WhoIsLetInBeforeItIsKnownIsDecided) {
 }
 
 TEST(Peers, WhoDoesNotAnswerIsNamed) {
-  Peers peers(nullptr, "CN=lab");
+  PacketGuard guard(false, true);
+  Peers peers(nullptr, "CN=lab", guard);
   peers.hear(announcement(1, "mapping", own, "/CN=lab"));
   const auto undecided = peers.wait_until_decided(guid(9));
   ASSERT_TRUE(undecided);
@@ -67,13 +72,15 @@ TEST(Peers, WhoDoesNotAnswerIsNamed) {
 }
 
 TEST(Peers, OneIsNotAStrangerToItself) {
-  Peers peers(nullptr, "CN=lab");
+  PacketGuard guard(false, true);
+  Peers peers(nullptr, "CN=lab", guard);
   peers.hear(announcement(1, "mapping", own, "/CN=lab"));
   EXPECT_FALSE(peers.wait_until_decided(guid(1)));
 }
 
 TEST(Peers, RefusalsSayWhy) {
-  Peers peers(nullptr, "CN=lab");
+  PacketGuard guard(false, true);
+  Peers peers(nullptr, "CN=lab", guard);
   peers.hear(announcement(1, "mapping", own, "/CN=other"));
   peers.hear(announcement(2, "stranger", own, ""));
   peers.hear(announcement(3, "thief", own, "/CN=lab"));
@@ -85,7 +92,8 @@ TEST(Peers, RefusalsSayWhy) {
 
 // Their handshake never ends: nobody waits for it, and what to do is said once.
 TEST(Peers, SecuredPeersOfAnotherReleaseAreRefusedAtOnce) {
-  Peers peers(nullptr, "CN=lab");
+  PacketGuard guard(false, true);
+  Peers peers(nullptr, "CN=lab", guard);
   peers.hear(announcement(1, "mapping", other, "/CN=lab"));
   peers.hear(announcement(1, "mapping", other, "/CN=lab"));
   EXPECT_FALSE(peers.wait_until_decided(guid(9)));
@@ -98,7 +106,8 @@ TEST(Peers, SecuredPeersOfAnotherReleaseAreRefusedAtOnce) {
 }
 
 TEST(Peers, WithoutKeysEveryReleaseIsWelcome) {
-  Peers peers(nullptr, std::nullopt);
+  PacketGuard guard(false, true);
+  Peers peers(nullptr, std::nullopt, guard);
   peers.hear(announcement(1, "mapping", other, ""));
   peers.hear(announcement(2, "secured", other, "/CN=lab"));
   EXPECT_THAT(
@@ -109,7 +118,8 @@ TEST(Peers, WithoutKeysEveryReleaseIsWelcome) {
 
 // A plaintext farewell may be forged.
 TEST(Peers, AFarewellThatIsOnlyHeardEndsNobodyWhoWasLetIn) {
-  Peers peers(nullptr, "CN=lab");
+  PacketGuard guard(false, true);
+  Peers peers(nullptr, "CN=lab", guard);
   peers.hear(announcement(1, "mapping", own, "/CN=lab"));
   peers.on_judged(guid(1), true);
   Announcement farewell = announcement(1, "", "", "");

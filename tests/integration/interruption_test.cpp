@@ -1,0 +1,128 @@
+// After an interruption of any kind the hand does not sweep to where the operator is now: real
+// processes of mapping and simulation, and a glove that is this test.
+#include <csignal>
+
+#include "tests/integration/safety_rig.hpp"
+#include "tests/integration/shown_hand.hpp"
+
+namespace prehend::integration {
+namespace {
+
+using Eigen::Vector3d;
+using std::chrono::milliseconds;
+
+const Vector3d there(0.4, 0, 0);
+/// Twice the set speed: the base of the simulated arm overshoots a little. It was 1 m/s.
+constexpr double clutch_speed = 0.2, slow = 0.4;
+
+class Interruption : public SafetyRig {
+ protected:
+  void start_both() {
+    simulation_.emplace(start("simulation"));
+    mapping_.emplace(start("mapping", {"mapping.clutch_speed=" + std::to_string(clutch_speed)}));
+    meet(postures_);
+    ASSERT_TRUE(show({0, 0, 0}, 30, [&] { return rests_at({0, 0, 0}); }));
+  }
+  v1::HandPosture posture(const Vector3d& p) {
+    v1::HandPosture message = shown_hand({0.1, 0.3, 0.3, 0.1, 0.1}, ++frames_);
+    message.X_WH(convert::to_message(make_pose(p + Vector3d(0, 0, 0.4))));
+    return message;
+  }
+  /// The glove is at p until the condition holds.
+  bool show(const Vector3d& p, double limit_s, const std::function<bool()>& condition) {
+    return eventually(limit_s, [&] {
+      postures_.write(posture(p));
+      std::this_thread::sleep_for(milliseconds(20));
+      listen();
+      return condition();
+    });
+  }
+  /// So many states long, at 100 a second.
+  bool show_for(const Vector3d& p, int states) {
+    return show(p, 30, [&, first = heard_] { return heard_ > first + states; });
+  }
+  /// The first place where the base rests after a way is that of a glove at the origin.
+  bool rests_at(const Vector3d& p) {
+    if (!origin_) {
+      const bool rests = heard_ > 100 && base_speed_ > 0.1 && (base() - seen_).norm() < 1e-5;
+      if (++looks_ % 20 == 0) seen_ = base();
+      if (rests && looks_ % 20 == 19) origin_ = base();
+      return origin_.has_value();
+    }
+    return (base() - *origin_ - p).norm() < 5e-3;
+  }
+  void expect_slow_way(const Vector3d& p) {
+    base_speed_ = 0;
+    EXPECT_TRUE(show(p, 30, [&] { return rests_at(p); })) << (base() - *origin_).transpose();
+    EXPECT_LT(base_speed_, slow);
+  }
+
+  dds::Writer<v1::HandPosture> postures_ = writer(dds::hand_posture);
+  std::uint64_t frames_ = 0, looks_ = 0;
+  Vector3d seen_ = Vector3d::Zero();
+  std::optional<Vector3d> origin_;
+};
+
+TEST_F(Interruption, ASilentGloveAndATrackerThatJumps) {
+  start_both();
+  ASSERT_TRUE(wait(20, [&, first = heard_] { return heard_ > first + 60; }));
+  expect_slow_way(there);
+  expect_slow_way({0, 0, 0});
+}
+
+TEST_F(Interruption, AStop) {
+  start_both();
+  ASSERT_EQ(run("prehend", with_lab({"stop"}), 30).exit_code, 0);
+  ASSERT_TRUE(wait(20, [&] { return gate_.stopped(); }));
+  // The operator goes on.
+  for (int i = 0; i <= 20; ++i) ASSERT_TRUE(show_for(i / 20.0 * there, 5));
+  EXPECT_TRUE(rests_at({0, 0, 0}));
+  ASSERT_EQ(run("prehend", with_lab({"release", "--reason", "a test"}), 30).exit_code, 0);
+  expect_slow_way(there);
+}
+
+TEST_F(Interruption, ARobotThatStartsAnew) {
+  start_both();
+  simulation_->signal(SIGKILL);
+  ASSERT_TRUE(simulation_->wait(seconds(5)));
+  simulation_.emplace(start("simulation"));
+  heard_ = 0;
+  gate_ = {};
+  // A fresh world puts the hand where its first command says.
+  EXPECT_TRUE(show(there, 30, [&] { return heard_ > 2 && gate_.leader().size() > 0; }));
+  EXPECT_TRUE(show_for(there, 10));
+  expect_slow_way(there);
+}
+
+TEST_F(Interruption, ASecondGloveIsRefusedAndNamed) {
+  start_both();
+  auto other = dds::Participant::create({.name = "other", .domain = domain_, .rig = name_});
+  ASSERT_TRUE(other);
+  auto second = other->writer(dds::hand_posture);
+  ASSERT_TRUE(second);
+  meet(*second);
+  auto statuses = reader(dds::service_status);
+  base_speed_ = 0;
+  std::string said;
+  EXPECT_TRUE(show({0, 0, 0}, 30, [&] {
+    second->write(posture(there));
+    for (const auto& sample : statuses.take())
+      if (!sample.info.gone && sample.data.name().to_string() == "mapping")
+        said = sample.data.message().to_string();
+    return said.find("is refused, for") != std::string::npos;
+  })) << said;
+  EXPECT_TRUE(rests_at({0, 0, 0}));
+  EXPECT_LT(base_speed_, 0.05);
+  // The first is silent: the second leads, from where the hand is.
+  base_speed_ = 0;
+  EXPECT_TRUE(eventually(30, [&] {
+    second->write(posture(there));
+    std::this_thread::sleep_for(milliseconds(20));
+    listen();
+    return rests_at(there);
+  }));
+  EXPECT_LT(base_speed_, slow);
+}
+
+}  // namespace
+}  // namespace prehend::integration
