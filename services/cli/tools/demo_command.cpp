@@ -1,6 +1,8 @@
 #include "services/cli/tools/demo_command.hpp"
 
 #include <fmt/format.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
@@ -248,8 +250,27 @@ class Demonstration {
   static bool is_serial(const GloveRow& row) { return row.line == "serial"; }
 
   /// Of this machine, for datagrams; that somebody else has it is as good as impossible.
+  /// Of a port that nobody has, and that no participant of a domain will take: theirs are the first
+  /// of each 250 from 7400 on (DDSI-RTPS 2.3, 9.6.1).
   static std::string some_address() {
-    return fmt::format("127.0.0.1:{}", 20000 + std::random_device{}() % 10000);
+    std::random_device random;
+    while (true) {
+      const int port = 7400 + 250 * static_cast<int>(50 + random() % 40) + 200 +
+                       static_cast<int>(random() % 50);
+      if (is_free(port)) return fmt::format("127.0.0.1:{}", port);
+    }
+  }
+
+  static bool is_free(int port) {
+    sockaddr_in address{};
+    address.sin_family = AF_INET;
+    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    address.sin_port = htons(static_cast<std::uint16_t>(port));
+    const int handle = ::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+    const bool bound =
+        ::bind(handle, reinterpret_cast<const sockaddr*>(&address), sizeof(address)) == 0;
+    ::close(handle);
+    return handle < 0 || bound;
   }
 
   /// Up before the others, so that it misses nothing.
