@@ -18,7 +18,7 @@ struct ClutchOptions {
   /// Fingers that have changed in a longer time without a posture that was answered have swept.
   Duration max_pause = std::chrono::milliseconds(300);
   /// A hand that is this far from where it was when it was answered last has jumped, m, rad.
-  double jump = 0.15, turned = 1.0;
+  double jump = 0.2, turned = 1.0;
 };
 
 /// What is between the human hand and the robot's after an interruption. The robot hand follows
