@@ -63,6 +63,7 @@ void StatusView::hear(const v1::ServiceStatus& status, Time now, const std::stri
   service.heard = now;
   service.gone = false;
   if (!middleware.empty()) service.middleware = middleware;
+  told_ = told_ || !middleware.empty();
 }
 
 void StatusView::hear(const v1::ClockBeacon& beacon, Time now) {
@@ -139,10 +140,7 @@ std::string StatusView::state(const Service& service, Time now) const {
 }
 
 std::string StatusView::page(Time now) const {
-  std::string strangers;
-  for (const std::string& peer : refused_)
-    strangers += fmt::format("not let in: {}\n", printable(peer));
-  if (services_.empty()) return "no service is there\n" + strangers;
+  if (services_.empty()) return "no service is there\n" + strangers();
   std::set<std::string> hosts;
   for (const auto& [key, service] : services_) hosts.insert(service.status.host().to_string());
   std::string text =
@@ -150,11 +148,9 @@ std::string StatusView::page(Time now) const {
                   hosts.size(), hosts.size() == 1 ? "" : "s");
   if (const auto absent = missing(now); !absent.empty())
     text += fmt::format("; missing: {}", fmt::join(absent, ", "));
-  if (!strangers.empty()) text += "\n" + strangers.substr(0, strangers.size() - 1);
-  const bool told = std::ranges::any_of(
-      services_, [](const auto& entry) { return !entry.second.middleware.empty(); });
+  if (!refused_.empty()) (text += "\n" + strangers()).pop_back();
   text += fmt::format("\n\n{:<14}{:<18}{:<12}{:>8}{:>9}{}{}\n", "SERVICE", "HOST", "STATE", "UP",
-                      "MEMORY", right("CLOCK", 24), told ? right("DDS", 15) : "");
+                      "MEMORY", right("CLOCK", 24), told_ ? right("DDS", 15) : "");
   for (const auto& [key, service] : services_) {
     const v1::ServiceStatus& status = service.status;
     const auto offset = clock(key, now);
@@ -166,7 +162,7 @@ std::string StatusView::page(Time now) const {
     text += fmt::format("{:<14}{:<18}{:<12}{:>8}{:>6.0f} MB{}{}\n", shown(status.name()),
                         shown(status.host()), state(service, now), age(status.uptime()),
                         status.resident() / 1e6, right(by, 24),
-                        told ? right(service.middleware, 15) : "");
+                        told_ ? right(service.middleware, 15) : "");
     if (status.message().size() > 0) text += fmt::format("  {}\n", shown(status.message()));
   }
   if (const std::string hands = gates(now); !hands.empty())
@@ -202,6 +198,13 @@ std::string StatusView::page(Time now) const {
             }
           });
   return text;
+}
+
+std::string StatusView::strangers() const {
+  std::string lines;
+  for (const std::string& peer : refused_)
+    lines += fmt::format("not let in: {}\n", printable(peer));
+  return lines;
 }
 
 /// Who leads each hand; a stop is what one must not overlook.

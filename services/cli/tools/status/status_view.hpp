@@ -59,8 +59,10 @@ class StatusView {
   std::optional<Clock> clock(const std::string& key, Time now) const;
   std::string state(const Service& service, Time now) const;
   std::string gates(Time now) const;
+  std::string strangers() const;
 
   std::vector<std::string> expected_, refused_;
+  bool told_ = false;                        // what somebody speaks with
   std::map<std::string, Service> services_;  // by key
   std::map<std::string, std::pair<v1::ClockBeacon, Time>> beacons_;
   std::map<std::string, std::pair<v1::GateState, Time>> gates_;  // by hand
