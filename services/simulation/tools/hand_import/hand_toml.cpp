@@ -14,6 +14,15 @@ std::string row(const Numbers& numbers) {
   return "[" + text + "]";
 }
 
+/// A wrist is held where it rests: the arm moves the palm.
+std::string wrist_limits(const Anatomy::Dof& dof, const Robot& robot) {
+  const JointLimit& limit = *robot.find_joint(dof.joint)->limit;
+  const double slack = 0.01 * (limit.upper - limit.lower);
+  return fmt::format(
+      "# a wrist: held still, since the arm moves the palm\nlower = {:.9g}\nupper = {:.9g}\n",
+      std::max(limit.lower, dof.open - slack), std::min(limit.upper, dof.open + slack));
+}
+
 }  // namespace
 
 std::string toml_text(const std::string& text) {
@@ -44,6 +53,7 @@ std::string write_toml(const Anatomy& anatomy, const std::string& name, const Ro
   for (const Anatomy::Dof& dof : anatomy.dofs) {
     text += fmt::format("\n[[dof]]\nname = {0}\njoint = {0}\nclosing = {1}\n", toml_text(dof.joint),
                         dof.closing);
+    if (dof.wrist) text += wrist_limits(dof, robot);
     open.push_back(dof.open);
     fist.push_back(dof.fist);
   }
@@ -54,6 +64,8 @@ std::string write_toml(const Anatomy& anatomy, const std::string& name, const Ro
       "\n# Torque limits are those of the URDF; [torque] overrides them.\n[materials]\n"
       "default = \"rubber\"\n{} = \"plastic\"\n\n[postures]\nopen = {}\nfist = {}\n",
       toml_text(robot.links[0].name), row(open), row(fist));
+  for (const auto& [posture, dof] : anatomy.preshapes)
+    text += fmt::format("{} = {}\n", posture, row(dof));
   return text;
 }
 
