@@ -419,6 +419,9 @@ class Finder {
     found_.reach.opening = best.opening;
     found_.reach.engage = std::clamp(0.7 * best.depth, 0.01, 0.05);
     found_.preshapes = best.preshapes;
+    if (best.alone >= 0)
+      for (const int i : fingers_[at(best.alone)].joints)
+        found_.thumb_joints.push_back(joint(i).name);
     for (std::size_t i = 0; i < found_.dofs.size(); ++i)
       found_.dofs[i].open = best.open[static_cast<Eigen::Index>(i)];
     find_clearance();

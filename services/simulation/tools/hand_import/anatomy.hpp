@@ -27,6 +27,7 @@ struct Anatomy {
   Pose X_BG = Pose::Identity();
   model::Reach reach;
   std::map<std::string, Eigen::VectorXd> preshapes;  // besides «open»
+  std::vector<std::string> thumb_joints;  // of the finger that stands against two or more others
   bool opposed = true;  // false: no fingers that move towards each other were found
 };
 

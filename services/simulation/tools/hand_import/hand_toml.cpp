@@ -14,6 +14,19 @@ std::string row(const Numbers& numbers) {
   return "[" + text + "]";
 }
 
+/// A thumb that is as strong as a finger is pushed back by several, and nothing comes to rest.
+std::string thumb_torques(const Anatomy& anatomy, const Robot& robot) {
+  constexpr double stronger = 2.5;
+  std::string text;
+  for (const std::string& joint : anatomy.thumb_joints)
+    text += fmt::format("{} = {:.4g}\n", toml_text(joint),
+                        stronger * robot.find_joint(joint)->limit->effort);
+  if (text.empty()) return text;
+  return fmt::format(
+      "# The thumb stands against several fingers: {} times the effort of one.\n[torque]\n{}\n",
+      stronger, text);
+}
+
 /// A wrist is held where it rests: the arm moves the palm.
 std::string wrist_limits(const Anatomy::Dof& dof, const Robot& robot) {
   const JointLimit& limit = *robot.find_joint(dof.joint)->limit;
@@ -61,9 +74,9 @@ std::string write_toml(const Anatomy& anatomy, const std::string& name, const Ro
     text += fmt::format("\n[[fingertip]]\nname = {}\nlink = {}\nposition = {}\n",
                         toml_text(tip.name), toml_text(tip.link), row(tip.p_LT));
   text += fmt::format(
-      "\n# Torque limits are those of the URDF; [torque] overrides them.\n[materials]\n"
+      "\n# Torque limits are those of the URDF; [torque] overrides them.\n{}[materials]\n"
       "default = \"rubber\"\n{} = \"plastic\"\n\n[postures]\nopen = {}\nfist = {}\n",
-      toml_text(robot.links[0].name), row(open), row(fist));
+      thumb_torques(anatomy, robot), toml_text(robot.links[0].name), row(open), row(fist));
   for (const auto& [posture, dof] : anatomy.preshapes)
     text += fmt::format("{} = {}\n", posture, row(dof));
   return text;

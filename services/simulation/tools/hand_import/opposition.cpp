@@ -18,6 +18,7 @@ constexpr int samples = 1500, kept = 8, refinements = 60, shapings = 250;
 constexpr std::array radii{0.015, 0.022, 0.033};  // m, of the rods that are tried
 constexpr double good = 0.4;                      // quality of a grip that counts
 constexpr double better = 0.8;       // by which a found place must surpass the known axes
+constexpr double aside = 0.25;       // what a DoF costs that leaves its rest by its whole range
 constexpr double clear = 0.002;      // m, between the open hand and a rod
 constexpr double way_in = 0.16;      // m, along which the hand must be able to come
 constexpr double most_aside = 0.06;  // m, that thick rods may lie further out
@@ -56,7 +57,8 @@ class Search {
     Opposition result;
     result.open = best.dof;
     result.quality = best.worth;
-    result.depth = best.out.dot(best.middle - world_.nearest_of_palm(best.dof, best.middle));
+    result.depth = depth(best);
+    result.alone = alone(best);
     result.opening = opening(best);
     result.X_BG = best.X_BG();
     add_preshape(result, best, "tripod", {{}, 0.018, 0.008}, 3);
@@ -108,9 +110,9 @@ class Search {
     for (std::size_t i = 0; i < fixed_.size(); ++i) {
       const auto k = static_cast<Eigen::Index>(i);
       const model::HandDof& dof = world_.hand().dofs()[i];
-      away += std::abs(trial.dof[k] - open_[k]) / (dof.upper - dof.lower);
+      if (turns_aside(i)) away += std::abs(trial.dof[k] - open_[k]) / (dof.upper - dof.lower);
     }
-    return sum - 0.1 * away / static_cast<double>(fixed_.size());
+    return sum - aside * away;
   }
 
   std::vector<Vector3d> tips(const VectorXd& dof) const {
@@ -157,7 +159,7 @@ class Search {
     for (std::size_t i = 0; i < fixed_.size(); ++i) {
       const model::HandDof& dof = world_.hand().dofs()[i];
       const double place = random_.uniform(), keep = random_.uniform();
-      if (turns_aside(i) && keep > 0.3)
+      if (turns_aside(i) && keep > 0.5)
         trial.dof[static_cast<Eigen::Index>(i)] = dof.lower + place * (dof.upper - dof.lower);
     }
     const std::size_t n = p_LT_.size();
@@ -229,19 +231,46 @@ class Search {
     return winner;
   }
 
+  /// The fingers that touch a rod from -y and from +y.
+  std::array<std::set<int>, 2> sides(const Trial& trial) const {
+    std::array<std::set<int>, 2> found;
+    if (const auto rod = placed(trial, radii[1], 0.03))
+      for (const Touch& touch : world_.close(trial.dof, *rod))
+        if (touch.finger >= 0 && std::abs(touch.normal_R.y()) > 0.3)
+          found[touch.normal_R.y() > 0 ? 1 : 0].insert(touch.finger);
+    return found;
+  }
+
   /// Turns y so that it leads from the side with fewer fingers to the other.
   Trial from_the_thumb(Trial trial) const {
-    const auto rod = placed(trial, radii[1], 0.03);
-    if (!rod) return trial;
-    std::set<int> before, behind;
-    for (const Touch& touch : world_.close(trial.dof, *rod))
-      if (touch.finger >= 0 && std::abs(touch.normal_R.y()) > 0.3)
-        (touch.normal_R.y() > 0 ? behind : before).insert(touch.finger);
+    const auto [before, behind] = sides(trial);
     const bool last_behind =
         !behind.empty() && !before.empty() && *behind.rbegin() > *before.rbegin();
     if (before.size() > behind.size() || (before.size() == behind.size() && last_behind))
       trial.across = -trial.across;
     return trial;
+  }
+
+  /// The finger against which two or more others press.
+  int alone(const Trial& trial) const {
+    const auto both = sides(trial);
+    for (const std::size_t side : {0, 1})
+      if (both[side].size() == 1 && both[1 - side].size() > 1 &&
+          !both[1 - side].contains(*both[side].begin()))
+        return *both[side].begin();
+    return -1;
+  }
+
+  /// How far a thin rod can come towards the palm, and its radius.
+  double depth(const Trial& trial) const {
+    Rod rod{trial.X_BG(), 0.012, 0.02};
+    double inwards = 0;
+    while (inwards < 0.06) {
+      rod.X_BR.translation() = trial.middle - (inwards + 0.002) * trial.out;
+      if (world_.room(trial.dof, rod) < 0) break;
+      inwards += 0.002;
+    }
+    return inwards + rod.radius;
   }
 
   double opening(const Trial& trial) const {

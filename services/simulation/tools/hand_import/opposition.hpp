@@ -15,6 +15,8 @@ struct Opposition {
   double quality = 0;            // of the grips on rods of three sizes, see grip_quality()
   double opening = 0;            // m, of the widest rod that is gripped
   double depth = 0;              // m, from the origin of G to the palm
+  /// The finger that stands alone against all others that touch; -1: none does.
+  int alone = -1;
   /// Other postures from which what lies there is gripped: «tripod», «pinch».
   std::map<std::string, Eigen::VectorXd> preshapes;
 };
