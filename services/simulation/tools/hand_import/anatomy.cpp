@@ -121,6 +121,13 @@ class Finder {
     p_BP_ = poses(rest_)[at(palm_)] * middle_of(points_of(hand_.links()[at(palm_)]));
   }
 
+  std::vector<Vector3d> palm_points() const {
+    std::vector<Vector3d> points = points_of(hand_.links()[at(palm_)]);
+    const Pose X_BP = poses(rest_)[at(palm_)];
+    for (Vector3d& p : points) p = X_BP * p;
+    return points;
+  }
+
   bool is_wrist(int dof) const {
     bool moves_palm = false, moves_more = false;
     for (int i = 0; i < static_cast<int>(hand_.joints().size()); ++i) {
@@ -377,9 +384,7 @@ class Finder {
     // How far the palm's surface is away below the tips' meeting point.
     double surface = -1e9, width = 0.02;
     const Vector3d side = closing.cross(approach);
-    const Pose X_BP = poses(rest_)[at(palm_)];
-    for (const Vector3d& p_P : points_of(hand_.links()[at(palm_)])) {
-      const Vector3d p = X_BP * p_P;
+    for (const Vector3d& p : palm_points()) {
       surface = std::max(surface, approach.dot(p));
       width = std::max(width, std::abs(side.dot(p - middle)));
     }
@@ -434,9 +439,8 @@ class Finder {
     double below = 0.01, width = 0.02;
     for (double share = 0.3; share <= 1; share += 0.1)
       for (const Vector3d& tip : tips(closed_by(share))) below = std::max(below, out.dot(tip - p));
-    const Pose X_BP = poses(rest_)[at(palm_)];
-    for (const Vector3d& p_P : points_of(hand_.links()[at(palm_)]))
-      width = std::max(width, std::abs(side.dot(X_BP * p_P - p)));
+    for (const Vector3d& on_palm : palm_points())
+      width = std::max(width, std::abs(side.dot(on_palm - p)));
     found_.reach.clearance = below + 0.01;
     found_.reach.half_width = std::min(width, 0.15) + 0.01;
   }
