@@ -19,7 +19,6 @@ constexpr double tilted = 0.5;       // share of candidates that have one
 constexpr double to_the_end = 0.35;  // share that comes as near as it can
 constexpr double deepest = 0.02;     // m, that the others may go beyond the usual depth
 constexpr double shallowest = 0.03;  // m, that they may stay before it
-constexpr double off_posture = 0.7;  // share in which DoFs that do not close are sampled
 constexpr double half_closed = 0.3;  // share in which the closing DoFs begin closed, up to
 constexpr double max_closed = 0.4;   // this share of their range
 
@@ -79,7 +78,8 @@ std::vector<std::string> opened_postures(const model::HandModel& hand) {
   return names;
 }
 
-VectorXd sample_preshape(const model::HandModel& hand, const VectorXd& posture, Random& random) {
+VectorXd sample_preshape(const model::HandModel& hand, const VectorXd& posture, double off_posture,
+                         Random& random) {
   VectorXd dof = posture;
   const bool sampled = random.uniform() < off_posture;
   const double closed = random.uniform() < half_closed ? random.uniform(0, max_closed) : 0;
@@ -105,7 +105,7 @@ double narrowest_width(const model::Shape& shape) {
 }
 
 Candidate sample_candidate(const model::HandModel& hand, const model::Shape& shape,
-                           std::uint64_t seed, int index) {
+                           std::uint64_t seed, int index, double off_posture) {
   Random random(mixed(seed, static_cast<std::uint64_t>(index)));
   const Vector3d half = model::half_extents(shape);
   const std::vector<Way> choices = ways(half, hand.reach().opening);
@@ -132,7 +132,8 @@ Candidate sample_candidate(const model::HandModel& hand, const model::Shape& sha
   candidate.X_OG = make_pose(turn * p, turn * R);
   const std::vector<std::string> postures = opened_postures(hand);
   candidate.posture = postures[random.index(postures.size())];
-  candidate.preshape = sample_preshape(hand, hand.postures().at(candidate.posture), random);
+  candidate.preshape =
+      sample_preshape(hand, hand.postures().at(candidate.posture), off_posture, random);
   return candidate;
 }
 

@@ -24,9 +24,10 @@ struct Candidate {
 /// the same list. Sampled: the face that is approached, across which pair of faces the fingers
 /// close (only pairs that fit into the hand's opening, if there are any), the turn about axes of
 /// symmetry, the place along the faces, small errors of all of these, the stand-off, the named
-/// posture, the DoFs that do not close, and how far the others are closed beforehand.
+/// posture, the DoFs that do not close (in a share `off_posture` of all), and how far the others
+/// are closed beforehand.
 Candidate sample_candidate(const model::HandModel& hand, const model::Shape& shape,
-                           std::uint64_t seed, int index);
+                           std::uint64_t seed, int index, double off_posture = 0.7);
 
 /// Across the object's narrowest side, m.
 double narrowest_width(const model::Shape& shape);

@@ -110,7 +110,9 @@ ClosingOptions closing_options(const Pose& X_OB) {
 /// Everything that is cheap first: most candidates end before any physics.
 Expected<Closed> close_candidate(const model::HandModel& hand, const Body& object,
                                  const PlanOptions& options, int index) {
-  Closed closed{index, sample_candidate(hand, object.shape, options.seed, index), Pose::Identity()};
+  Closed closed{index,
+                sample_candidate(hand, object.shape, options.seed, index, options.off_posture),
+                Pose::Identity()};
   auto fitting = Fitting::create(hand, object, options.table);
   if (!fitting) return tl::unexpected(fitting.error());
   const auto X_OB = fitting->approach(closed.sample);

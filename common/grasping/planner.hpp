@@ -21,6 +21,8 @@ namespace prehend::grasping {
 struct PlanOptions {
   int candidates = 200;    // that are sampled, 1 to 1'000'000
   std::uint64_t seed = 1;  // of the sampling
+  /// Share of candidates in which DoFs that do not close leave the posture that they begin from.
+  double off_posture = 0.7;
   /// The object stands on a table: candidates that reach through it are refused.
   bool table = false;
   int tested = 10;      // grasps with the greatest epsilon that the hold test tries

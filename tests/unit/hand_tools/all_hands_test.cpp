@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
-#include <optional>
+#include <map>
 #include <sstream>
 
 #include "services/simulation/tools/hand_import/make_hand.hpp"
@@ -36,15 +36,24 @@ class EveryHand : public testing::TestWithParam<std::string> {
     auto loaded = model::HandModel::load(folder() / GetParam());
     ASSERT_TRUE(loaded) << loaded.error().message();
     written = std::move(*loaded);
+    made = once();
+    ASSERT_TRUE(made);
+  }
+
+  /// The search for the grasp frame takes a second, so each hand is made once for all tests.
+  static const simulation::MadeHand* once() {
+    static std::map<std::string, simulation::MadeHand> hands;
+    const auto found = hands.find(GetParam());
+    if (found != hands.end()) return &found->second;
     const auto robot = simulation::read_robot(read(folder() / GetParam() / "hand.urdf"));
-    ASSERT_TRUE(robot) << robot.error().message();
+    if (!robot) return nullptr;
     auto hand = simulation::make_hand(*robot, GetParam(), simulation::mesh_files(folder()));
-    ASSERT_TRUE(hand) << hand.error().message();
-    made.emplace(std::move(*hand));
+    EXPECT_TRUE(hand);
+    return hand ? &hands.emplace(GetParam(), std::move(*hand)).first->second : nullptr;
   }
 
   model::HandModel written;
-  std::optional<simulation::MadeHand> made;
+  const simulation::MadeHand* made = nullptr;
 };
 
 TEST_P(EveryHand, HasNoErrors) {

@@ -36,11 +36,7 @@ Expected<void> write_folder(const MadeHand& hand, const std::filesystem::path& f
 
 /// One object of the trial: the best planned grasp and whether it survived lift, shake and turn.
 nlohmann::ordered_json trial(const MadeHand& hand, const grasping::Body& body, int candidates) {
-  grasping::PlanOptions options;
-  options.candidates = candidates;
-  options.tested = 4;
-  options.max_tested = 12;
-  const auto plan = simulation::plan_with_progress(hand.model, body, options, 0);
+  const auto plan = simulation::plan_in_batches(hand.model, body, candidates, 0);
   nlohmann::ordered_json document{{"object", body.name},
                                   {"width_m", grasping::narrowest_width(body.shape)},
                                   {"held", plan && plan->held()},

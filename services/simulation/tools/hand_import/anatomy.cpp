@@ -9,6 +9,7 @@
 #include <set>
 
 #include "services/simulation/tools/hand_import/hand_toml.hpp"
+#include "services/simulation/tools/hand_import/opposition.hpp"
 #include "services/simulation/tools/hand_import/overlap.hpp"
 
 namespace prehend::simulation {
@@ -23,10 +24,6 @@ constexpr double same_reach = 0.8;   // share of the farthest leaf of the same D
 constexpr double tip_slice = 0.002;  // m: the end of a link, whose middle is the tip
 constexpr double min_tip = 0.005;
 constexpr double fist = 2.6;  // rad, the most that a joint bends
-
-std::size_t at(int i) {
-  return static_cast<std::size_t>(i);
-}
 
 /// A hand.toml that only lets the URDF be loaded: a DoF a leading joint, fingertips wherever.
 std::string provisional_toml(const Robot& robot, const std::vector<std::string>& leaders) {
@@ -76,7 +73,7 @@ class Finder {
  public:
   Finder(const Robot& robot, const HandModel& hand)
       : robot_(robot), hand_(hand), rest_(hand.postures().at("open")) {
-    p_BP_ = middle_of(points_of(hand.links()[0]));
+    find_palm();
   }
 
   Expected<Anatomy> run() {
@@ -85,8 +82,10 @@ class Finder {
       return fail("no fingertips found", "robot " + robot_.name,
                   "a finger is a chain of moving links that ends somewhere");
     for (int dof = 0; dof < rest_.size(); ++dof) find_closing(dof);
+    agree_within_fingers();
     name_fingers();
     find_grasp_frame();
+    search_opposition();
     return std::move(found_);
   }
 
@@ -103,6 +102,42 @@ class Finder {
     return p_BT;
   }
 
+  /// The link on which the hand branches, and the joints before it: a wrist.
+  void find_palm() {
+    while (true) {
+      std::vector<int> next;
+      for (int i = 0; i < static_cast<int>(hand_.joints().size()); ++i)
+        if (joint(i).parent == palm_) next.push_back(i);
+      if (next.size() != 1) break;
+      wrist_.push_back(next[0]);
+      palm_ = joint(next[0]).child;
+    }
+    // A single chain is a finger, not a wrist.
+    if (std::none_of(hand_.joints().begin(), hand_.joints().end(),
+                     [&](const auto& j) { return j.parent == palm_; })) {
+      palm_ = 0;
+      wrist_.clear();
+    }
+    p_BP_ = poses(rest_)[at(palm_)] * middle_of(points_of(hand_.links()[at(palm_)]));
+  }
+
+  std::vector<Vector3d> palm_points() const {
+    std::vector<Vector3d> points = points_of(hand_.links()[at(palm_)]);
+    const Pose X_BP = poses(rest_)[at(palm_)];
+    for (Vector3d& p : points) p = X_BP * p;
+    return points;
+  }
+
+  bool is_wrist(int dof) const {
+    bool moves_palm = false, moves_more = false;
+    for (int i = 0; i < static_cast<int>(hand_.joints().size()); ++i) {
+      if (joint(i).dof != dof) continue;
+      const bool before = std::find(wrist_.begin(), wrist_.end(), i) != wrist_.end();
+      (before ? moves_palm : moves_more) = true;
+    }
+    return moves_palm && !moves_more;
+  }
+
   void find_fingers() {
     std::vector<bool> carries(hand_.links().size(), false);
     for (const auto& j : hand_.joints()) carries[at(j.parent)] = true;
@@ -110,10 +145,11 @@ class Finder {
       if (carries[at(link)]) continue;
       Finger finger;
       finger.leaf = link;
-      for (int l = link; l > 0; l = joint(hand_.links()[at(l)].joint).parent) {
+      for (int l = link; l != palm_ && l > 0; l = joint(hand_.links()[at(l)].joint).parent) {
         finger.joints.insert(finger.joints.begin(), hand_.links()[at(l)].joint);
         finger.dofs.insert(joint(finger.joints.front()).dof);
       }
+      if (finger.joints.empty()) continue;
       finger.p_LT = end_of(finger);
       const auto X_BL = poses(rest_);
       const model::HandJoint& first = joint(finger.joints.front());
@@ -180,6 +216,10 @@ class Finder {
   void find_closing(int dof) {
     const model::HandDof& limits = hand_.dofs()[at(dof)];
     const bool slides = limits.kind == model::JointKind::prismatic;
+    if (is_wrist(dof)) {
+      found_.dofs.push_back({joint(limits.joint).name, 0, rest_[dof], rest_[dof], true});
+      return;
+    }
     VectorXd low = rest_, high = rest_;
     const double quarter = slides ? 1e9 : 0.5 * std::numbers::pi;  // beyond, tips come round again
     low[dof] = std::max(limits.lower, rest_[dof] - quarter);
@@ -220,6 +260,31 @@ class Finder {
       result.fist = slides ? closed : std::clamp(closed, rest_[dof] - fist, rest_[dof] + fist);
     }
     found_.dofs.push_back(result);
+  }
+
+  /// Joints of a finger that turn about the same axis close in the same sense as the last, whose
+  /// range tells most; that of one that bends equally far either way tells nothing.
+  void agree_within_fingers() {
+    for (const Finger& finger : fingers_) {
+      const int last = finger.joints.back();
+      if (joint(last).kind != model::JointKind::revolute) continue;
+      const int sense = found_.dofs[at(joint(last).dof)].closing;
+      for (const int i : finger.joints) {
+        Anatomy::Dof& d = found_.dofs[at(joint(i).dof)];
+        const model::HandDof& limits = hand_.dofs()[at(joint(i).dof)];
+        const double rest = rest_[joint(i).dof];
+        const double below = rest - limits.lower, above = limits.upper - rest;
+        const bool either_way = std::min(below, above) > 0.5 * std::max(below, above);
+        const double along = axis(i).dot(axis(last));
+        if (sense == 0 || d.closing == 0 || !either_way || std::abs(along) < parallel) continue;
+        const int wanted = along > 0 ? sense : -sense;
+        if (d.closing == wanted) continue;
+        d.closing = wanted;
+        d.open = rest;
+        const double closed = wanted > 0 ? limits.upper : limits.lower;
+        d.fist = std::clamp(closed, rest - fist, rest + fist);
+      }
+    }
   }
 
   void name_fingers() {
@@ -319,7 +384,7 @@ class Finder {
     // How far the palm's surface is away below the tips' meeting point.
     double surface = -1e9, width = 0.02;
     const Vector3d side = closing.cross(approach);
-    for (const Vector3d& p : points_of(hand_.links()[0])) {
+    for (const Vector3d& p : palm_points()) {
       surface = std::max(surface, approach.dot(p));
       width = std::max(width, std::abs(side.dot(p - middle)));
     }
@@ -337,10 +402,55 @@ class Finder {
     reach.half_width = std::min(width, 0.15) + 0.01;
   }
 
+  /// What the fingers can really hold, and from which posture.
+  void search_opposition() {
+    std::vector<int> closing;
+    Fingers known;
+    known.open = known.fist = rest_;
+    for (std::size_t i = 0; i < found_.dofs.size(); ++i) {
+      closing.push_back(found_.dofs[i].closing);
+      known.fixed.push_back(found_.dofs[i].wrist);
+      known.open[static_cast<Eigen::Index>(i)] = found_.dofs[i].open;
+      known.fist[static_cast<Eigen::Index>(i)] = found_.dofs[i].fist;
+    }
+    for (const Finger& finger : fingers_) {
+      known.last.push_back(finger.leaf);
+      known.p_LT.push_back(finger.p_LT);
+    }
+    const ContactWorld world(hand_, closing, known.last);
+    const Opposition best = find_opposition(world, known, found_.X_BG);
+    if (best.opening < 0.01) return;
+    found_.X_BG = best.X_BG;
+    found_.reach.opening = best.opening;
+    found_.reach.engage = std::clamp(0.7 * best.depth, 0.01, 0.05);
+    found_.preshapes = best.preshapes;
+    if (best.alone >= 0)
+      for (const int i : fingers_[at(best.alone)].joints)
+        found_.thumb_joints.push_back(joint(i).name);
+    for (std::size_t i = 0; i < found_.dofs.size(); ++i)
+      found_.dofs[i].open = best.open[static_cast<Eigen::Index>(i)];
+    find_clearance();
+  }
+
+  /// How far tips and palm reach beyond the origin of G.
+  void find_clearance() {
+    const Vector3d p = found_.X_BG.translation(), out = found_.X_BG.linear().col(2),
+                   side = found_.X_BG.linear().col(0);
+    double below = 0.01, width = 0.02;
+    for (double share = 0.3; share <= 1; share += 0.1)
+      for (const Vector3d& tip : tips(closed_by(share))) below = std::max(below, out.dot(tip - p));
+    for (const Vector3d& on_palm : palm_points())
+      width = std::max(width, std::abs(side.dot(on_palm - p)));
+    found_.reach.clearance = below + 0.01;
+    found_.reach.half_width = std::min(width, 0.15) + 0.01;
+  }
+
   const Robot& robot_;
   const HandModel& hand_;
   VectorXd rest_;
-  Vector3d p_BP_;  // middle of the palm
+  int palm_ = 0;            // link
+  std::vector<int> wrist_;  // joints before it
+  Vector3d p_BP_;           // middle of the palm
   std::vector<Finger> fingers_;
   Anatomy found_;
 };

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <map>
 #include <string>
 #include <vector>
 
@@ -15,6 +16,7 @@ struct Anatomy {
     std::string joint;
     int closing = 0;
     double open = 0, fist = 0;
+    bool wrist = false;  // moves the whole palm
   };
   struct Fingertip {
     std::string name, link;
@@ -24,6 +26,8 @@ struct Anatomy {
   std::vector<Fingertip> fingertips;
   Pose X_BG = Pose::Identity();
   model::Reach reach;
+  std::map<std::string, Eigen::VectorXd> preshapes;  // besides «open»
+  std::vector<std::string> thumb_joints;  // of the finger that stands against two or more others
   bool opposed = true;  // false: no fingers that move towards each other were found
 };
 

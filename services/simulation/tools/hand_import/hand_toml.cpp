@@ -14,6 +14,28 @@ std::string row(const Numbers& numbers) {
   return "[" + text + "]";
 }
 
+/// A thumb that is as strong as a finger is pushed back by several, and nothing comes to rest.
+std::string thumb_torques(const Anatomy& anatomy, const Robot& robot) {
+  constexpr double stronger = 2.5;
+  std::string text;
+  for (const std::string& joint : anatomy.thumb_joints)
+    text += fmt::format("{} = {:.4g}\n", toml_text(joint),
+                        stronger * robot.find_joint(joint)->limit->effort);
+  if (text.empty()) return text;
+  return fmt::format(
+      "# The thumb stands against several fingers: {} times the effort of one.\n[torque]\n{}\n",
+      stronger, text);
+}
+
+/// A wrist is held where it rests: the arm moves the palm.
+std::string wrist_limits(const Anatomy::Dof& dof, const Robot& robot) {
+  const JointLimit& limit = *robot.find_joint(dof.joint)->limit;
+  const double slack = 0.01 * (limit.upper - limit.lower);
+  return fmt::format(
+      "# a wrist: held still, since the arm moves the palm\nlower = {:.9g}\nupper = {:.9g}\n",
+      std::max(limit.lower, dof.open - slack), std::min(limit.upper, dof.open + slack));
+}
+
 }  // namespace
 
 std::string toml_text(const std::string& text) {
@@ -44,6 +66,7 @@ std::string write_toml(const Anatomy& anatomy, const std::string& name, const Ro
   for (const Anatomy::Dof& dof : anatomy.dofs) {
     text += fmt::format("\n[[dof]]\nname = {0}\njoint = {0}\nclosing = {1}\n", toml_text(dof.joint),
                         dof.closing);
+    if (dof.wrist) text += wrist_limits(dof, robot);
     open.push_back(dof.open);
     fist.push_back(dof.fist);
   }
@@ -51,9 +74,11 @@ std::string write_toml(const Anatomy& anatomy, const std::string& name, const Ro
     text += fmt::format("\n[[fingertip]]\nname = {}\nlink = {}\nposition = {}\n",
                         toml_text(tip.name), toml_text(tip.link), row(tip.p_LT));
   text += fmt::format(
-      "\n# Torque limits are those of the URDF; [torque] overrides them.\n[materials]\n"
+      "\n# Torque limits are those of the URDF; [torque] overrides them.\n{}[materials]\n"
       "default = \"rubber\"\n{} = \"plastic\"\n\n[postures]\nopen = {}\nfist = {}\n",
-      toml_text(robot.links[0].name), row(open), row(fist));
+      thumb_torques(anatomy, robot), toml_text(robot.links[0].name), row(open), row(fist));
+  for (const auto& [posture, dof] : anatomy.preshapes)
+    text += fmt::format("{} = {}\n", posture, row(dof));
   return text;
 }
 

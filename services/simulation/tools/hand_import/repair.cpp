@@ -21,6 +21,11 @@ constexpr double min_mass = 0.005;  // kg
 constexpr double turning_effort = 1, turning_velocity = 2;     // N m, rad/s
 constexpr double sliding_effort = 20, sliding_velocity = 0.1;  // N, m/s
 constexpr double bone_radius = 0.008;                          // m
+// What motors of hands can do, at the fingertip or of a slide: many files give 0.01 or 1000 N m.
+constexpr double weakest_tip = 4, strongest_tip = 10;       // N
+constexpr double weakest_slide = 10, strongest_slide = 80;  // N
+constexpr double low_effort = 0.15, high_effort = 0.4;      // N m, that any joint may have
+constexpr double slowest_turn = 1, slowest_slide = 0.04;    // rad/s, m/s
 
 Matrix3d point_inertia(double mass, const Vector3d& r) {
   return mass * (r.squaredNorm() * Matrix3d::Identity() - r * r.transpose());
@@ -92,6 +97,9 @@ class Mender {
       give_mass(link);
     }
     for (RobotJoint& joint : mended_.robot.joints) give_limits(joint);
+    const Tree tree(mended_.robot);
+    const auto X_BL = tree.poses(tree.roots()[0], rest_values(mended_.robot));
+    for (RobotJoint& joint : mended_.robot.joints) bound_effort(joint, tree, X_BL);
     return std::move(mended_);
   }
 
@@ -238,6 +246,41 @@ class Mender {
       limit.velocity = joint.slides() ? sliding_velocity : turning_velocity;
       tell(fmt::format("joint {}: velocity of {} {} assumed", joint.name, limit.velocity,
                        joint.slides() ? "m/s" : "rad/s"));
+    }
+  }
+
+  /// From a joint to the farthest shape that it moves, at rest, m.
+  double lever(const RobotJoint& joint, const Tree& tree,
+               const std::map<std::string, Pose>& X_BL) const {
+    double longest = 0;
+    const Vector3d p_BJ = X_BL.at(joint.child).translation();
+    std::vector<std::string> links{joint.child};
+    for (const std::size_t i : tree.below(joint.child))
+      links.push_back(mended_.robot.joints[i].child);
+    for (const std::string& link : links)
+      for (const Solid& solid : mended_.robot.find_link(link)->collision)
+        longest = std::max(longest, (X_BL.at(link) * solid.X_LS.translation() - p_BJ).norm() +
+                                        0.8 * model::half_extents(solid.shape).maxCoeff());
+    return longest;
+  }
+
+  /// Efforts and velocities that no motor of a hand has crush or never close; bounded, and told.
+  void bound_effort(RobotJoint& joint, const Tree& tree, const std::map<std::string, Pose>& X_BL) {
+    JointLimit& limit = *joint.limit;
+    const double arm = lever(joint, tree, X_BL);
+    const double least = joint.slides() ? weakest_slide : std::max(low_effort, weakest_tip * arm);
+    const double most =
+        joint.slides() ? strongest_slide : std::max(high_effort, strongest_tip * arm);
+    const double bounded = std::clamp(limit.effort, least, most);
+    if (bounded != limit.effort)
+      tell(fmt::format("joint {}: effort of {:.3g} taken as {:.3g} {}, as of a hand's motor",
+                       joint.name, limit.effort, bounded, joint.slides() ? "N" : "N m"));
+    limit.effort = bounded;
+    const double slowest = joint.slides() ? slowest_slide : slowest_turn;
+    if (limit.velocity < slowest) {
+      tell(fmt::format("joint {}: velocity of {:.3g} taken as {:.3g} {}", joint.name,
+                       limit.velocity, slowest, joint.slides() ? "m/s" : "rad/s"));
+      limit.velocity = slowest;
     }
   }
 

@@ -72,6 +72,23 @@ Expected<grasping::Plan> plan_with_progress(const model::HandModel& hand, const 
   });
 }
 
+Expected<grasping::Plan> plan_in_batches(const model::HandModel& hand, const Body& object,
+                                         int candidates, unsigned threads) {
+  constexpr int batch = 12;
+  grasping::PlanOptions options;
+  options.tested = options.max_tested = 3;
+  options.off_posture = 0.35;
+  Expected<grasping::Plan> best = fail("there are no candidates", object.name);
+  for (int left = candidates; left > 0; left -= batch, ++options.seed) {
+    options.candidates = std::min(left, batch);
+    auto next = plan_with_progress(hand, object, options, threads);
+    const bool better = !best || (next && (next->held() || next->closed > best->closed));
+    if (better) best = std::move(next);
+    if (!best || best->held()) break;
+  }
+  return best;
+}
+
 std::string describe(const grasping::HoldResult& hold) {
   if (hold.held) return "lift, shake, turn";
   std::string survived;

@@ -23,6 +23,12 @@ Expected<grasping::Plan> plan_with_progress(const model::HandModel& hand,
                                             const grasping::Body& object,
                                             const grasping::PlanOptions& options, unsigned threads);
 
+/// Plans with a few candidates at a time, up to so many, until a grasp has held: most hands hold
+/// most things within the first. For hands whose postures were searched, so that most candidates
+/// keep to them. The last plan, or the one in which most candidates closed.
+Expected<grasping::Plan> plan_in_batches(const model::HandModel& hand, const grasping::Body& object,
+                                         int candidates, unsigned threads);
+
 /// «lift, shake, turn» as far as it was survived, or «no: » and why.
 std::string describe(const grasping::HoldResult& hold);
 

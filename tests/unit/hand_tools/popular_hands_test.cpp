@@ -1,0 +1,96 @@
+// Hands in the manner of today's popular ones: imported from their bare URDF they must hold things.
+// With PREHEND_LONG all nine objects are tried, with as many candidates as `prehend hand add` does.
+#include "tests/unit/hand_tools/popular_hands.hpp"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <fstream>
+
+#include "common/base/workers.hpp"
+#include "common/grasping/candidates.hpp"
+#include "services/simulation/tools/hand_import/make_hand.hpp"
+#include "services/simulation/tools/planning/planning_task.hpp"
+
+namespace {
+
+using namespace prehend;
+using Eigen::Vector3d;
+
+class Popular : public testing::TestWithParam<popular_hands::PopularHand> {
+ protected:
+  void SetUp() override {
+    if (const char* folder = std::getenv("PREHEND_SAVE_URDF"))
+      std::ofstream(fmt::format("{}/{}.urdf", folder, GetParam().name)) << GetParam().urdf;
+    const auto robot = simulation::read_robot(GetParam().urdf);
+    ASSERT_TRUE(robot) << robot.error().message();
+    auto hand = simulation::make_hand(*robot, GetParam().name, simulation::mesh_files("."));
+    ASSERT_TRUE(hand) << hand.error().message();
+    made.emplace(std::move(*hand));
+  }
+
+  std::optional<simulation::MadeHand> made;
+};
+
+/// The greatest distance of two fingertips of the open hand.
+double span(const model::HandModel& hand) {
+  double widest = 0;
+  const auto tips = hand.fingertip_positions(hand.postures().at("open"));
+  for (const Vector3d& a : tips)
+    for (const Vector3d& b : tips) widest = std::max(widest, (a - b).norm());
+  return widest;
+}
+
+TEST_P(Popular, IsUnderstood) {
+  EXPECT_TRUE(simulation::is_usable(made->findings));
+  EXPECT_TRUE(made->opposed);
+  EXPECT_GT(made->model.reach().opening, 0.06);  // at least a mug
+  EXPECT_LT(made->model.reach().opening, span(made->model));
+  if (GetParam().name == "slides") {
+    EXPECT_NEAR(made->model.reach().opening, 0.08, 0.012);
+  }
+  // In front of the palm, not in it.
+  const auto& hand = made->model;
+  const auto X_BL = hand.link_poses(hand.joint_angles(hand.postures().at("open")));
+  for (std::size_t i = 0; i < hand.links().size(); ++i)
+    for (const model::CollisionShape& part : hand.links()[i].collision)
+      EXPECT_GT(model::signed_distance(part.shape,
+                                       (X_BL[i] * part.X_LS).inverse() * hand.X_BG().translation()),
+                0.005)
+          << hand.links()[i].name;
+}
+
+TEST_P(Popular, Holds) {
+  const auto bodies = simulation::catalogue_bodies();
+  ASSERT_TRUE(bodies) << bodies.error().message();
+  const bool all = std::getenv("PREHEND_LONG") != nullptr;
+  int held = 0, admitted = 0;
+  for (const grasping::Body& body : *bodies) {
+    if (!all && (held > 0 || admitted > 2)) break;
+    if (grasping::narrowest_width(body.shape) > made->model.reach().opening) continue;
+    ++admitted;
+    const auto plan = simulation::plan_in_batches(made->model, body, all ? 60 : 24, 1);
+    ASSERT_TRUE(plan) << plan.error().message();
+    held += plan->held() ? 1 : 0;
+    if (all)
+      fmt::print("{} {}: {}\n", GetParam().name, body.name, plan->held() ? "held" : plan->reason);
+  }
+  EXPECT_GE(held, all ? std::min(7, admitted) : 1) << "of " << admitted;
+}
+
+std::vector<popular_hands::PopularHand> hands() {
+  using namespace popular_hands;
+  return {{"opposed_thumb", sixteen_joints_with_opposed_thumb()},
+          {"side_joints", sixteen_joints_with_side_joints()},
+          {"wrist", five_fingers_with_wrist()},
+          {"six_motors", six_motors(false)},
+          {"six_motors_left", six_motors(true)},
+          {"adaptive", three_adaptive_fingers()},
+          {"slides", two_sliding_fingers()}};
+}
+
+INSTANTIATE_TEST_SUITE_P(Hands, Popular, testing::ValuesIn(hands()),
+                         [](const auto& tested) { return tested.param.name; });
+
+}  // namespace
