@@ -70,67 +70,78 @@ class Stranger {
   sockaddr_in to_{};
 };
 
-/// All that could end something: departures, endings of endpoints, samples given up, announcements
-/// that change things, each once and with numbers above those of the real ones.
-std::vector<std::pair<std::string, Message>> attacks(const GuidPrefix& of) {
-  std::vector<std::pair<std::string, Message>> all;
+using Attacks = std::vector<std::pair<std::string, Message>>;
+constexpr std::uint32_t high = 1'000'000;  // above the numbers of the real ones
+
+/// Departures, and announcements that change things.
+void say_departures(Attacks& all, const GuidPrefix& of, const Message& in) {
+  const Bytes ends = in.list({{0x0070, test::guid(of)}, {0x0071, {0, 0, 0, 3}}});
+  Bytes key = in.list_head();
+  for (const std::uint8_t byte : in.list({{0x0050, test::guid(of)}})) key.push_back(byte);
+  all.emplace_back("departure",
+                   Message(in).data({.sequence = high, .parameters = ends, .content_flag = 0}));
+  all.emplace_back(
+      "departure with key",
+      Message(in).data(
+          {.sequence = high + 1, .parameters = ends, .content = key, .content_flag = 8}));
+  all.emplace_back("departure with data",
+                   Message(in).data({.sequence = high + 2, .parameters = ends, .content = key}));
+  all.emplace_back("departure with a bare key",
+                   Message(in).data({.sequence = high + 3,
+                                     .parameters = in.list({{0x0071, {0, 0, 0, 3}}}),
+                                     .content = test::guid(of),
+                                     .content_flag = 8}));
+  all.emplace_back("departure in a fragment", Message(in).data({.sequence = high + 4,
+                                                                .parameters = ends,
+                                                                .content = key,
+                                                                .content_flag = 8,
+                                                                .fragment = true}));
+  for (const Duration lease : {Duration::zero(), Duration(1'000'000)}) {
+    Bytes content = in.list_head();
+    for (const std::uint8_t byte : in.list({{0x0015, {2, 3, 0, 0}},
+                                            {0x0016, {1, 15, 0, 0}},
+                                            {0x0050, test::guid(of)},
+                                            {0x0031, in.locator({127, 9, 9, 9})},
+                                            {0x0032, in.locator({127, 9, 9, 9})},
+                                            {0x0058, {0x3f, 0x0c, 0, 0}},
+                                            {0x0002, in.lease(lease)}}))
+      content.push_back(byte);
+    all.emplace_back("lease", Message(in).data({.sequence = high + 5, .content = content}));
+  }
+}
+
+/// Endings of endpoints, and samples given up.
+void say_endings(Attacks& all, const GuidPrefix& of, const Message& in) {
+  for (const std::uint32_t writer : {0x000003c2u, 0x000004c2u, 0xff0003c2u, 0xff0004c2u})
+    for (std::uint32_t n = 1; n < 4; ++n)
+      for (std::uint32_t entity = 1; entity < 5; ++entity)
+        for (const std::uint32_t kind : {2u, 3u, 4u, 7u})
+          all.emplace_back(
+              "end of an endpoint",
+              Message(in).data({.writer = writer,
+                                .sequence = n,
+                                .parameters = in.list({{0x0070, test::guid(of, entity << 8 | kind)},
+                                                       {0x0071, {0, 0, 0, 3}}}),
+                                .content_flag = 0}));
+  for (std::uint32_t entity = 1; entity < 5; ++entity)
+    for (const std::uint32_t kind : {2u, 3u}) {
+      all.emplace_back("gap", Message(in).samples(8, entity << 8 | kind, 1, high));
+      all.emplace_back("heartbeat", Message(in).samples(7, entity << 8 | kind, high, high + 9));
+    }
+  for (const std::uint32_t writer :
+       {0x000100c2u, 0xff0003c2u, 0xff0004c2u, 0xff0200c2u, 0xff0202c3u, 0x000201c3u}) {
+    all.emplace_back("gap", Message(in).samples(8, writer, 1, high));
+    all.emplace_back("heartbeat", Message(in).samples(7, writer, high, high + 9));
+  }
+}
+
+/// All that could end something, in both orders of bytes.
+Attacks attacks(const GuidPrefix& of) {
+  Attacks all;
   for (const bool little_endian : {true, false}) {
     const Message in(of, little_endian);
-    const Bytes ends = in.list({{0x0070, test::guid(of)}, {0x0071, {0, 0, 0, 3}}});
-    Bytes key = in.list_head();
-    for (const std::uint8_t byte : in.list({{0x0050, test::guid(of)}})) key.push_back(byte);
-    constexpr std::uint32_t high = 1'000'000;
-    all.emplace_back("departure",
-                     Message(in).data({.sequence = high, .parameters = ends, .content_flag = 0}));
-    all.emplace_back(
-        "departure with key",
-        Message(in).data(
-            {.sequence = high + 1, .parameters = ends, .content = key, .content_flag = 8}));
-    all.emplace_back("departure with data",
-                     Message(in).data({.sequence = high + 2, .parameters = ends, .content = key}));
-    all.emplace_back("departure with a bare key",
-                     Message(in).data({.sequence = high + 3,
-                                       .parameters = in.list({{0x0071, {0, 0, 0, 3}}}),
-                                       .content = test::guid(of),
-                                       .content_flag = 8}));
-    all.emplace_back("departure in a fragment", Message(in).data({.sequence = high + 4,
-                                                                  .parameters = ends,
-                                                                  .content = key,
-                                                                  .content_flag = 8,
-                                                                  .fragment = true}));
-    for (const Duration lease : {Duration::zero(), Duration(1'000'000)}) {
-      Bytes content = in.list_head();
-      for (const std::uint8_t byte : in.list({{0x0015, {2, 3, 0, 0}},
-                                              {0x0016, {1, 15, 0, 0}},
-                                              {0x0050, test::guid(of)},
-                                              {0x0031, in.locator({127, 9, 9, 9})},
-                                              {0x0032, in.locator({127, 9, 9, 9})},
-                                              {0x0058, {0x3f, 0x0c, 0, 0}},
-                                              {0x0002, in.lease(lease)}}))
-        content.push_back(byte);
-      all.emplace_back("lease", Message(in).data({.sequence = high + 5, .content = content}));
-    }
-    for (const std::uint32_t writer : {0x000003c2u, 0x000004c2u, 0xff0003c2u, 0xff0004c2u})
-      for (std::uint32_t n = 1; n < 4; ++n)
-        for (std::uint32_t entity = 1; entity < 5; ++entity)
-          for (const std::uint32_t kind : {2u, 3u, 4u, 7u})
-            all.emplace_back("end of an endpoint",
-                             Message(in).data({.writer = writer,
-                                               .sequence = n,
-                                               .parameters = in.list(
-                                                   {{0x0070, test::guid(of, entity << 8 | kind)},
-                                                    {0x0071, {0, 0, 0, 3}}}),
-                                               .content_flag = 0}));
-    for (std::uint32_t entity = 1; entity < 5; ++entity)
-      for (const std::uint32_t kind : {2u, 3u}) {
-        all.emplace_back("gap", Message(in).samples(8, entity << 8 | kind, 1, high));
-        all.emplace_back("heartbeat", Message(in).samples(7, entity << 8 | kind, high, high + 9));
-      }
-    for (const std::uint32_t writer :
-         {0x000100c2u, 0xff0003c2u, 0xff0004c2u, 0xff0200c2u, 0xff0202c3u, 0x000201c3u}) {
-      all.emplace_back("gap", Message(in).samples(8, writer, 1, high));
-      all.emplace_back("heartbeat", Message(in).samples(7, writer, high, high + 9));
-    }
+    say_departures(all, of, in);
+    say_endings(all, of, in);
   }
   return all;
 }

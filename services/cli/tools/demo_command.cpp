@@ -255,8 +255,8 @@ class Demonstration {
   static std::string some_address() {
     std::random_device random;
     while (true) {
-      const int port = 7400 + 250 * static_cast<int>(50 + random() % 40) + 200 +
-                       static_cast<int>(random() % 50);
+      const int port =
+          7400 + 250 * static_cast<int>(50 + random() % 40) + 200 + static_cast<int>(random() % 50);
       if (is_free(port)) return fmt::format("127.0.0.1:{}", port);
     }
   }

@@ -17,12 +17,12 @@ using Eigen::VectorXd;
 constexpr int samples = 1500, kept = 8, refinements = 60, shapings = 250;
 constexpr std::array radii{0.015, 0.022, 0.033};  // m, of the rods that are tried
 constexpr double good = 0.4;                      // quality of a grip that counts
-constexpr double better = 0.8;       // by which a found place must surpass the known axes
-constexpr double aside = 0.25;       // what a DoF costs that leaves its rest by its whole range
-constexpr double clear = 0.002;      // m, between the open hand and a rod
-constexpr double way_in = 0.16;      // m, along which the hand must be able to come
-constexpr double most_aside = 0.06;  // m, that thick rods may lie further out
-constexpr double widest = 0.25;      // m
+constexpr double better = 0.8;      // by which a found place must surpass the known axes
+constexpr double aside = 0.25;      // what a DoF costs that leaves its rest by its whole range
+constexpr double clear = 0.002;     // m, between the open hand and a rod
+constexpr double way_in = 0.16;     // m, along which the hand must be able to come
+constexpr double max_aside = 0.06;  // m, that thick rods may lie further out
+constexpr double widest = 0.25;     // m
 
 /// A posture and place, and what they are worth.
 struct Trial {
@@ -82,7 +82,7 @@ class Search {
   /// The rod about the middle, or further out where it does not fit; none if it fits nowhere.
   std::optional<Rod> placed(const Trial& trial, double radius, double half_length) const {
     Rod rod{trial.X_BG(), radius, half_length};
-    for (double out = 0; out <= most_aside; out += 0.006) {
+    for (double out = 0; out <= max_aside; out += 0.006) {
       rod.X_BR.translation() = trial.middle + out * trial.out;
       if (world_.room(trial.dof, rod) > clear) return rod;
     }
