@@ -31,7 +31,10 @@ bool make(const std::string& urdf) {
   for (const simulation::UrdfFinding& finding : simulation::check(*robot, block))
     fuzz::require(!finding.what.empty() && !finding.repair.empty() && !finding.element.empty(),
                   "a finding that does not say what, where and the mend");
-  const auto hand = simulation::make_hand(*robot, "fuzzed", block);
+  // The whole search takes a minute under sanitizers.
+  const simulation::SearchEffort effort{
+      .samples = 6, .refinements = 1, .shapings = 2, .step = 0.02};
+  const auto hand = simulation::make_hand(*robot, "fuzzed", block, effort);
   if (!hand) return false;
   fuzz::require_sound(hand->model);
   std::size_t made = 0;

@@ -71,8 +71,8 @@ struct Finger {
 
 class Finder {
  public:
-  Finder(const Robot& robot, const HandModel& hand)
-      : robot_(robot), hand_(hand), rest_(hand.postures().at("open")) {
+  Finder(const Robot& robot, const HandModel& hand, const SearchEffort& effort)
+      : robot_(robot), hand_(hand), effort_(effort), rest_(hand.postures().at("open")) {
     find_palm();
   }
 
@@ -418,7 +418,7 @@ class Finder {
       known.p_LT.push_back(finger.p_LT);
     }
     const ContactWorld world(hand_, closing, known.last);
-    const Opposition best = find_opposition(world, known, found_.X_BG);
+    const Opposition best = find_opposition(world, known, found_.X_BG, effort_);
     if (best.opening < 0.01) return;
     found_.X_BG = best.X_BG;
     found_.reach.opening = best.opening;
@@ -447,6 +447,7 @@ class Finder {
 
   const Robot& robot_;
   const HandModel& hand_;
+  const SearchEffort effort_;
   VectorXd rest_;
   int palm_ = 0;            // link
   std::vector<int> wrist_;  // joints before it
@@ -457,7 +458,7 @@ class Finder {
 
 }  // namespace
 
-Expected<Anatomy> find_anatomy(const Robot& robot) {
+Expected<Anatomy> find_anatomy(const Robot& robot, const SearchEffort& effort) {
   // DoFs in the order of the tree, as HandModel has its joints.
   std::vector<std::string> leaders;
   for (const RobotJoint& joint : robot.joints)
@@ -465,7 +466,7 @@ Expected<Anatomy> find_anatomy(const Robot& robot) {
   const auto hand =
       HandModel::parse(write_robot(robot, "provisional"), provisional_toml(robot, leaders));
   if (!hand) return tl::unexpected(hand.error());
-  return Finder(robot, *hand).run();
+  return Finder(robot, *hand, effort).run();
 }
 
 }  // namespace prehend::simulation

@@ -6,6 +6,7 @@
 
 #include "common/base/error.hpp"
 #include "common/model/hand_model.hpp"
+#include "services/simulation/tools/hand_import/opposition.hpp"
 #include "services/simulation/tools/hand_import/robot.hpp"
 
 namespace prehend::simulation {
@@ -36,6 +37,6 @@ struct Anatomy {
 /// closes if its joints turn about about the same axis as the last joint of a finger (else it is
 /// abduction), towards the side on which the tips come nearer to the palm, or slides tips towards
 /// each other. robot: as mend() made it.
-Expected<Anatomy> find_anatomy(const Robot& robot);
+Expected<Anatomy> find_anatomy(const Robot& robot, const SearchEffort& effort = {});
 
 }  // namespace prehend::simulation

@@ -7,8 +7,8 @@
 
 namespace prehend::simulation {
 
-Expected<MadeHand> make_hand(const Robot& robot, const std::string& name,
-                             const MeshReader& meshes) {
+Expected<MadeHand> make_hand(const Robot& robot, const std::string& name, const MeshReader& meshes,
+                             const SearchEffort& effort) {
   auto findings = check(robot, meshes);
   if (!is_usable(findings)) {
     const UrdfFinding& first = findings.front();
@@ -21,7 +21,7 @@ Expected<MadeHand> make_hand(const Robot& robot, const std::string& name,
   std::erase_if(findings, [](const UrdfFinding& f) { return f.code == "self-collision"; });
   for (UrdfFinding& finding : check(mended->robot, meshes))
     if (finding.code == "self-collision") findings.push_back(std::move(finding));
-  const auto anatomy = find_anatomy(mended->robot);
+  const auto anatomy = find_anatomy(mended->robot, effort);
   if (!anatomy) return tl::unexpected(anatomy.error());
   std::string urdf = write_robot(mended->robot, "Made by `prehend hand add`.");
   std::string toml = write_toml(*anatomy, name, mended->robot);

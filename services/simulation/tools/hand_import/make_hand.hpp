@@ -5,6 +5,7 @@
 
 #include "common/model/hand_model.hpp"
 #include "services/simulation/tools/hand_import/check.hpp"
+#include "services/simulation/tools/hand_import/opposition.hpp"
 #include "services/simulation/tools/hand_import/repair.hpp"
 
 namespace prehend::simulation {
@@ -19,6 +20,7 @@ struct MadeHand {
 };
 
 /// Makes a hand of a checked robot. Fails on robots with errors.
-Expected<MadeHand> make_hand(const Robot& robot, const std::string& name, const MeshReader& meshes);
+Expected<MadeHand> make_hand(const Robot& robot, const std::string& name, const MeshReader& meshes,
+                             const SearchEffort& effort = {});
 
 }  // namespace prehend::simulation

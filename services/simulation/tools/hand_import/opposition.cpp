@@ -14,7 +14,7 @@ namespace {
 using Eigen::Vector3d;
 using Eigen::VectorXd;
 
-constexpr int samples = 1500, kept = 8, refinements = 60, shapings = 250;
+constexpr int kept = 8;                           // of the samples, to be refined
 constexpr std::array radii{0.015, 0.022, 0.033};  // m, of the rods that are tried
 constexpr double good = 0.4;                      // quality of a grip that counts
 constexpr double better = 0.8;      // by which a found place must surpass the known axes
@@ -37,8 +37,9 @@ struct Trial {
 
 class Search {
  public:
-  Search(const ContactWorld& world, const Fingers& fingers)
+  Search(const ContactWorld& world, const Fingers& fingers, const SearchEffort& effort)
       : world_(world),
+        effort_(effort),
         open_(fingers.open),
         fist_(fingers.fist),
         fixed_(fingers.fixed),
@@ -185,8 +186,8 @@ class Search {
   /// The known axes, with other postures and places.
   Trial about(const Trial& known) {
     Trial best = known;
-    for (int i = 0; i < shapings; ++i) {
-      Trial next = varied(best, i < shapings / 2 ? 0.02 : 0.006, 0);
+    for (int i = 0; i < effort_.shapings; ++i) {
+      Trial next = varied(best, i < effort_.shapings / 2 ? 0.02 : 0.006, 0);
       if (next.worth > best.worth) best = std::move(next);
     }
     return best;
@@ -213,7 +214,7 @@ class Search {
 
   Trial searched() {
     std::vector<Trial> best;
-    for (int i = 0; i < samples; ++i) {
+    for (int i = 0; i < effort_.samples; ++i) {
       const auto trial = sampled();
       if (trial && trial->worth > 0) best.push_back(*trial);
     }
@@ -222,7 +223,7 @@ class Search {
     if (best.size() > kept) best.resize(kept);
     Trial winner;
     for (Trial& trial : best) {
-      for (int i = 0; i < refinements; ++i) {
+      for (int i = 0; i < effort_.refinements; ++i) {
         Trial next = varied(trial, 0.006, 0.12);
         if (next.worth > trial.worth) trial = std::move(next);
       }
@@ -275,7 +276,7 @@ class Search {
 
   double opening(const Trial& trial) const {
     double found = 0;
-    for (double radius = 0.005; radius < 0.5 * widest; radius += 0.001) {
+    for (double radius = 0.005; radius < 0.5 * widest; radius += effort_.step) {
       const auto rod = placed(trial, radius, 0.01);
       if (rod && grip_quality(world_.close(trial.dof, *rod)) > good) found = 2 * radius;
     }
@@ -286,7 +287,7 @@ class Search {
   void add_preshape(Opposition& result, const Trial& from, const std::string& name, Rod rod,
                     std::size_t wanted) {
     Trial best;
-    for (int i = 0; i < shapings; ++i) {
+    for (int i = 0; i < effort_.shapings; ++i) {
       Trial trial = from;
       for (std::size_t k = 0; k < fixed_.size(); ++k) {
         const model::HandDof& dof = world_.hand().dofs()[k];
@@ -318,6 +319,7 @@ class Search {
   }
 
   const ContactWorld& world_;
+  const SearchEffort effort_;
   const VectorXd &open_, &fist_;
   const std::vector<bool>& fixed_;
   const std::vector<Vector3d>& p_LT_;
@@ -328,8 +330,8 @@ class Search {
 }  // namespace
 
 Opposition find_opposition(const ContactWorld& world, const Fingers& fingers,
-                           const Pose& X_BG_known) {
-  return Search(world, fingers).run(X_BG_known);
+                           const Pose& X_BG_known, const SearchEffort& effort) {
+  return Search(world, fingers, effort).run(X_BG_known);
 }
 
 }  // namespace prehend::simulation

@@ -29,11 +29,19 @@ struct Fingers {
   std::vector<bool> fixed;            // of each DoF: moves the whole palm, as a wrist
 };
 
+/// How long is searched: the defaults find what more would not improve on the hands under test.
+struct SearchEffort {
+  int samples = 1500;    // random postures
+  int refinements = 60;  // steps of each of the best
+  int shapings = 250;    // postures tried for each preshape
+  double step = 0.001;   // m, from one radius to the next when the opening is measured
+};
+
 /// Searches the postures of what does not close (opposition of the thumb, abduction, spread) and
 /// the places between fingers that can meet: rods are gripped best there, and the hand can come
 /// around them along z. X_BG_known is kept, with the posture `open`, unless something clearly
 /// better is found. The same answer each time.
 Opposition find_opposition(const ContactWorld& world, const Fingers& fingers,
-                           const Pose& X_BG_known);
+                           const Pose& X_BG_known, const SearchEffort& effort = {});
 
 }  // namespace prehend::simulation
