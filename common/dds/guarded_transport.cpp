@@ -3,10 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <set>
 
 #include "common/base/clock.hpp"
 #include "common/dds/pass_through_transport.hpp"
+#include "common/dds/registry.hpp"
 #include "common/dds/rtps_parts.hpp"
 
 namespace prehend::dds {
@@ -19,15 +19,6 @@ struct Count {
 };
 Count& count() {
   static auto* instance = new Count;  // outlives the threads that receive
-  return *instance;
-}
-
-struct Guards {
-  std::mutex mutex;
-  std::set<const PacketGuard*> all;
-};
-Guards& guards() {
-  static auto* instance = new Guards;  // outlives the threads that look
   return *instance;
 }
 
@@ -77,13 +68,11 @@ Ipv4 ip_of(const rtps::Locator_t& locator) {
 
 PacketGuard::PacketGuard(bool serves, bool secured, Hear hear)
     : book_(serves, secured), members_(secured), hear_(std::move(hear)) {
-  const std::scoped_lock lock(guards().mutex);
-  guards().all.insert(this);
+  Registry<PacketGuard>::of_process().add(*this);
 }
 
 PacketGuard::~PacketGuard() {
-  const std::scoped_lock lock(guards().mutex);
-  guards().all.erase(this);
+  Registry<PacketGuard>::of_process().remove(*this);
 }
 
 PacketVerdict PacketGuard::judge(std::span<const std::uint8_t> message, const Ipv4& source,
@@ -147,9 +136,10 @@ bool PacketGuard::is_stranded() const {
 }
 
 bool anybody_stranded() {
-  const std::scoped_lock lock(guards().mutex);
-  return std::any_of(guards().all.begin(), guards().all.end(),
-                     [](const PacketGuard* guard) { return guard->is_stranded(); });
+  bool any = false;
+  Registry<PacketGuard>::of_process().for_each(
+      [&](const PacketGuard& guard) { any |= guard.is_stranded(); });
+  return any;
 }
 
 void PacketGuard::add_own(const GuidPrefix& own) {

@@ -1,19 +1,11 @@
 #include "common/dds/serialized_transport.hpp"
 
 #include "common/dds/pass_through_transport.hpp"
+#include "common/dds/registry.hpp"
 
 namespace prehend::dds {
 
 namespace {
-
-struct Serializers {
-  std::mutex mutex;
-  std::set<const SerializedTransport*> all;
-};
-Serializers& serializers() {
-  static auto* instance = new Serializers;  // outlives the threads that receive
-  return *instance;
-}
 
 /// Ports of samples are odd, those of discovery even (RTPS 2.2, 9.6.1.1).
 bool carries_samples(const rtps::Locator_t& local) {
@@ -52,13 +44,11 @@ struct SerializingDescriptor final : transport::ChainingTransportDescriptor {
 }  // namespace
 
 SerializedTransport::SerializedTransport() {
-  const std::scoped_lock lock(serializers().mutex);
-  serializers().all.insert(this);
+  Registry<SerializedTransport>::of_process().add(*this);
 }
 
 SerializedTransport::~SerializedTransport() {
-  const std::scoped_lock lock(serializers().mutex);
-  serializers().all.erase(this);
+  Registry<SerializedTransport>::of_process().remove(*this);
 }
 
 void SerializedTransport::enter() {
@@ -78,10 +68,10 @@ std::shared_ptr<transport::TransportDescriptorInterface> serialized(
 }
 
 std::set<std::uint64_t> packets_in_process() {
-  const std::scoped_lock lock(serializers().mutex);
   std::set<std::uint64_t> all;
-  for (const SerializedTransport* serializer : serializers().all)
-    if (const std::uint64_t packet = serializer->packet_; packet != 0) all.insert(packet);
+  Registry<SerializedTransport>::of_process().for_each([&](const SerializedTransport& serializer) {
+    if (const std::uint64_t packet = serializer.packet_; packet != 0) all.insert(packet);
+  });
   return all;
 }
 

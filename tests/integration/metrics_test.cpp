@@ -1,18 +1,15 @@
 // A lab of real services, read as Prometheus reads it.
-#include <arpa/inet.h>
-#include <netinet/in.h>
-#include <sys/socket.h>
-#include <unistd.h>
-
 #include <csignal>
 #include <fstream>
 
 #include "tests/integration/rig.hpp"
+#include "tests/support/metrics/client.hpp"
 #include "tests/support/metrics/page.hpp"
 
 namespace prehend::integration {
 namespace {
 
+using tests::Client;
 using tests::MetricsPage;
 
 class Metrics : public Rig {
@@ -39,22 +36,9 @@ class Metrics : public Rig {
 
   /// All that the exporter answers.
   std::string ask(const std::string& request) const {
-    const int socket = ::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
-    sockaddr_in address{};
-    address.sin_family = AF_INET;
-    address.sin_port = htons(static_cast<std::uint16_t>(port_));
-    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-    const timeval limit{20, 0};
-    ::setsockopt(socket, SOL_SOCKET, SO_RCVTIMEO, &limit, sizeof limit);
-    std::string all;
-    if (::connect(socket, reinterpret_cast<sockaddr*>(&address), sizeof address) == 0 &&
-        ::send(socket, request.data(), request.size(), MSG_NOSIGNAL) > 0) {
-      char bytes[4096];
-      for (ssize_t size; (size = ::recv(socket, bytes, sizeof bytes, 0)) > 0;)
-        all.append(bytes, static_cast<std::size_t>(size));
-    }
-    ::close(socket);
-    return all;
+    const Client client(port_);
+    client.say(request);
+    return client.hear();
   }
 
   MetricsPage page() const {

@@ -1,8 +1,6 @@
 #include "services/cli/tools/demo_command.hpp"
 
 #include <fmt/format.h>
-#include <netinet/in.h>
-#include <sys/socket.h>
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
@@ -10,7 +8,6 @@
 #include <chrono>
 #include <csignal>
 #include <iostream>
-#include <random>
 #include <thread>
 
 #include "common/base/log.hpp"
@@ -19,6 +16,7 @@
 #include "common/service/lab.hpp"
 #include "services/cli/service/listener.hpp"
 #include "services/cli/service/observer.hpp"
+#include "services/cli/tools/free_address.hpp"
 #include "services/cli/tools/rows.hpp"
 #include "services/cli/tools/series.hpp"
 #include "services/cli/tools/setting.hpp"
@@ -206,7 +204,7 @@ class Demonstration {
       const bool serial = is_serial(glove_row_);
       std::string port = serial ? absolute(glove_.detail) : glove_.detail;
       if (port.empty()) {
-        port = serial ? (folder_->path() / "glove_port").string() : some_address();
+        port = serial ? (folder_->path() / "glove_port").string() : free_address();
         if (const auto trouble = emulate(glove_row_, scene_file, port, {})) return trouble;
         if (!glove_row_.tracker.empty()) {
           // The glove measures only joints: a tracker on its back says where the hand is.
@@ -250,29 +248,6 @@ class Demonstration {
   static bool is_serial(const GloveRow& row) { return row.line == "serial"; }
 
   /// Of this machine, for datagrams; that somebody else has it is as good as impossible.
-  /// Of a port that nobody has, and that no participant of a domain will take: theirs are the first
-  /// of each 250 from 7400 on (DDSI-RTPS 2.3, 9.6.1).
-  static std::string some_address() {
-    std::random_device random;
-    while (true) {
-      const int port =
-          7400 + 250 * static_cast<int>(50 + random() % 40) + 200 + static_cast<int>(random() % 50);
-      if (is_free(port)) return fmt::format("127.0.0.1:{}", port);
-    }
-  }
-
-  static bool is_free(int port) {
-    sockaddr_in address{};
-    address.sin_family = AF_INET;
-    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-    address.sin_port = htons(static_cast<std::uint16_t>(port));
-    const int handle = ::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
-    const bool bound =
-        ::bind(handle, reinterpret_cast<const sockaddr*>(&address), sizeof(address)) == 0;
-    ::close(handle);
-    return handle < 0 || bound;
-  }
-
   /// Up before the others, so that it misses nothing.
   Trouble start_recorder(std::vector<std::string> sets, const std::string& truth) {
     sets.push_back(truth);

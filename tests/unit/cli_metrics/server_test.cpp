@@ -2,12 +2,8 @@
 // too many takes nothing from who only wants the page.
 #include "services/cli/tools/metrics/http/server.hpp"
 
-#include <arpa/inet.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <netinet/in.h>
-#include <sys/socket.h>
-#include <unistd.h>
 
 #include <atomic>
 #include <list>
@@ -15,42 +11,14 @@
 #include <optional>
 #include <thread>
 
+#include "tests/support/metrics/client.hpp"
+
 namespace prehend::cli::http {
 namespace {
 
+using tests::Client;
+
 const std::string good = "GET /metrics HTTP/1.1\r\nHost: lab\r\n\r\n";
-
-class Client {
- public:
-  explicit Client(int port) : socket_(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0)) {
-    sockaddr_in address{};
-    address.sin_family = AF_INET;
-    address.sin_port = htons(static_cast<std::uint16_t>(port));
-    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-    const timeval limit{30, 0};
-    ::setsockopt(socket_, SOL_SOCKET, SO_RCVTIMEO, &limit, sizeof limit);
-    connected_ = ::connect(socket_, reinterpret_cast<sockaddr*>(&address), sizeof address) == 0;
-  }
-  ~Client() { ::close(socket_); }
-  Client(const Client&) = delete;
-  bool connected() const { return connected_; }
-  void say(std::string_view text) const {
-    (void)::send(socket_, text.data(), text.size(), MSG_NOSIGNAL);
-  }
-  void end() const { ::shutdown(socket_, SHUT_WR); }
-  /// All that comes until the other side ends.
-  std::string hear() const {
-    std::string all;
-    char bytes[4096];
-    for (ssize_t size; (size = ::recv(socket_, bytes, sizeof bytes, 0)) > 0;)
-      all.append(bytes, static_cast<std::size_t>(size));
-    return all;
-  }
-
- private:
-  int socket_;
-  bool connected_ = false;
-};
 
 class Served : public testing::Test {
  protected:

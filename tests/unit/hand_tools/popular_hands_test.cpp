@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <cstdlib>
-#include <fstream>
+#include <map>
 
 #include "common/base/workers.hpp"
 #include "common/grasping/candidates.hpp"
@@ -20,17 +20,21 @@ using Eigen::Vector3d;
 
 class Popular : public testing::TestWithParam<popular_hands::PopularHand> {
  protected:
+  // Made once for all tests of a hand: that is what takes time.
   void SetUp() override {
-    if (const char* folder = std::getenv("PREHEND_SAVE_URDF"))
-      std::ofstream(fmt::format("{}/{}.urdf", folder, GetParam().name)) << GetParam().urdf;
-    const auto robot = simulation::read_robot(GetParam().urdf);
-    ASSERT_TRUE(robot) << robot.error().message();
-    auto hand = simulation::make_hand(*robot, GetParam().name, simulation::mesh_files("."));
-    ASSERT_TRUE(hand) << hand.error().message();
-    made.emplace(std::move(*hand));
+    static std::map<std::string, simulation::MadeHand> all;
+    auto found = all.find(GetParam().name);
+    if (found == all.end()) {
+      const auto robot = simulation::read_robot(GetParam().urdf);
+      ASSERT_TRUE(robot) << robot.error().message();
+      auto hand = simulation::make_hand(*robot, GetParam().name, simulation::mesh_files("."));
+      ASSERT_TRUE(hand) << hand.error().message();
+      found = all.emplace(GetParam().name, std::move(*hand)).first;
+    }
+    made = &found->second;
   }
 
-  std::optional<simulation::MadeHand> made;
+  const simulation::MadeHand* made = nullptr;
 };
 
 /// The greatest distance of two fingertips of the open hand.

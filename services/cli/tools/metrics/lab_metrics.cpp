@@ -1,6 +1,7 @@
 #include "services/cli/tools/metrics/lab_metrics.hpp"
 
 #include <algorithm>
+#include <functional>
 
 #include "common/service/status.hpp"
 
@@ -36,6 +37,13 @@ Labels labels_of(const std::string& key) {
   return {{"service", key.substr(0, at)},
           {"host", key.substr(at + 1, slash - at - 1)},
           {"pid", key.substr(slash + 1)}};
+}
+
+/// Calls say(of(key), message) for each that is heard.
+template <class Known, class Say, class Of = std::identity>
+void each_up(const Known& known, Time now, const Say& say, const Of& of = {}) {
+  for (const auto& [key, heard] : known)
+    if (is_up(heard, now)) say(of(key), heard.message);
 }
 
 Labels with(Labels labels, std::string_view name, std::string value) {
@@ -86,10 +94,7 @@ void LabMetrics::add_processes(Exposition& page, Time now) const {
 }
 
 void LabMetrics::add_health(Exposition& page, Time now) const {
-  const auto each = [&](const auto& say) {
-    for (const auto& [key, heard] : services_)
-      if (is_up(heard, now)) say(labels_of(key), heard.message);
-  };
+  const auto each = [&](const auto& say) { each_up(services_, now, say, labels_of); };
   page.gauge("prehend_state", "1: the process says that it is in this state.");
   each([&](const Labels& labels, const v1::ServiceStatus& status) {
     for (const auto& row : service::state_names)
@@ -107,10 +112,7 @@ void LabMetrics::add_health(Exposition& page, Time now) const {
 }
 
 void LabMetrics::add_work(Exposition& page, Time now) const {
-  const auto each = [&](const auto& say) {
-    for (const auto& [key, heard] : services_)
-      if (is_up(heard, now)) say(labels_of(key), heard.message);
-  };
+  const auto each = [&](const auto& say) { each_up(services_, now, say, labels_of); };
   page.counter("prehend_events_total", "What the process has done: frames, commands, ...");
   each([&](const Labels& labels, const v1::ServiceStatus& status) {
     for (const v1::Rate& rate : status.rates())
@@ -140,28 +142,25 @@ void LabMetrics::add_work(Exposition& page, Time now) const {
 
 void LabMetrics::add_clocks(Exposition& page, Time now) const {
   page.gauge("prehend_peers", "Processes whose clock this one knows.");
-  for (const auto& [key, heard] : beacons_)
-    if (is_up(heard, now)) {
-      const auto& peers = heard.message.peers();
-      page.number(labels_of(key),
-                  static_cast<double>(std::count_if(
-                      peers.begin(), peers.end(), [](const auto& peer) { return peer.known(); })));
-    }
+  const auto each = [&](const auto& say) { each_up(beacons_, now, say, labels_of); };
+  each([&](const Labels& labels, const v1::ClockBeacon& beacon) {
+    const auto& peers = beacon.peers();
+    page.number(labels,
+                static_cast<double>(std::count_if(peers.begin(), peers.end(),
+                                                  [](const auto& peer) { return peer.known(); })));
+  });
   page.gauge("prehend_clock_step_seconds",
              "How far the system's clock was set away from the process since its start.");
-  for (const auto& [key, heard] : beacons_)
-    if (is_up(heard, now))
-      page.number(labels_of(key), 1e-9 * static_cast<double>(heard.message.step_ns()));
+  each([&](const Labels& labels, const v1::ClockBeacon& beacon) {
+    page.number(labels, 1e-9 * static_cast<double>(beacon.step_ns()));
+  });
 }
 
 void LabMetrics::add_gates(Exposition& page, Time now) const {
   page.gauge("prehend_gate_up",
              "1: the gate of this hand is heard. 0: it is gone, or silent for 3 s.");
   for (const auto& [hand, heard] : gates_) page.number({{"hand", hand}}, is_up(heard, now) ? 1 : 0);
-  const auto each = [&](const auto& say) {
-    for (const auto& [hand, heard] : gates_)
-      if (is_up(heard, now)) say(hand, heard.message);
-  };
+  const auto each = [&](const auto& say) { each_up(gates_, now, say); };
   page.gauge("prehend_gate_led", "1: somebody's commands are obeyed.");
   each([&](const std::string& hand, const v1::GateState& gate) {
     page.number({{"hand", hand}}, gate.leader().size() > 0 ? 1 : 0);
@@ -182,10 +181,7 @@ void LabMetrics::add_gates(Exposition& page, Time now) const {
 }
 
 void LabMetrics::add_stops(Exposition& page, Time now) const {
-  const auto each = [&](const auto& say) {
-    for (const auto& [hand, heard] : gates_)
-      if (is_up(heard, now)) say(hand, heard.message);
-  };
+  const auto each = [&](const auto& say) { each_up(gates_, now, say); };
   page.gauge("prehend_gate_stopped", "1: stopped until the release.");
   each([&](const std::string& hand, const v1::GateState& gate) {
     page.number({{"hand", hand}}, gate.stopped() ? 1 : 0);

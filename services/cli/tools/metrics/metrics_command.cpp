@@ -9,10 +9,10 @@
 #include "common/base/clock.hpp"
 #include "common/base/log.hpp"
 #include "common/dds/participant.hpp"
-#include "common/dds/topics.hpp"
 #include "common/service/arguments.hpp"
 #include "common/service/membership.hpp"
 #include "common/service/supervisor.hpp"
+#include "services/cli/service/self_reports.hpp"
 #include "services/cli/tools/metrics/http/server.hpp"
 #include "services/cli/tools/metrics/lab_metrics.hpp"
 
@@ -26,49 +26,26 @@ extern "C" void on_end_of_metrics(int) {
   ended = 1;
 }
 
-/// What the lab says on the topics that metrics are made of.
-class Ears {
- public:
-  static Expected<Ears> create(dds::Participant& participant) {
-    auto statuses = participant.reader(dds::service_status);
-    if (!statuses) return tl::unexpected(statuses.error());
-    auto beacons = participant.reader(dds::lab_beacon);
-    if (!beacons) return tl::unexpected(beacons.error());
-    auto gates = participant.reader(dds::robot_gate);
-    if (!gates) return tl::unexpected(gates.error());
-    return Ears(std::move(*statuses), std::move(*beacons), std::move(*gates));
-  }
-
-  void listen(LabMetrics& metrics, Time now) {
-    for (const auto& sample : statuses_.take())
-      if (sample.info.gone)
-        metrics.lose_service(sample.data.service().to_string());
-      else
-        metrics.hear(sample.data, now);
-    for (const auto& sample : beacons_.take())
-      if (!sample.info.gone) metrics.hear(sample.data, now);
-    for (const auto& sample : gates_.take())
-      if (sample.info.gone)
-        metrics.lose_gate(sample.data.hand().to_string());
-      else
-        metrics.hear(sample.data, now);
-  }
-
- private:
-  Ears(dds::Reader<v1::ServiceStatus> statuses, dds::Reader<v1::ClockBeacon> beacons,
-       dds::Reader<v1::GateState> gates)
-      : statuses_(std::move(statuses)), beacons_(std::move(beacons)), gates_(std::move(gates)) {}
-
-  dds::Reader<v1::ServiceStatus> statuses_;
-  dds::Reader<v1::ClockBeacon> beacons_;
-  dds::Reader<v1::GateState> gates_;
-};
+void listen(SelfReports& reports, LabMetrics& metrics, Time now) {
+  for (const auto& sample : reports.statuses.take())
+    if (sample.info.gone)
+      metrics.lose_service(sample.data.service().to_string());
+    else
+      metrics.hear(sample.data, now);
+  for (const auto& sample : reports.beacons.take())
+    if (!sample.info.gone) metrics.hear(sample.data, now);
+  for (const auto& sample : reports.gates.take())
+    if (sample.info.gone)
+      metrics.lose_gate(sample.data.hand().to_string());
+    else
+      metrics.hear(sample.data, now);
+}
 
 int serve(const service::Config& config, http::Server& server) {
   auto participant = dds::Participant::create(service::membership(config, "prehend", "viewer"));
   if (!participant) return service::complain(participant.error());
-  auto ears = Ears::create(*participant);
-  if (!ears) return service::complain(ears.error());
+  auto reports = SelfReports::create(*participant);
+  if (!reports) return service::complain(reports.error());
   struct sigaction action {};
   action.sa_handler = on_end_of_metrics;
   ::sigaction(SIGTERM, &action, nullptr);
@@ -82,7 +59,7 @@ int serve(const service::Config& config, http::Server& server) {
   LabMetrics metrics(config.names("lab.services"));
   service::Supervisor supervisor;
   while (ended == 0) {
-    ears->listen(metrics, process_now());
+    listen(*reports, metrics, process_now());
     server.serve(round, [&] { return metrics.text(process_now()); });
     supervisor.beat(process_now());
   }

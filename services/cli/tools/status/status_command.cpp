@@ -14,6 +14,7 @@
 #include "common/dds/participant.hpp"
 #include "common/service/arguments.hpp"
 #include "common/service/membership.hpp"
+#include "services/cli/service/self_reports.hpp"
 #include "services/cli/tools/status/status_view.hpp"
 
 namespace prehend::cli {
@@ -70,50 +71,23 @@ struct Arguments {
   }
 };
 
-/// What services, their beacons and robots' gates say, on its way into a view. Keeps a reference to
-/// the participant.
-class Hearing {
- public:
-  static Expected<Hearing> create(dds::Participant& participant) {
-    auto statuses = participant.reader(dds::service_status);
-    if (!statuses) return tl::unexpected(statuses.error());
-    auto beacons = participant.reader(dds::lab_beacon);
-    if (!beacons) return tl::unexpected(beacons.error());
-    auto gates = participant.reader(dds::robot_gate);
-    if (!gates) return tl::unexpected(gates.error());
-    return Hearing(participant, std::move(*statuses), std::move(*beacons), std::move(*gates));
+void tell(StatusView& view, SelfReports& reports, const dds::Participant& participant, Time now) {
+  const auto peers = participant.present();
+  for (const auto& sample : reports.statuses.take()) {
+    const auto peer = peers.find(sample.info.participant);
+    if (sample.info.gone)
+      view.lose(sample.data.service().to_string(), now);
+    else
+      view.hear(sample.data, now, peer == peers.end() ? "" : peer->second.middleware);
   }
-
-  void tell(StatusView& view, Time now) {
-    const auto peers = participant_.present();
-    for (const auto& sample : statuses_.take()) {
-      const auto peer = peers.find(sample.info.participant);
-      if (sample.info.gone)
-        view.lose(sample.data.service().to_string(), now);
-      else
-        view.hear(sample.data, now, peer == peers.end() ? "" : peer->second.middleware);
-    }
-    std::vector<std::string> refused;
-    for (const auto& [name, count] : participant_.refused()) refused.push_back(name);
-    view.refuse(std::move(refused));
-    for (const auto& sample : beacons_.take())
-      if (!sample.info.gone) view.hear(sample.data, now);
-    for (const auto& sample : gates_.take())
-      if (!sample.info.gone) view.hear(sample.data, now);
-  }
-
- private:
-  Hearing(dds::Participant& participant, dds::Reader<v1::ServiceStatus> statuses,
-          dds::Reader<v1::ClockBeacon> beacons, dds::Reader<v1::GateState> gates)
-      : participant_(participant),
-        statuses_(std::move(statuses)),
-        beacons_(std::move(beacons)),
-        gates_(std::move(gates)) {}
-  dds::Participant& participant_;
-  dds::Reader<v1::ServiceStatus> statuses_;
-  dds::Reader<v1::ClockBeacon> beacons_;
-  dds::Reader<v1::GateState> gates_;
-};
+  std::vector<std::string> refused;
+  for (const auto& [name, count] : participant.refused()) refused.push_back(name);
+  view.refuse(std::move(refused));
+  for (const auto& sample : reports.beacons.take())
+    if (!sample.info.gone) view.hear(sample.data, now);
+  for (const auto& sample : reports.gates.take())
+    if (!sample.info.gone) view.hear(sample.data, now);
+}
 
 void clear_terminal() {
   struct sigaction action {};
@@ -138,8 +112,8 @@ int status_command(const std::vector<std::string>& arguments) {
   if (!config) return service::complain(config.error(), exit_wrong_use);
   auto participant = dds::Participant::create(service::membership(*config, "prehend", "viewer"));
   if (!participant) return service::complain(participant.error(), exit_broken);
-  auto hearing = Hearing::create(*participant);
-  if (!hearing) return service::complain(hearing.error(), exit_broken);
+  auto reports = SelfReports::create(*participant);
+  if (!reports) return service::complain(reports.error(), exit_broken);
 
   StatusView view(config->names("lab.services"));
   const auto all_up = [&] {
@@ -156,7 +130,7 @@ int status_command(const std::vector<std::string>& arguments) {
     if (!live && now - begin > prehend::seconds(given.timeout)) break;
     if (!given.awaited.empty() && all_up()) break;
     std::this_thread::sleep_for(std::chrono::milliseconds(20));
-    hearing->tell(view, now);
+    tell(view, *reports, *participant, now);
     if (!live) continue;
     if (entered_key() == 'q') break;
     if (now < next_page) continue;

@@ -328,14 +328,13 @@ Expected<std::unique_ptr<service::Shell>> join(const Arguments& arguments) {
 
 nlohmann::ordered_json document(Player& player) {
   const Player::Stats figures = player.figures();
-  return {{"published", figures.published},
-          {"refused", figures.refused},
-          {"loops", figures.rounds},
-          {"damage", player.tape().damage().size()},
-          {"late_us",
-           {{"p50", figures.late_p50_us},
-            {"p99", figures.late_p99_us},
-            {"max", figures.late_max_us}}}};
+  return {
+      {"published", figures.published},
+      {"refused", figures.refused},
+      {"loops", figures.rounds},
+      {"damage", player.tape().damage().size()},
+      {"late_us",
+       {{"p50", figures.late_p50_us}, {"p99", figures.late_p99_us}, {"max", figures.late_max_us}}}};
 }
 
 int replay(const Arguments& arguments) {
