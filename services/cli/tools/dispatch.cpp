@@ -22,6 +22,7 @@ const std::vector<Tool>& tools() {
       {"teach", "prehend-teach", "show postures to learn a mapping from"},
       {"train", "prehend-train", "train a mapping model for a robot hand"},
       {"study", "prehend-study", "repeat the thesis's experiments and the grasp benchmark"},
+      {"benchmark", "prehend-benchmark", "judge any mapping by the benchmark's takes"},
       {"hand", "prehend-hand", "is this URDF a usable hand; make it one"},
       {"grasp", "prehend-grasp", "plan grasps, export them, quality of given contacts"},
   };

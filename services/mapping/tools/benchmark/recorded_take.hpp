@@ -23,6 +23,10 @@ struct TakeOptions {
   bool says_uncertain = true;  // detections carry these errors as their covariance
 };
 
+inline constexpr double glove_rate = 30;         // Hz
+inline constexpr double reach_time = 1.6 + 0.2;  // s, until fingers begin to close
+inline constexpr double keep_time = 4;           // s, with closed fingers, at most
+
 /// One reach for one object as glove and camera tell it, whatever robot hand shall answer it: from
 /// 25 cm before the grasp to closed fingers that keep closed. W: the table; the object stands on it
 /// above the origin.
@@ -37,6 +41,13 @@ struct RecordedTake {
   Pose X_OS;                   // where the object is seen from where it is
   Eigen::Matrix4d covariance;  // as told
 };
+
+/// Where the hand is in the frame in which it will have arrived: 25 cm before it at time 0, s.
+Pose approach_at(double t);
+
+/// How the camera sees this shape in the take; its errors follow from the seed.
+void see_object(RecordedTake& take, const model::Shape& shape, std::uint64_t seed,
+                const TakeOptions& options);
 
 /// The take of a person who follows from the seed, with the grasp that the robot hand was closed
 /// in: the same seed gives the same person and the same take. None when this person's hand does not

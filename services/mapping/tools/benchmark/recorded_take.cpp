@@ -1,4 +1,4 @@
-#include "services/mapping/tools/study/recorded_take.hpp"
+#include "services/mapping/tools/benchmark/recorded_take.hpp"
 
 #include <fmt/format.h>
 
@@ -13,13 +13,12 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double rate = 30;       // Hz, of the glove
 constexpr double start = 0.25;    // m, before the grasp, along the approach
 constexpr double reaching = 1.6;  // s, to get there
 constexpr double pause = 0.2;     // s, before the fingers close
-constexpr double closing = 0.8;   // s
-constexpr double keeping = 4;     // s, with closed fingers, at most
-constexpr double extra = 0.05;    // of a finger's closure, by which it presses on
+static_assert(reaching + pause == reach_time);
+constexpr double closing = 0.8;  // s
+constexpr double extra = 0.05;   // of a finger's closure, by which it presses on
 
 /// From 0 to 1 as people move: without a jerk at the ends.
 double smooth(double share) {
@@ -27,6 +26,31 @@ double smooth(double share) {
 }
 
 }  // namespace
+
+Pose approach_at(double t) {
+  return make_pose(Vector3d(0, 0, -start * (1 - smooth(t / reaching))));
+}
+
+void see_object(RecordedTake& take, const model::Shape& shape, std::uint64_t seed,
+                const TakeOptions& options) {
+  Random camera(seed ^ 0xca3e7a);
+  const double sign = camera.uniform() < 0.5 ? -1 : 1;
+  take.seen_shape = shape;
+  take.seen_shape.size *= 1 + sign * options.size_error;
+  const double x = camera.normal(options.position_error);
+  const double y = camera.normal(options.position_error);
+  const double turn = camera.normal(options.angle_error);
+  // It is known to stand on the table: its middle is as high as it seems half high.
+  const double higher = half_extents(take.seen_shape).z() - half_extents(shape).z();
+  take.X_OS = make_pose(Vector3d(x, y, higher),
+                        Eigen::AngleAxisd(turn, Vector3d::UnitZ()).toRotationMatrix());
+  take.covariance.setZero();
+  if (options.says_uncertain) {
+    const double claimed = std::max(options.position_error, options.claimed_error);
+    take.covariance(0, 0) = take.covariance(1, 1) = claimed * claimed;
+    take.covariance(3, 3) = options.angle_error * options.angle_error;
+  }
+}
 
 std::optional<RecordedTake> record_take(const RobotGrasp& grasp, std::uint64_t seed,
                                         const TakeOptions& options) {
@@ -40,12 +64,11 @@ std::optional<RecordedTake> record_take(const RobotGrasp& grasp, std::uint64_t s
   take.X_WO = make_pose(Vector3d(0, 0, half_extents(grasp.shape).z()));
   take.X_WG = take.X_WO * reached->X_OG;
   take.closure = reached->closure;
-  take.closed = Time(seconds(reaching + pause + closing));
-  const auto last = static_cast<int>((reaching + pause + closing + keeping) * rate);
+  take.closed = Time(seconds(reach_time + closing));
+  const auto last = static_cast<int>((reach_time + closing + keep_time) * glove_rate);
   for (int frame = 0; frame <= last; ++frame) {
-    const double t = frame / rate;
-    const double before = start * (1 - smooth(t / reaching));
-    const Pose X_WG = take.X_WG * make_pose(Vector3d(0, 0, -before));
+    const double t = frame / glove_rate;
+    const Pose X_WG = take.X_WG * approach_at(t);
     const double closed = smooth((t - reaching - pause) / closing);
     Closure closure;
     for (std::size_t f = 0; f < closure.size(); ++f)
@@ -59,24 +82,7 @@ std::optional<RecordedTake> record_take(const RobotGrasp& grasp, std::uint64_t s
     posture.fingertips = person.sense(closure, 0, 1 - ready);
     take.postures.push_back(posture);
   }
-
-  Random camera(seed ^ 0xca3e7a);
-  const double sign = camera.uniform() < 0.5 ? -1 : 1;
-  take.seen_shape = grasp.shape;
-  take.seen_shape.size *= 1 + sign * options.size_error;
-  const double x = camera.normal(options.position_error);
-  const double y = camera.normal(options.position_error);
-  const double turn = camera.normal(options.angle_error);
-  // It is known to stand on the table: its middle is as high as it seems half high.
-  const double higher = half_extents(take.seen_shape).z() - half_extents(grasp.shape).z();
-  take.X_OS = make_pose(Vector3d(x, y, higher),
-                        Eigen::AngleAxisd(turn, Vector3d::UnitZ()).toRotationMatrix());
-  take.covariance.setZero();
-  if (options.says_uncertain) {
-    const double claimed = std::max(options.position_error, options.claimed_error);
-    take.covariance(0, 0) = take.covariance(1, 1) = claimed * claimed;
-    take.covariance(3, 3) = options.angle_error * options.angle_error;
-  }
+  see_object(take, grasp.shape, seed, options);
   return take;
 }
 

@@ -1,11 +1,10 @@
-#include "services/mapping/tools/study/benchmark_summary.hpp"
+#include "services/mapping/tools/benchmark/benchmark_summary.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <map>
-
-#include "services/mapping/tools/study/finding.hpp"
 
 namespace prehend::mapping {
 
@@ -48,11 +47,11 @@ std::vector<ModeSummary> summarise(const std::vector<TrialResult>& trials) {
           return summary.hand == first.hand && same(summary.mode, first.mode);
         }))
       continue;
-    std::vector<const TrialResult*> mine;
+    std::vector<const TrialResult*> mine, real;
     std::map<int, bool> direct;  // held, by take
     for (const TrialResult& trial : trials) {
       if (trial.hand != first.hand) continue;
-      if (same(trial.mode, first.mode)) mine.push_back(&trial);
+      if (same(trial.mode, first.mode)) (trial.real ? real : mine).push_back(&trial);
       if (same(trial.mode, {BenchmarkMode::direct})) direct[trial.take] = trial.held;
     }
     std::vector<double> here, there;
@@ -66,7 +65,7 @@ std::vector<ModeSummary> summarise(const std::vector<TrialResult>& trials) {
         {first.hand, first.mode, held_of(mine, false), held_of(mine, true),
          statistics::paired_difference(here, there), mean_of(mine, &TrialResult::joint_error),
          mean_of(mine, &TrialResult::fingertip_error), mean_of(mine, &TrialResult::epsilon),
-         mean_of(mine, &TrialResult::penetration)});
+         mean_of(mine, &TrialResult::penetration), held_of(real, true)});
   }
   return summaries;
 }
@@ -74,13 +73,13 @@ std::vector<ModeSummary> summarise(const std::vector<TrialResult>& trials) {
 std::string to_csv(const std::vector<TrialResult>& trials) {
   std::string csv =
       "hand,mode,placement,take,user,object,grasp_type,demonstrated_held,held,joint_error_rad2,"
-      "fingertip_error_m,epsilon,penetration_m,reason\n";
+      "fingertip_error_m,epsilon,penetration_m,reason,real\n";
   for (const TrialResult& trial : trials)
-    csv += fmt::format("{},{},{},{},\"{}\",\"{}\",{},{},{},{:.6g},{:.6g},{:.6g},{:.6g},\"{}\"\n",
+    csv += fmt::format("{},{},{},{},\"{}\",\"{}\",{},{},{},{:.6g},{:.6g},{:.6g},{:.6g},\"{}\",{}\n",
                        trial.hand, to_string(trial.mode.mode), trial.mode.placement, trial.take,
                        trial.user, trial.object, trial.grasp_type, trial.demonstrated_held,
                        trial.held, trial.joint_error, trial.fingertip_error, trial.epsilon,
-                       trial.penetration, trial.reason);
+                       trial.penetration, trial.reason, trial.real);
   return csv;
 }
 
@@ -88,6 +87,9 @@ std::vector<std::vector<std::string>> to_rows(const std::vector<ModeSummary>& su
   std::vector<std::vector<std::string>> rows{
       {"hand", "mode", "placement", "takes", "held", "held where the demonstrated grasp is",
        "above direct, points", "joint error, rad²", "fingertip error, mm", "ε", "penetration, mm"}};
+  const bool real =
+      std::ranges::any_of(summaries, [](const auto& one) { return one.real_held.count > 0; });
+  if (real) rows.front().push_back("held, real people");
   for (const ModeSummary& one : summaries) {
     const bool compared = one.above_direct.count > 1 && one.mode.mode != BenchmarkMode::direct;
     rows.push_back({one.hand, std::string(to_string(one.mode.mode)),
@@ -100,8 +102,21 @@ std::vector<std::vector<std::string>> to_rows(const std::vector<ModeSummary>& su
                     fmt::format("{:.1f}", 1000 * one.fingertip_error.mean),
                     fmt::format("{:.3f}", one.epsilon.mean),
                     fmt::format("{:.2f}", 1000 * one.penetration.mean)});
+    if (real) rows.back().push_back(percent(one.real_held));
   }
   return rows;
+}
+
+std::string to_table(const std::vector<ModeSummary>& summaries) {
+  std::string text;
+  const auto rows = to_rows(summaries);
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    text += fmt::format("| {} |\n", fmt::join(rows[i], " | "));
+    if (i > 0) continue;
+    for (std::size_t k = 0; k < rows[0].size(); ++k) text += "|---";
+    text += "|\n";
+  }
+  return text;
 }
 
 }  // namespace prehend::mapping

@@ -22,7 +22,8 @@ struct RealTake {
   std::vector<Frame> frames;
 };
 
-/// Reads a recording of a Leap (CSV, its columns by name; mm and µs) and keeps the right hand. In H
+/// Reads a recording of a Leap (CSV, its columns by name; mm and µs) and keeps the right hand, or
+/// one of 21 landmarks (l0_x to l20_z, m), of a right hand at 30 Hz, which says no strengths. In H
 /// the middle knuckle lies where that of a hand of this size does; the size is where index and
 /// little finger reach furthest. Fails on a file that is none or has fewer than ten good rows of a
 /// right hand.
