@@ -196,7 +196,7 @@ Check check_programs() {
         fmt::format("prehend-{}: {}", name, said.empty() ? "cannot be started" : said);
   }
   if (trouble.empty()) return {"programs", true, "all services can be started", ""};
-  return fault("programs", trouble, "deploy/install-dependencies runtime");
+  return fault("programs", trouble, "apt install ./prehend*.deb, or deploy/install-dependencies");
 }
 
 Check check_devices(const service::Config& config) {
