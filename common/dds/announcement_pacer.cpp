@@ -8,7 +8,7 @@
 namespace prehend::dds {
 namespace {
 
-constexpr std::uint8_t info_destination = 0x0e;
+constexpr std::uint8_t info_destination = 0x0e, final_flag = 0x02;
 
 bool is_group(const Ipv4& address) {
   return address[0] >= 224 && address[0] < 240;
@@ -16,15 +16,15 @@ bool is_group(const Ipv4& address) {
 
 }  // namespace
 
-bool AnnouncementPacer::is_due(const Place& to, const void* way, std::uint64_t number, Time now) {
-  Sent& sent = find_or_make(to).ways[way];
-  const bool same = sent.gap > Duration::zero() && sent.number == number;
+bool AnnouncementPacer::is_due(const Place& to, const void* way, const Saying& what, Time now) {
+  Sent& sent = find_or_make(to).sent[{way, what.writer, what.asks}];
+  const bool same = sent.gap > Duration::zero() && sent.number == what.number;
   if (same && now < sent.next) return false;
   if (is_group(to.address))
     sent.gap = group_gap;
   else
     sent.gap = same ? std::min(2 * sent.gap, max_gap) : min_gap;
-  sent.number = number;
+  sent.number = what.number;
   sent.next = now + sent.gap;
   return true;
 }
@@ -33,7 +33,7 @@ void AnnouncementPacer::met(const Place& place, const GuidPrefix& participant) {
   There& there = find_or_make(place);
   if (there.participant == participant) return;
   there.participant = participant;
-  there.ways.clear();
+  there.sent.clear();
 }
 
 AnnouncementPacer::There& AnnouncementPacer::find_or_make(const Place& place) {
@@ -60,21 +60,24 @@ std::vector<Place> announced_places(std::span<const std::uint8_t> message) {
   return places;
 }
 
-std::optional<std::uint64_t> announcement_number(std::span<const std::uint8_t> message) {
+std::optional<Saying> repeated_saying(std::span<const std::uint8_t> message) {
   using namespace wire;
-  std::optional<std::uint64_t> number;
+  std::optional<Saying> said;
   const bool alone =
       for_each_part(message, [&](std::uint8_t kind, std::uint8_t flags, Bytes part, bool) {
         if (kind == info_timestamp || kind == info_destination || kind == statistics) return true;
-        constexpr std::uint8_t content = data_flag | key_flag;
-        if (kind != data || number || (flags & content) != data_flag ||
-            part.size() < min_data_size || entity_at(part, 8) != participants)
-          return false;
         const Numbers numbers{part, (flags & little_endian_flag) != 0};
-        number = std::uint64_t{numbers.four(12)} << 32 | numbers.four(16);
-        return true;
+        if (said || part.size() < min_data_size) return false;
+        if (kind == data && (flags & (data_flag | key_flag)) == data_flag &&
+            entity_at(part, 8) == participants)
+          said = {participants, false, std::uint64_t{numbers.four(12)} << 32 | numbers.four(16)};
+        // Nothing is known yet: what is acknowledged begins at 0 and is empty.
+        else if (kind == acknack && !(flags & final_flag) && numbers.four(8) == 0 &&
+                 numbers.four(12) == 0 && numbers.four(16) == 0)
+          said = {entity_at(part, 4), true, 0};
+        return said.has_value();
       });
-  return alone ? number : std::nullopt;
+  return alone ? said : std::nullopt;
 }
 
 }  // namespace prehend::dds

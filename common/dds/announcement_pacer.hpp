@@ -5,6 +5,7 @@
 #include <map>
 #include <optional>
 #include <span>
+#include <tuple>
 #include <vector>
 
 #include "common/base/time.hpp"
@@ -19,22 +20,30 @@ struct Place {
   auto operator<=>(const Place&) const = default;
 };
 
-/// Thins out repeated announcements of a participant. Fast DDS sends its announcement to everybody
-/// whom it knows, and to the group, not only every half second but each time that it meets one
-/// more: when N start at once, that is N³ packets, which then delay and lose what matters. Here
-/// somebody gets the same announcement at once, again after 0.2 s, then less and less often, but
-/// four times in a lease; the group hears every one that is not on the heels of another. Whoever is
-/// new at a place gets it at once. Pure: times are told. Bounded.
+/// What is said again and again at discovery: by whom, or to whom, and which one.
+struct Saying {
+  std::uint32_t writer = 0;  // of the announcement, or asked for what it has
+  bool asks = false;
+  std::uint64_t number = 0;  // of the announcement
+};
+
+/// Thins out what Fast DDS repeats at discovery. It sends its announcement to everybody whom it
+/// knows, and to the group, not only every half second but each time that it meets one more; and it
+/// asks each writer that it knows of, fourteen times a second, what it has, until that answers.
+/// When N start at once, these are most of all packets, which then delay and lose what matters.
+/// Here somebody is told the same at once, again after half a second, then less and less often, but
+/// four times in a lease; the group hears every announcement that is not on the heels of another.
+/// Whoever is new at a place gets all at once. Pure: times are told. Bounded.
 class AnnouncementPacer {
  public:
-  /// Is the announcement of this number to be sent there now? way: through which of the sockets.
-  bool is_due(const Place& to, const void* way, std::uint64_t number, Time now);
+  /// Is this to be sent there now? way: through which of the sockets.
+  bool is_due(const Place& to, const void* way, const Saying& what, Time now);
   /// Somebody has announced that it is to be found there.
   void met(const Place& place, const GuidPrefix& participant);
 
   std::size_t size() const { return all_.size(); }
   static constexpr std::size_t max_places = 4096;
-  static constexpr Duration min_gap = std::chrono::milliseconds(200),
+  static constexpr Duration min_gap = std::chrono::milliseconds(500),
                             max_gap = std::chrono::seconds(5),
                             group_gap = std::chrono::milliseconds(50);
 
@@ -46,7 +55,7 @@ class AnnouncementPacer {
   };
   struct There {
     std::optional<GuidPrefix> participant;
-    std::map<const void*, Sent> ways;
+    std::map<std::tuple<const void*, std::uint32_t, bool>, Sent> sent;
   };
   There& find_or_make(const Place& place);
 
@@ -56,8 +65,7 @@ class AnnouncementPacer {
 /// Where those hear of discovery by UDP who announce themselves in a sound message.
 std::vector<Place> announced_places(std::span<const std::uint8_t> message);
 
-/// The number of an announcement that a participant makes of itself; nothing: the message is
-/// something else, or more.
-std::optional<std::uint64_t> announcement_number(std::span<const std::uint8_t> message);
+/// What of this kind a message says; nothing: something else, or more.
+std::optional<Saying> repeated_saying(std::span<const std::uint8_t> message);
 
 }  // namespace prehend::dds

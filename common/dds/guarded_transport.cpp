@@ -90,12 +90,12 @@ class Transport final : public PassThroughTransport {
             const std::chrono::steady_clock::time_point& timeout) override {
     if (!guard_.paces() || *begin == *end || carries_samples(**begin))
       return lower->send(bytes, size, begin, end, timeout);
-    const auto number = announcement_number(whole(bytes, size));
-    if (!number) return lower->send(bytes, size, begin, end, timeout);
+    const auto said = repeated_saying(whole(bytes, size));
+    if (!said) return lower->send(bytes, size, begin, end, timeout);
     std::vector<rtps::Locator_t> due;
     for (; *begin != *end; ++*begin)
-      if (guard_.may_announce({ip_of(**begin), static_cast<std::uint16_t>((**begin).port)}, lower,
-                              *number))
+      if (guard_.may_say({ip_of(**begin), static_cast<std::uint16_t>((**begin).port)}, lower,
+                         *said))
         due.push_back(**begin);
     if (due.empty()) return true;
     rtps::Locators first(due.cbegin()), last(due.cend());
@@ -188,9 +188,9 @@ void PacketGuard::hear(std::span<const std::uint8_t> message,
   for (const Announcement& one : told) hear_(one);
 }
 
-bool PacketGuard::may_announce(const Place& to, const void* way, std::uint64_t number) {
+bool PacketGuard::may_say(const Place& to, const void* way, const Saying& what) {
   const std::scoped_lock lock(pacing_);
-  return pacer_.is_due(to, way, number, process_now());
+  return pacer_.is_due(to, way, what, process_now());
 }
 
 std::vector<std::vector<std::uint8_t>> PacketGuard::take_departures() {

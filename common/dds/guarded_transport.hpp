@@ -29,8 +29,8 @@ class PacketGuard {
   PacketGuard(const PacketGuard&) = delete;
   PacketGuard& operator=(const PacketGuard&) = delete;
   bool accepts(std::span<const std::uint8_t> message, const Ipv4& source);
-  /// Is our announcement of this number to be sent there now? See AnnouncementPacer.
-  bool may_announce(const Place& to, const void* way, std::uint64_t number);
+  /// Is this to be sent there now? See AnnouncementPacer.
+  bool may_say(const Place& to, const void* way, const Saying& what);
   bool paces() const { return paces_; }
   void add_own(const GuidPrefix& own);
   void add_server(const GuidPrefix& server, const Ipv4& address);
