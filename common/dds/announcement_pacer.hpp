@@ -29,7 +29,7 @@ struct Saying {
 
 /// Thins out what Fast DDS repeats at discovery. It sends its announcement to everybody whom it
 /// knows, and to the group, not only every half second but each time that it meets one more; and it
-/// asks each writer that it knows of, fourteen times a second, what it has, until that answers.
+/// asks each writer that it knows of, again and again, what it has, until that answers.
 /// When N start at once, these are most of all packets, which then delay and lose what matters.
 /// Here somebody is told the same at once, again after half a second, then less and less often, but
 /// four times in a lease; the group hears every announcement that is not on the heels of another.

@@ -111,6 +111,8 @@ class SilentConnections : public Rig {
     EXPECT_FALSE(simulation_->exit());
   }
 
+  /// A hundred are gone after 25 s.
+  static int many() { return std::getenv("PREHEND_LONG") ? 100 : 8; }
   int ended(const Hosts& hosts, const std::string& host, const Strings& command, double limit_s) {
     auto made = service::Process::start(
         {.command = hosts.on(host, command), .log = folder_ / (host + ".log")});
@@ -127,14 +129,14 @@ class SilentConnections : public Rig {
 TEST_F(SilentConnections, KeepNobodyOutForLong) {
   hold(0, "", 10);
   hold(1, "", 15);
-  hold(100, "", 60);
+  hold(many(), "", 60);
 }
 
 TEST_F(SilentConnections, ThatStopInTheirHandshakeKeepNobodyOutForLong) {
   const std::string hello = client_hello();
   ASSERT_GT(hello.size(), 100u);
   hold(1, hello, 15);
-  hold(100, hello, 60);
+  hold(many(), hello, 60);
 }
 
 }  // namespace
