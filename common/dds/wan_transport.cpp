@@ -24,6 +24,7 @@
 
 #include "common/dds/pass_through_transport.hpp"
 #include "common/dds/security.hpp"
+#include "common/dds/tls_front.hpp"
 
 namespace prehend::dds {
 
@@ -164,18 +165,24 @@ class PortLock {
   int socket_;
 };
 
+/// What others come to: a port, and with keys who stands before it.
+struct Door {
+  std::shared_ptr<const PortLock> port;
+  std::shared_ptr<const TlsFront> front;
+};
+
 /// As long as the participant has it, the port is its own.
 struct BetweenSitesDescriptor final : transport::ChainingTransportDescriptor {
   BetweenSitesDescriptor(std::shared_ptr<transport::TransportDescriptorInterface> lower,
-                         Dialled dialled, std::shared_ptr<const PortLock> port)
+                         Dialled dialled, Door door)
       : ChainingTransportDescriptor(std::move(lower)),
         dialled_(std::move(dialled)),
-        port_(std::move(port)) {}
+        door_(std::move(door)) {}
   transport::TransportInterface* create_transport() const override {
     return new WanTransport(*this, dialled_);
   }
   Dialled dialled_;
-  std::shared_ptr<const PortLock> port_;
+  Door door_;
 };
 
 /// Our own address on the way to another; 0.0.0.0: there is no way yet.
@@ -208,8 +215,20 @@ void use_tls(transport::TCPv4TransportDescriptor& tcp, const std::filesystem::pa
 
 struct Listening {
   rtps::Locator_t announced;
-  std::shared_ptr<const PortLock> port;
+  Door door;
 };
+
+/// Fast DDS itself listens behind the front, on the loopback alone.
+Expected<std::shared_ptr<const TlsFront>> stand_before(transport::TCPv4TransportDescriptor& tcp,
+                                                       std::uint16_t port,
+                                                       const std::filesystem::path& keys) {
+  const std::uint16_t inner = free_inner_port();
+  tcp.interfaceWhiteList = {"127.0.0.1"};
+  tcp.add_listener_port(inner);
+  auto front = TlsFront::create({.port = port, .inner = inner, .keys = keys});
+  if (!front) return tl::unexpected(front.error());
+  return std::move(*front);
+}
 
 Expected<Listening> listen(transport::TCPv4TransportDescriptor& tcp, const Network& network) {
   std::uint16_t port = 0;
@@ -229,11 +248,18 @@ Expected<Listening> listen(transport::TCPv4TransportDescriptor& tcp, const Netwo
         return fail("all ports from 7420 to 7435 are taken", "lab.network = wan",
                     "end other processes of the lab on this machine");
   }
-  tcp.add_listener_port(port);
+  std::shared_ptr<const TlsFront> front;
+  if (network.keys.empty()) {
+    tcp.add_listener_port(port);
+  } else {
+    auto made = stand_before(tcp, port, network.keys);
+    if (!made) return tl::unexpected(made.error());
+    front = std::move(*made);
+  }
   rtps::Locator_t own = locator(LOCATOR_KIND_TCPv4);
   IPLocator::setPhysicalPort(own, port);
   IPLocator::setLogicalPort(own, listens);
-  return Listening{own, std::move(ours)};
+  return Listening{own, {std::move(ours), std::move(front)}};
 }
 
 /// Dials all peers, and returns them with our own addresses on the way there.
@@ -288,12 +314,12 @@ Expected<void> join_sites(eprosima::fastdds::dds::DomainParticipantQos& qos,
     wire.default_unicast_locator_list.push_back(own);
   };
   Dialled places;
-  std::shared_ptr<const PortLock> port;
+  Door door;
   if (network.peers.empty()) {
     const auto own = listen(tcp, network);
     if (!own) return tl::unexpected(own.error());
     announce(own->announced);
-    port = own->port;
+    door = own->door;
   } else {
     if (!network.listen.empty())
       return fail("a process listens or dials, not both", "lab.listen",
@@ -314,7 +340,7 @@ Expected<void> join_sites(eprosima::fastdds::dds::DomainParticipantQos& qos,
       announce(own);
     }
   }
-  *found = std::make_shared<BetweenSitesDescriptor>(*found, std::move(places), std::move(port));
+  *found = std::make_shared<BetweenSitesDescriptor>(*found, std::move(places), std::move(door));
   return {};
 }
 
