@@ -22,10 +22,9 @@
 #include <thread>
 #include <utility>
 
-#include "common/base/clock.hpp"
-#include "common/dds/greeting_watch.hpp"
 #include "common/dds/pass_through_transport.hpp"
 #include "common/dds/security.hpp"
+#include "common/dds/tls_front.hpp"
 
 namespace prehend::dds {
 
@@ -42,9 +41,8 @@ constexpr std::uint16_t listens = 7410, dials = 7412;
 /// A connection that works carries two announcements a second. One over which nothing has been said
 /// for so long, and not more received than a greeting, has missed it.
 constexpr std::chrono::milliseconds max_silence{1200};
-constexpr std::uint8_t established = 1;  // the kernel's TCP_ESTABLISHED
-/// How often who listens looks at who calls.
-constexpr std::chrono::milliseconds look_period{50};
+constexpr std::uint64_t max_greeting = 4096;  // bytes, that of TLS as well
+constexpr std::uint8_t established = 1;       // the kernel's TCP_ESTABLISHED
 
 using Ip = std::array<std::uint8_t, 4>;
 using Dialled = std::set<std::pair<Ip, std::uint16_t>>;
@@ -64,61 +62,39 @@ rtps::Locator_t locator(std::int32_t kind, const Ip& ip = {}) {
   return made;
 }
 
-/// Calls visit(file, address of the peer, its port, what the kernel says) for each TCP connection
-/// of this process that stands.
-template <class Visit>
-void for_each_connection(Visit visit) {
+/// Cuts connections to these places that have stopped at the greeting.
+void cut_silent(const Dialled& dialled) {
   std::error_code code;
   for (const auto& entry : std::filesystem::directory_iterator("/proc/self/fd", code)) {
     const int file = std::atoi(entry.path().filename().c_str());
     sockaddr_in peer{};
     socklen_t size = sizeof peer;
     if (::getpeername(file, reinterpret_cast<sockaddr*>(&peer), &size) != 0 ||
-        peer.sin_family != AF_INET)
+        peer.sin_family != AF_INET ||
+        !dialled.contains(
+            {ip_of(reinterpret_cast<const rtps::octet*>(&peer.sin_addr)), ntohs(peer.sin_port)}))
       continue;
     tcp_info info{};
     size = sizeof info;
     if (::getsockopt(file, IPPROTO_TCP, TCP_INFO, &info, &size) == 0 &&
-        info.tcpi_state == established)
-      visit(file, ip_of(reinterpret_cast<const rtps::octet*>(&peer.sin_addr)), ntohs(peer.sin_port),
-            info);
-  }
-}
-
-/// Cuts connections to these places that have stopped at the greeting.
-void cut_silent(const Dialled& dialled) {
-  for_each_connection([&](int file, const Ip& ip, std::uint16_t port, const tcp_info& info) {
-    if (dialled.contains({ip, port}) && info.tcpi_bytes_received < GreetingWatch::max_greeting &&
+        info.tcpi_state == established && info.tcpi_bytes_received < max_greeting &&
         info.tcpi_last_data_sent > max_silence.count())
       ::shutdown(file, SHUT_RDWR);
-  });
-}
-
-/// Cuts connections to this port of ours that have stopped in their handshake.
-void cut_silent_callers(GreetingWatch& watch, std::uint16_t port) {
-  std::vector<GreetingWatch::Connection> open;
-  for_each_connection([&](int file, const Ip& ip, std::uint16_t there, const tcp_info& info) {
-    sockaddr_in own{};
-    socklen_t size = sizeof own;
-    if (::getsockname(file, reinterpret_cast<sockaddr*>(&own), &size) == 0 &&
-        ntohs(own.sin_port) == port)
-      open.push_back({file, ip, there, info.tcpi_bytes_received});
-  });
-  for (const int file : watch.judge(open, process_now())) ::shutdown(file, SHUT_RDWR);
+  }
 }
 
 class WanTransport final : public PassThroughTransport {
  public:
-  /// greets: the port of ours where TLS decides who connects; 0: none.
-  WanTransport(const transport::ChainingTransportDescriptor& descriptor, Dialled dialled,
-               std::uint16_t greets)
+  WanTransport(const transport::ChainingTransportDescriptor& descriptor, Dialled dialled)
       : PassThroughTransport(descriptor), dialled_(std::move(dialled)) {
-    if (!dialled_.empty())
-      look_every(max_silence, [this] { cut_silent(dialled_); });
-    else if (greets != 0)
-      look_every(look_period, [greets, watch = GreetingWatch()]() mutable {
-        cut_silent_callers(watch, greets);
-      });
+    if (dialled_.empty()) return;
+    watch_ = std::jthread([this](const std::stop_token& end) {
+      std::mutex mutex;
+      std::unique_lock lock(mutex);
+      std::condition_variable_any ended;
+      while (!ended.wait_for(lock, end, max_silence, [&] { return end.stop_requested(); }))
+        cut_silent(dialled_);
+    });
   }
   bool transform_remote_locator(const rtps::Locator_t& remote,
                                 rtps::Locator_t& result) const override {
@@ -133,15 +109,6 @@ class WanTransport final : public PassThroughTransport {
   }
 
  private:
-  template <class Look>
-  void look_every(std::chrono::milliseconds period, Look look) {
-    watch_ = std::jthread([period, look = std::move(look)](const std::stop_token& end) mutable {
-      std::mutex mutex;
-      std::unique_lock lock(mutex);
-      std::condition_variable_any ended;
-      while (!ended.wait_for(lock, end, period, [&] { return end.stop_requested(); })) look();
-    });
-  }
   /// The locator by which a remote one is reached; nothing: not by TCP.
   std::optional<rtps::Locator_t> way(const rtps::Locator_t& remote) const {
     if (remote.kind != LOCATOR_KIND_TCPv4) return std::nullopt;
@@ -198,21 +165,24 @@ class PortLock {
   int socket_;
 };
 
+/// What others come to: a port, and with keys who stands before it.
+struct Door {
+  std::shared_ptr<const PortLock> port;
+  std::shared_ptr<const TlsFront> front;
+};
+
 /// As long as the participant has it, the port is its own.
 struct BetweenSitesDescriptor final : transport::ChainingTransportDescriptor {
   BetweenSitesDescriptor(std::shared_ptr<transport::TransportDescriptorInterface> lower,
-                         Dialled dialled, std::shared_ptr<const PortLock> port,
-                         std::uint16_t greets)
+                         Dialled dialled, Door door)
       : ChainingTransportDescriptor(std::move(lower)),
         dialled_(std::move(dialled)),
-        port_(std::move(port)),
-        greets_(greets) {}
+        door_(std::move(door)) {}
   transport::TransportInterface* create_transport() const override {
-    return new WanTransport(*this, dialled_, greets_);
+    return new WanTransport(*this, dialled_);
   }
   Dialled dialled_;
-  std::shared_ptr<const PortLock> port_;
-  std::uint16_t greets_;
+  Door door_;
 };
 
 /// Our own address on the way to another; 0.0.0.0: there is no way yet.
@@ -245,8 +215,20 @@ void use_tls(transport::TCPv4TransportDescriptor& tcp, const std::filesystem::pa
 
 struct Listening {
   rtps::Locator_t announced;
-  std::shared_ptr<const PortLock> port;
+  Door door;
 };
+
+/// Fast DDS itself listens behind the front, on the loopback alone.
+Expected<std::shared_ptr<const TlsFront>> stand_before(transport::TCPv4TransportDescriptor& tcp,
+                                                       std::uint16_t port,
+                                                       const std::filesystem::path& keys) {
+  const std::uint16_t inner = free_inner_port();
+  tcp.interfaceWhiteList = {"127.0.0.1"};
+  tcp.add_listener_port(inner);
+  auto front = TlsFront::create({.port = port, .inner = inner, .keys = keys});
+  if (!front) return tl::unexpected(front.error());
+  return std::move(*front);
+}
 
 Expected<Listening> listen(transport::TCPv4TransportDescriptor& tcp, const Network& network) {
   std::uint16_t port = 0;
@@ -266,11 +248,18 @@ Expected<Listening> listen(transport::TCPv4TransportDescriptor& tcp, const Netwo
         return fail("all ports from 7420 to 7435 are taken", "lab.network = wan",
                     "end other processes of the lab on this machine");
   }
-  tcp.add_listener_port(port);
+  std::shared_ptr<const TlsFront> front;
+  if (network.keys.empty()) {
+    tcp.add_listener_port(port);
+  } else {
+    auto made = stand_before(tcp, port, network.keys);
+    if (!made) return tl::unexpected(made.error());
+    front = std::move(*made);
+  }
   rtps::Locator_t own = locator(LOCATOR_KIND_TCPv4);
   IPLocator::setPhysicalPort(own, port);
   IPLocator::setLogicalPort(own, listens);
-  return Listening{own, std::move(ours)};
+  return Listening{own, {std::move(ours), std::move(front)}};
 }
 
 /// Dials all peers, and returns them with our own addresses on the way there.
@@ -325,14 +314,12 @@ Expected<void> join_sites(eprosima::fastdds::dds::DomainParticipantQos& qos,
     wire.default_unicast_locator_list.push_back(own);
   };
   Dialled places;
-  std::shared_ptr<const PortLock> port;
-  std::uint16_t greets = 0;
+  Door door;
   if (network.peers.empty()) {
     const auto own = listen(tcp, network);
     if (!own) return tl::unexpected(own.error());
     announce(own->announced);
-    port = own->port;
-    if (!network.keys.empty()) greets = IPLocator::getPhysicalPort(own->announced);
+    door = own->door;
   } else {
     if (!network.listen.empty())
       return fail("a process listens or dials, not both", "lab.listen",
@@ -353,8 +340,7 @@ Expected<void> join_sites(eprosima::fastdds::dds::DomainParticipantQos& qos,
       announce(own);
     }
   }
-  *found =
-      std::make_shared<BetweenSitesDescriptor>(*found, std::move(places), std::move(port), greets);
+  *found = std::make_shared<BetweenSitesDescriptor>(*found, std::move(places), std::move(door));
   return {};
 }
 

@@ -232,6 +232,44 @@ TEST_P(Interrupted, AtTheBeginningItGoesAsFastAsItMay) {
   EXPECT_GT(base_step_, 0.019);
 }
 
+// A mapping that is new meets a hand that is somewhere already.
+TEST_P(Interrupted, AMappingThatStartsAnewMeetsTheHandWhereItIs) {
+  mapping_ = *Mapping::create(hand_, model_, {.start_slowly = true});
+  const auto answers = [&](std::optional<bool> placed) {
+    if (placed) mapping_.on_gate(true, placed);
+    robot_says();
+    const Pose X_WH = make_pose(there) * model::HumanHand(1.0).X_HG().inverse();
+    const auto command = mapping_.on_posture(
+        {at(ms_), at(ms_), X_WH, 1.0, tips({0.5, 0.5, 0.5, 0.5, 0.5})}, at(ms_));
+    ms_ += 20;
+    return command.has_value();
+  };
+  EXPECT_FALSE(answers({})) << "it may be anywhere";
+  ASSERT_TRUE(answers(true));
+  operate(1000, there, 0.5);
+  EXPECT_LE(base_step_, slow());
+  EXPECT_LE(finger_step_, slow_finger);
+  operate(9000, there, 0.5);
+  EXPECT_LT(to_operator(there), 1e-3);
+}
+
+// It may be put anywhere: as it always was.
+TEST_P(Interrupted, AMappingThatStartsAnewPutsAHandThatIsNowhere) {
+  mapping_ = *Mapping::create(hand_, model_, {.start_slowly = true});
+  mapping_.on_gate(true, false);
+  operate(200, there, 0.2);
+  EXPECT_GT(base_step_, 0.019);
+}
+
+// Of another operator, whose hand is not far from that of the first.
+TEST_P(Interrupted, WhoLeadsAnewTakesTheHandAlongSlowly) {
+  operate(3000, here, 0.2);
+  mapping_.interrupt();
+  forget();
+  operate(1000, here + 0.15 * Eigen::Vector3d::UnitX(), 0.2);
+  EXPECT_LE(base_step_, slow());
+}
+
 INSTANTIATE_TEST_SUITE_P(Mapping, Interrupted, testing::ValuesIn(test::hand_names()));
 
 }  // namespace

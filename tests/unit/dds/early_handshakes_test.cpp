@@ -1,0 +1,38 @@
+// Who begins a handshake before it is admitted need not begin again, and a flood takes no memory.
+#include "common/dds/early_handshakes.hpp"
+
+#include <gtest/gtest.h>
+
+namespace prehend::dds {
+namespace {
+
+const Time start = Time(std::chrono::hours(1));
+const std::vector<std::uint8_t> first{1, 2, 3}, second{4, 5};
+
+TEST(EarlyHandshakes, GiveTheLastMessageOnce) {
+  EarlyHandshakes early;
+  const GuidPrefix peer{0x81};
+  EXPECT_FALSE(early.take(peer, start));
+  early.keep(peer, first, start);
+  early.keep(peer, second, start);
+  EXPECT_FALSE(early.take({0x82}, start));
+  EXPECT_EQ(early.take(peer, start + seconds(1)), second);
+  EXPECT_FALSE(early.take(peer, start + seconds(1)));
+  EXPECT_TRUE(early.empty());
+}
+
+TEST(EarlyHandshakes, AreForgottenInTimeAndInAFlood) {
+  EarlyHandshakes early;
+  early.keep({0x81}, first, start);
+  EXPECT_FALSE(early.take({0x81}, start + seconds(3)));
+  early.keep({0x81}, std::vector<std::uint8_t>(EarlyHandshakes::max_size + 1), start);
+  EXPECT_TRUE(early.empty());
+  for (int i = 0; i < 1000; ++i)
+    early.keep({0x80, static_cast<std::uint8_t>(i / 256), static_cast<std::uint8_t>(i % 256)},
+               first, start + std::chrono::milliseconds(i));
+  EXPECT_FALSE(early.take({0x80, 0, 0}, start + seconds(1)));
+  EXPECT_TRUE(early.take({0x80, 999 / 256, 999 % 256}, start + seconds(1)));
+}
+
+}  // namespace
+}  // namespace prehend::dds
