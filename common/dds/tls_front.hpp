@@ -8,11 +8,11 @@
 
 namespace prehend::dds {
 
-/// Stands before the TLS port of Fast DDS (2.9 and 3.1), which shakes hands with one at a time and waits for
-/// it without end: one connection that says nothing keeps all others out. The front shakes hands
-/// with all who come at once, each within a time limit, and passes on only who has keys of the lab
-/// that are not revoked. Towards Fast DDS, which listens on the loopback alone, it is a peer with
-/// the keys of this process.
+/// Stands before the TLS port of Fast DDS (2.9 and 3.1), which shakes hands with one at a time and
+/// waits for it without end: one connection that says nothing keeps all others out. The front
+/// shakes hands with all who come at once, each within a time limit, and passes on only who has
+/// keys of the lab that are not revoked. Towards Fast DDS, which listens on the loopback alone, it
+/// is a peer with the keys of this process.
 class TlsFront {
  public:
   struct Options {
