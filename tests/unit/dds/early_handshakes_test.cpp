@@ -6,32 +6,32 @@
 namespace prehend::dds {
 namespace {
 
-const Time start = Time(std::chrono::hours(1));
-const std::vector<std::uint8_t> first{1, 2, 3}, second{4, 5};
+const Time beginning = Time(std::chrono::hours(1));
+const std::vector<std::uint8_t> one_message{1, 2, 3}, next_message{4, 5};
 
 TEST(EarlyHandshakes, GiveTheLastMessageOnce) {
   EarlyHandshakes early;
   const GuidPrefix peer{0x81};
-  EXPECT_FALSE(early.take(peer, start));
-  early.keep(peer, first, start);
-  early.keep(peer, second, start);
-  EXPECT_FALSE(early.take({0x82}, start));
-  EXPECT_EQ(early.take(peer, start + seconds(1)), second);
-  EXPECT_FALSE(early.take(peer, start + seconds(1)));
+  EXPECT_FALSE(early.take(peer, beginning));
+  early.keep(peer, one_message, beginning);
+  early.keep(peer, next_message, beginning);
+  EXPECT_FALSE(early.take({0x82}, beginning));
+  EXPECT_EQ(early.take(peer, beginning + seconds(1)), next_message);
+  EXPECT_FALSE(early.take(peer, beginning + seconds(1)));
   EXPECT_TRUE(early.empty());
 }
 
 TEST(EarlyHandshakes, AreForgottenInTimeAndInAFlood) {
   EarlyHandshakes early;
-  early.keep({0x81}, first, start);
-  EXPECT_FALSE(early.take({0x81}, start + seconds(3)));
-  early.keep({0x81}, std::vector<std::uint8_t>(EarlyHandshakes::max_size + 1), start);
+  early.keep({0x81}, one_message, beginning);
+  EXPECT_FALSE(early.take({0x81}, beginning + seconds(3)));
+  early.keep({0x81}, std::vector<std::uint8_t>(EarlyHandshakes::max_size + 1), beginning);
   EXPECT_TRUE(early.empty());
   for (int i = 0; i < 1000; ++i)
     early.keep({0x80, static_cast<std::uint8_t>(i / 256), static_cast<std::uint8_t>(i % 256)},
-               first, start + std::chrono::milliseconds(i));
-  EXPECT_FALSE(early.take({0x80, 0, 0}, start + seconds(1)));
-  EXPECT_TRUE(early.take({0x80, 999 / 256, 999 % 256}, start + seconds(1)));
+               one_message, beginning + std::chrono::milliseconds(i));
+  EXPECT_FALSE(early.take({0x80, 0, 0}, beginning + seconds(1)));
+  EXPECT_TRUE(early.take({0x80, 999 / 256, 999 % 256}, beginning + seconds(1)));
 }
 
 }  // namespace

@@ -89,7 +89,7 @@ class Interrupted : public testing::TestWithParam<std::string> {
   static Time at(int ms) { return Time(std::chrono::seconds(1'700'000'000) + milliseconds(ms)); }
   void robot_says() {
     const auto joints = static_cast<Eigen::Index>(hand_.joints().size());
-    ASSERT_TRUE(mapping_.on_state(
+    ASSERT_TRUE(mapping_->on_state(
         {at(ms_), robot_, Eigen::VectorXd::Zero(joints), Eigen::VectorXd::Zero(joints), base_}));
   }
   /// For so long the operator is at p with fingers closed by c.
@@ -99,7 +99,7 @@ class Interrupted : public testing::TestWithParam<std::string> {
       const Pose X_WG = make_pose(p);
       const Posture posture{at(ms_), at(ms_), X_WG * model::HumanHand(1.0).X_HG().inverse(), 1.0,
                             tips({c, c, c, c, c})};
-      const auto command = mapping_.on_posture(posture, at(ms_));
+      const auto command = mapping_->on_posture(posture, at(ms_));
       ASSERT_TRUE(command) << command.error().message();
       watch(*command);
     }
@@ -107,7 +107,7 @@ class Interrupted : public testing::TestWithParam<std::string> {
   void pause(int duration) {
     for (const int end = ms_ + duration; ms_ < end; ms_ += 20) {
       robot_says();
-      if (const auto command = mapping_.tick(at(ms_))) watch(*command);
+      if (const auto command = mapping_->tick(at(ms_))) watch(*command);
     }
   }
   void watch(const Command& command) {
@@ -130,7 +130,7 @@ class Interrupted : public testing::TestWithParam<std::string> {
 
   const model::HandModel& hand_;
   MappingModel model_;
-  Mapping mapping_;
+  std::optional<Mapping> mapping_;  // a new one takes its place
   Eigen::VectorXd robot_;
   Pose base_ = make_pose(Eigen::Vector3d(0, -0.3, 0.4));
   int ms_ = 0;
@@ -198,12 +198,12 @@ TEST_P(Interrupted, AJumpIsNoMotion) {
 TEST_P(Interrupted, WhileItIsStoppedCommandsStayWhereTheHandIs) {
   operate(3000, here, 0.2);
   stopped_ = true;
-  mapping_.on_gate(false);
+  mapping_->on_gate(false);
   forget();
   const Pose stopped_at = base_;
   for (int i = 1; i <= 100; ++i) operate(20, here + 0.01 * i * Eigen::Vector3d::UnitX(), 0.2);
   EXPECT_LT((last_->X_WB.translation() - stopped_at.translation()).norm(), 0.051);
-  mapping_.on_gate(true);
+  mapping_->on_gate(true);
   stopped_ = false;
   forget();
   operate(1000, here + Eigen::Vector3d::UnitX(), 0.2);
@@ -234,12 +234,12 @@ TEST_P(Interrupted, AtTheBeginningItGoesAsFastAsItMay) {
 
 // A mapping that is new meets a hand that is somewhere already.
 TEST_P(Interrupted, AMappingThatStartsAnewMeetsTheHandWhereItIs) {
-  mapping_ = *Mapping::create(hand_, model_, {.start_slowly = true});
+  mapping_.emplace(*Mapping::create(hand_, model_, {.start_slowly = true}));
   const auto answers = [&](std::optional<bool> placed) {
-    if (placed) mapping_.on_gate(true, placed);
+    if (placed) mapping_->on_gate(true, placed);
     robot_says();
     const Pose X_WH = make_pose(there) * model::HumanHand(1.0).X_HG().inverse();
-    const auto command = mapping_.on_posture(
+    const auto command = mapping_->on_posture(
         {at(ms_), at(ms_), X_WH, 1.0, tips({0.5, 0.5, 0.5, 0.5, 0.5})}, at(ms_));
     ms_ += 20;
     return command.has_value();
@@ -255,8 +255,8 @@ TEST_P(Interrupted, AMappingThatStartsAnewMeetsTheHandWhereItIs) {
 
 // It may be put anywhere: as it always was.
 TEST_P(Interrupted, AMappingThatStartsAnewPutsAHandThatIsNowhere) {
-  mapping_ = *Mapping::create(hand_, model_, {.start_slowly = true});
-  mapping_.on_gate(true, false);
+  mapping_.emplace(*Mapping::create(hand_, model_, {.start_slowly = true}));
+  mapping_->on_gate(true, false);
   operate(200, there, 0.2);
   EXPECT_GT(base_step_, 0.019);
 }
@@ -264,7 +264,7 @@ TEST_P(Interrupted, AMappingThatStartsAnewPutsAHandThatIsNowhere) {
 // Of another operator, whose hand is not far from that of the first.
 TEST_P(Interrupted, WhoLeadsAnewTakesTheHandAlongSlowly) {
   operate(3000, here, 0.2);
-  mapping_.interrupt();
+  mapping_->interrupt();
   forget();
   operate(1000, here + 0.15 * Eigen::Vector3d::UnitX(), 0.2);
   EXPECT_LE(base_step_, slow());
