@@ -2,7 +2,9 @@
 
 #include <arpa/inet.h>
 #include <fmt/format.h>
+#include <ifaddrs.h>
 #include <linux/tcp.h>
+#include <net/if.h>
 #include <netinet/in.h>
 #include <sys/socket.h>
 #include <sys/un.h>
@@ -214,9 +216,23 @@ void use_tls(transport::TCPv4TransportDescriptor& tcp, const std::filesystem::pa
 }
 
 struct Listening {
-  rtps::Locator_t announced;
+  std::vector<rtps::Locator_t> announced;
   Door door;
 };
+
+/// The addresses by which others reach this host; empty: it is alone.
+std::vector<Ip> own_addresses() {
+  std::vector<Ip> own;
+  ifaddrs* all = nullptr;
+  if (::getifaddrs(&all) != 0) return own;
+  for (const ifaddrs* one = all; one; one = one->ifa_next)
+    if (one->ifa_addr && one->ifa_addr->sa_family == AF_INET && (one->ifa_flags & IFF_UP) &&
+        !(one->ifa_flags & IFF_LOOPBACK))
+      own.push_back(ip_of(reinterpret_cast<const rtps::octet*>(
+          &reinterpret_cast<const sockaddr_in*>(one->ifa_addr)->sin_addr)));
+  ::freeifaddrs(all);
+  return own;
+}
 
 /// Fast DDS itself listens behind the front, on the loopback alone.
 Expected<std::shared_ptr<const TlsFront>> stand_before(transport::TCPv4TransportDescriptor& tcp,
@@ -256,10 +272,16 @@ Expected<Listening> listen(transport::TCPv4TransportDescriptor& tcp, const Netwo
     if (!made) return tl::unexpected(made.error());
     front = std::move(*made);
   }
-  rtps::Locator_t own = locator(LOCATOR_KIND_TCPv4);
-  IPLocator::setPhysicalPort(own, port);
-  IPLocator::setLogicalPort(own, listens);
-  return Listening{own, {std::move(ours), std::move(front)}};
+  // Behind the front Fast DDS would announce the loopback, where it listens.
+  std::vector<Ip> addresses = front ? own_addresses() : std::vector<Ip>{};
+  if (addresses.empty()) addresses.emplace_back();
+  std::vector<rtps::Locator_t> own;
+  for (const Ip& ip : addresses) {
+    own.push_back(locator(LOCATOR_KIND_TCPv4, ip));
+    IPLocator::setPhysicalPort(own.back(), port);
+    IPLocator::setLogicalPort(own.back(), listens);
+  }
+  return Listening{std::move(own), {std::move(ours), std::move(front)}};
 }
 
 /// Dials all peers, and returns them with our own addresses on the way there.
@@ -318,7 +340,7 @@ Expected<void> join_sites(eprosima::fastdds::dds::DomainParticipantQos& qos,
   if (network.peers.empty()) {
     const auto own = listen(tcp, network);
     if (!own) return tl::unexpected(own.error());
-    announce(own->announced);
+    for (const rtps::Locator_t& one : own->announced) announce(one);
     door = own->door;
   } else {
     if (!network.listen.empty())

@@ -260,6 +260,7 @@ TEST_F(Stop, WhatIsKeptAndCannotBeReadStopsAndWhatCannotBeKeptIsSaid) {
   start_hand();
   ordered({"stop"});
   simulation_->stop(seconds(5));
+  listen();  // to its last words
   for (const auto& file : std::filesystem::directory_iterator(folder_ / "state"))
     ASSERT_TRUE(write_file(file.path(), "{"));
   gate_ = {};
