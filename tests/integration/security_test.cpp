@@ -415,7 +415,7 @@ TEST_F(Security, AnOldListIsSaid) {
   const fs::path anna = copy_of("viewer", "old-list");
   const Strings old{"keys.revocation_max_age=0.00001"};
   const auto doctor = [&](const Strings& sets) {
-    Strings words{"doctor", "--json", "--listen", "0.1"};
+    Strings words{"doctor", "--json", "--listen", "0.5"};
     Strings all = sets;
     all.push_back("lab.keys=" + anna.string());
     const Strings lab = lab_arguments(all);

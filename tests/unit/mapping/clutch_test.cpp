@@ -92,6 +92,14 @@ class Interrupted : public testing::TestWithParam<std::string> {
     ASSERT_TRUE(mapping_->on_state(
         {at(ms_), robot_, Eigen::VectorXd::Zero(joints), Eigen::VectorXd::Zero(joints), base_}));
   }
+  /// Fingers that are nearer to each other come together at once.
+  bool are_far(const Eigen::VectorXd& a, const Eigen::VectorXd& b) const {
+    for (std::size_t i = 0; i < hand_.dofs().size(); ++i) {
+      const auto k = static_cast<Eigen::Index>(i);
+      if (std::abs(a[k] - b[k]) > 0.6 * radian_of(hand_.dofs()[i])) return true;
+    }
+    return false;
+  }
   /// For so long the operator is at p with fingers closed by c.
   void operate(int duration, const Eigen::Vector3d& p, double c) {
     for (const int end = ms_ + duration; ms_ < end; ms_ += 20) {
@@ -173,11 +181,7 @@ TEST_P(Interrupted, FingersThatChangedInAPauseComeSlowly) {
   pause(500);
   forget();
   operate(20'000, here, 0.9);
-  const Eigen::ArrayXd way = (last_->dof - before).array().abs();
-  bool far = false;
-  for (std::size_t i = 0; i < hand_.dofs().size(); ++i)
-    far = far || way[static_cast<Eigen::Index>(i)] > 0.6 * radian_of(hand_.dofs()[i]);
-  if (far) {
+  if (are_far(before, last_->dof)) {
     EXPECT_LE(finger_step_, slow_finger);
   }
 }
@@ -240,16 +244,19 @@ TEST_P(Interrupted, AMappingThatStartsAnewMeetsTheHandWhereItIs) {
     robot_says();
     const Pose X_WH = make_pose(there) * model::HumanHand(1.0).X_HG().inverse();
     const auto command = mapping_->on_posture(
-        {at(ms_), at(ms_), X_WH, 1.0, tips({0.5, 0.5, 0.5, 0.5, 0.5})}, at(ms_));
+        {at(ms_), at(ms_), X_WH, 1.0, tips({0.2, 0.2, 0.2, 0.2, 0.2})}, at(ms_));
     ms_ += 20;
     return command.has_value();
   };
+  const Eigen::VectorXd before = robot_;
   EXPECT_FALSE(answers({})) << "it may be anywhere";
   ASSERT_TRUE(answers(true));
-  operate(1000, there, 0.5);
+  operate(1000, there, 0.2);
   EXPECT_LE(base_step_, slow());
-  EXPECT_LE(finger_step_, slow_finger);
-  operate(9000, there, 0.5);
+  operate(9000, there, 0.2);
+  if (are_far(before, last_->dof)) {
+    EXPECT_LE(finger_step_, slow_finger);
+  }
   EXPECT_LT(to_operator(there), 1e-3);
 }
 
