@@ -44,7 +44,7 @@ Vector3d bent(const RealTake& take, std::size_t frame) {
 
 /// Fingers go on when the thumb has met them, as in a fist: up to where the index finger is bent
 /// most.
-std::size_t most_bent(const RealTake& take, std::size_t from) {
+std::size_t fully_bent(const RealTake& take, std::size_t from) {
   std::size_t most = from;
   for (std::size_t i = from; i < take.frames.size(); ++i) {
     const double now = bent(take, i)[1], before = bent(take, most)[1];
@@ -60,7 +60,7 @@ std::optional<RealClosing> closing_between(const RealTake& take, std::size_t ope
   if (span(take.frames[open]) - span(take.frames[met]) < min_drop ||
       take.frames[met].time - take.frames[open].time > max_time)
     return std::nullopt;
-  const std::size_t closed = most_bent(take, met);
+  const std::size_t closed = fully_bent(take, met);
   const Vector3d bends = bent(take, closed) - bent(take, open);
   if (bends[1] < min_bend) return std::nullopt;
   return RealClosing{&take,
