@@ -67,7 +67,7 @@ struct ExternalMapping::State {
   std::optional<dds::Participant> participant;
   std::optional<service::Conductor> conductor;
   Inbox inbox;
-  std::optional<dds::RawWriter> postures, detections, states;
+  std::optional<dds::RawWriter> postures, detections, states, gates;
   std::unique_ptr<dds::RawReader> commands;
   std::uint64_t sequence = 0;
   Duration beginning = take_beginning;
@@ -92,10 +92,24 @@ struct ExternalMapping::State {
                                [this](dds::RawSample&& sample) { inbox.add(std::move(sample)); });
     if (!reader) return tl::unexpected(reader.error());
     commands = std::move(*reader);
-    if (!options.lockstep) return {};
+    if (!options.lockstep) return tell_of_gate();
     auto made = service::Conductor::create(*participant, {options.service});
     if (!made) return tl::unexpected(made.error());
     conductor.emplace(std::move(*made));
+    return {};
+  }
+
+  /// Before every robot hand is a gate, which says that the hand is somewhere already. A mapping
+  /// that hears nothing of it may wait for it.
+  Expected<void> tell_of_gate() {
+    auto made = dds::RawWriter::create(*participant, dds::raw_topic(dds::robot_gate));
+    if (!made) return tl::unexpected(made.error());
+    gates.emplace(std::move(*made));
+    v1::GateState open;
+    open.hand(benchmarked_hand_name);
+    open.stamp_ns(to_ns(std::chrono::system_clock::now()));
+    open.placed(true);
+    write(*gates, dds::robot_gate, open);
     return {};
   }
 
