@@ -23,6 +23,7 @@ const std::vector<Tool>& tools() {
       {"train", "prehend-train", "train a mapping model for a robot hand"},
       {"study", "prehend-study", "repeat the thesis's experiments and the grasp benchmark"},
       {"hand", "prehend-hand", "is this URDF a usable hand; make it one"},
+      {"arm", "prehend-arm", "is this URDF a usable arm; make it one; inverse kinematics"},
       {"grasp", "prehend-grasp", "plan grasps, export them, quality of given contacts"},
   };
   return table;
