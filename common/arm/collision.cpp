@@ -20,7 +20,7 @@ bool is_free(const model::ArmModel& arm, int a, int b) {
 }  // namespace
 
 Nearest nearest(const model::Capsule& a, const model::Capsule& b) {
-  const Vector3d u = a.p_LB - a.p_LA, v = b.p_LB - b.p_LA, w = a.p_LA - b.p_LA;
+  const Vector3d u = a.b - a.a, v = b.b - b.a, w = a.a - b.a;
   const double uu = u.squaredNorm(), vv = v.squaredNorm(), uv = u.dot(v), uw = u.dot(w),
                vw = v.dot(w);
   double s = 0, t = 0;
@@ -41,8 +41,8 @@ Nearest nearest(const model::Capsule& a, const model::Capsule& b) {
     }
   }
   Nearest found;
-  found.p_A = a.p_LA + s * u;
-  found.p_B = b.p_LA + t * v;
+  found.p_A = a.a + s * u;
+  found.p_B = b.a + t * v;
   found.distance = (found.p_A - found.p_B).norm() - a.radius - b.radius;
   return found;
 }
@@ -65,7 +65,7 @@ std::vector<Collision::Pair> Collision::near(const Configuration& at, double ran
   placed.reserve(parts_.size());
   for (const Part& part : parts_) {
     const Pose& X_AL = at.X_AL[static_cast<std::size_t>(part.link)];
-    placed.push_back({X_AL * part.capsule.p_LA, X_AL * part.capsule.p_LB, part.capsule.radius});
+    placed.push_back({X_AL * part.capsule.a, X_AL * part.capsule.b, part.capsule.radius});
   }
   std::vector<Pair> found;
   for (const auto& [a, b] : pairs_) {
@@ -83,7 +83,7 @@ std::vector<Collision::Pair> Collision::near(const Configuration& at, double ran
   for (std::size_t a = 0; table_ && a < parts_.size(); ++a) {
     // What the first joint turns keeps its height, wherever it is.
     if (parts_[a].link < 2) continue;
-    for (const Vector3d& end : {placed[a].p_LA, placed[a].p_LB}) {
+    for (const Vector3d& end : {placed[a].a, placed[a].b}) {
       const double distance = end.z() - placed[a].radius - *table_;
       if (distance > range) continue;
       found.push_back(

@@ -18,14 +18,14 @@ using Square = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, model::m
 constexpr double max_dt = 0.1;                    // s
 constexpr double trust_m = 0.1, trust_rad = 0.3;  // of the linear step
 constexpr double there_m = 1e-3, there_rad = 5e-3;
-constexpr double calm = 0.8;       // of the acceleration, that slows down before the wish
-constexpr double at_rest = 0.01;   // of a joint's velocity limit
-constexpr double home_rate = 0.5;  // 1/s, of a redundant joint to its home
-constexpr double probe = 0.05;     // rad, out of a singularity
-constexpr double approach = 4.0;   // 1/s: speed towards something by how far it is
-constexpr double spare = 0.005;    // m, that slowing leaves to the clearance
-constexpr double sight = 0.4;      // m, how far distances are looked at
-constexpr int max_looks = 16;      // at postures on the way to rest
+constexpr double calm = 0.8;           // of the acceleration, that slows down before the wish
+constexpr double at_rest = 0.01;       // of a joint's velocity limit
+constexpr double home_rate = 0.5;      // 1/s, of a redundant joint to its home
+constexpr double probe = 0.05;         // rad, out of a singularity
+constexpr double approach_rate = 4.0;  // 1/s: speed towards something by how far it is
+constexpr double spare = 0.005;        // m, that slowing leaves to the clearance
+constexpr double sight = 0.4;          // m, how far distances are looked at
+constexpr int max_looks = 16;          // at postures on the way to rest
 constexpr std::size_t max_rows = 8;
 constexpr int sweeps = 40;
 
@@ -131,8 +131,8 @@ Controller::Controller(const model::ArmModel& arm, ControllerOptions options)
         shapes.insert(shapes.end(), options_.surroundings.carried.begin(),
                       options_.surroundings.carried.end());
       for (const model::Capsule& shape : shapes)
-        lever_[i] = std::max(
-            lever_[i], length + shape.radius + std::max(shape.p_LA.norm(), shape.p_LB.norm()));
+        lever_[i] =
+            std::max(lever_[i], length + shape.radius + std::max(shape.a.norm(), shape.b.norm()));
     }
   }
   start(arm.home);
@@ -259,7 +259,7 @@ void Controller::keep_away(const Configuration& at, const Bounds& bounds, Aim& a
   if (pairs.size() > max_rows) pairs.resize(max_rows);
   for (const Collision::Pair& pair : pairs) {
     Row row{slope(arm_, at, pair.first, pair.p_A, pair.direction),
-            -approach * (pair.distance - options_.clearance - spare)};
+            -approach_rate * (pair.distance - options_.clearance - spare)};
     if (pair.second >= 0) row.c -= slope(arm_, at, pair.second, pair.p_B, pair.direction);
     rows.push_back(std::move(row));
   }

@@ -25,7 +25,7 @@ std::vector<model::Capsule> carried(const model::ArmModel& arm, const model::Han
     for (const model::CollisionShape& shape : hand.links()[link].collision) {
       const model::Capsule part = model::capsule_around(shape);
       const Pose X = X_LB * X_BL[link];
-      capsules.push_back({X * part.p_LA, X * part.p_LB, part.radius});
+      capsules.push_back({X * part.a, X * part.b, part.radius});
     }
   return capsules;
 }

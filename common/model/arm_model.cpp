@@ -35,8 +35,8 @@ Capsule capsule_around(const CollisionShape& shape) {
     default:
       capsule.radius = half.x();
   }
-  capsule.p_LA = shape.X_LS * Eigen::Vector3d(-along);
-  capsule.p_LB = shape.X_LS * along;
+  capsule.a = shape.X_LS * Eigen::Vector3d(-along);
+  capsule.b = shape.X_LS * along;
   return capsule;
 }
 

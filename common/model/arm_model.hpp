@@ -15,12 +15,6 @@ namespace prehend::model {
 
 inline constexpr int min_arm_joints = 6, max_arm_joints = 7;
 
-/// All points nearer than `radius` to the line from A to B, in the link's frame, m.
-struct Capsule {
-  Eigen::Vector3d p_LA = Eigen::Vector3d::Zero(), p_LB = Eigen::Vector3d::Zero();
-  double radius = 0;
-};
-
 /// The capsule around a collision shape: a cylinder with round ends, a sphere, or for a box one
 /// along its longest edge.
 Capsule capsule_around(const CollisionShape& shape);
