@@ -17,16 +17,15 @@ TEST(Capsules, AreAsFarApartAsTheNearestPointsOfTheirLines) {
   Random random(1);
   for (int k = 0; k < 300; ++k) {
     model::Capsule a = random_capsule(random), b = random_capsule(random);
-    if (k % 5 == 0) b.b = b.a;                             // a sphere
-    if (k % 7 == 0) a.b = a.a;                             // two
+    if (k % 5 == 0) b.b = b.a;                       // a sphere
+    if (k % 7 == 0) a.b = a.a;                       // two
     if (k % 11 == 0) b.b = b.a + 1.7 * (a.b - a.a);  // parallel
     const arm::Nearest found = arm::nearest(a, b);
     double least = 100;
     for (int i = 0; i <= 60; ++i)
       for (int j = 0; j <= 60; ++j)
-        least = std::min(
-            least,
-            (a.a + i / 60.0 * (a.b - a.a) - b.a - j / 60.0 * (b.b - b.a)).norm());
+        least =
+            std::min(least, (a.a + i / 60.0 * (a.b - a.a) - b.a - j / 60.0 * (b.b - b.a)).norm());
     EXPECT_LE(found.distance, least - a.radius - b.radius + 1e-12);
     EXPECT_GT(found.distance, least - a.radius - b.radius - 0.04);  // steps of the grid
   }
