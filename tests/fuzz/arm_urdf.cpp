@@ -13,7 +13,7 @@ using namespace prehend;
 
 namespace {
 
-bool read(const std::string& urdf) {
+bool answers(const std::string& urdf) {
   for (const test::ArmFiles& files : test::all_arms()) {
     const auto arm = model::ArmModel::parse(urdf, files.toml);
     fuzz::require(arm || !arm.error().what.empty(), "refused without a reason");
@@ -45,6 +45,6 @@ int main(int argc, char** argv) {
   fuzzer.mutate = [](Random& random, std::string text) {
     return fuzz::mutate_text(random, std::move(text), fuzz::mutate_xml);
   };
-  fuzzer.target = read;
+  fuzzer.target = answers;
   return fuzz::run(fuzzer, argc, argv);
 }
