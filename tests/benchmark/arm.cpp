@@ -36,7 +36,9 @@ void tell(const std::string& arm, const char* what, std::vector<double> times) {
 void measure(const std::string& name) {
   const model::ArmModel& model = test::arm(name);
   arm::ControllerOptions options;
-  options.surroundings = {0.0, {{{0, 0, 0.02}, {0, 0, 0.15}, 0.05}}};
+  const Pose X_LF = model.X_LE * model.X_EF;
+  options.surroundings = {
+      0.0, {{X_LF * Eigen::Vector3d(0, 0, 0.05), X_LF * Eigen::Vector3d(0, 0, 0.15), 0.04}}};
   std::vector<double> frames, poses;
   for (std::uint64_t seed = 0; seed < 100; ++seed) {
     arm::Controller controller(model, options);

@@ -20,10 +20,12 @@ namespace {
 
 constexpr double dt = 0.01;
 
-arm::ControllerOptions on_a_table(const model::ArmModel&) {
+arm::ControllerOptions on_a_table(const model::ArmModel& model) {
   arm::ControllerOptions options;
   options.surroundings.table = 0.0;
-  options.surroundings.carried = {{{0, 0, 0.02}, {0, 0, 0.15}, 0.05}};  // a hand
+  const Pose X_LF = model.X_LE * model.X_EF;  // a hand
+  options.surroundings.carried = {
+      {X_LF * Eigen::Vector3d(0, 0, 0.05), X_LF * Eigen::Vector3d(0, 0, 0.15), 0.04}};
   return options;
 }
 
