@@ -130,7 +130,7 @@ std::vector<ArmFiles> all_arms() {
   for (const auto& entry :
        std::filesystem::directory_iterator(PREHEND_SOURCE "/common/models/arms"))
     if (entry.is_directory())
-      arms.push_back({entry.path().filename(), read_file(entry.path() / "arm.urdf").value(),
+      arms.push_back({entry.path().filename().string(), read_file(entry.path() / "arm.urdf").value(),
                       read_file(entry.path() / "arm.toml").value()});
   std::sort(arms.begin(), arms.end(), [](const auto& a, const auto& b) { return a.name < b.name; });
   return arms;
