@@ -24,6 +24,7 @@ const std::vector<Tool>& tools() {
       {"study", "prehend-study", "repeat the thesis's experiments and the grasp benchmark"},
       {"benchmark", "prehend-benchmark", "judge any mapping by the benchmark's takes"},
       {"hand", "prehend-hand", "is this URDF a usable hand; make it one"},
+      {"arm", "prehend-arm", "is this URDF a usable arm; make it one; inverse kinematics"},
       {"grasp", "prehend-grasp", "plan grasps, export them, quality of given contacts"},
   };
   return table;
