@@ -9,8 +9,8 @@ namespace prehend::demonstration {
 
 namespace {
 
-constexpr std::array shares{0.34, 0.67, 1.0};  // of a grasp: networks learn its beginnings, too
-constexpr double wanted_answer = 0.9;          // of a network, for the class that it is
+constexpr std::array shares{0.5, 1.0};  // of a grasp: networks learn its beginnings, too
+constexpr double wanted_answer = 0.9;   // of a network, for the class that it is
 
 /// The same grasp by somebody who stands a little elsewhere and has another hand.
 Take varied(Take take, const TrainerOptions& options, Random& random) {

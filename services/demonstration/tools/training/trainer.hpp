@@ -11,10 +11,10 @@ namespace prehend::demonstration {
 
 /// How recognisers are trained. What is not here is chosen within the training people.
 struct TrainerOptions {
-  int folds = 5;          // by person: a network learns from all but one, which says when to stop
+  int folds = 4;          // by person: a network learns from all but one, which says when to stop
   int hidden = 12;        // neurons of a network
-  int epochs = 150;       // at most
-  int patience = 40;      // epochs without a better answer
+  int epochs = 80;        // at most
+  int patience = 25;      // epochs without a better answer
   int copies = 1;         // of each grasp, turned about the vertical and stretched a little
   double max_turn = 0.2;  // rad
   double max_stretch = 0.08;
