@@ -25,7 +25,7 @@ constexpr std::string_view byte_order_mark = "\xef\xbb\xbf";
 constexpr double farthest = 0.5;   // m, between fingertips of a hand
 constexpr double fastest = 50;     // m/s
 constexpr double longest = 86400;  // s
-constexpr std::size_t longest_name = 64;
+constexpr std::size_t max_name = 64;
 
 std::string_view trimmed(std::string_view text) {
   constexpr std::string_view around = " \t\"";
@@ -102,7 +102,7 @@ class Reader {
   }
 
   std::string name_of(CsvRow& row, std::string_view column) {
-    return printable(trimmed(cell(row, column)).substr(0, longest_name));
+    return printable(trimmed(cell(row, column)).substr(0, max_name));
   }
 
   /// A number that should be there; counts where it is not.
