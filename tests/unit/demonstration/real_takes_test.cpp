@@ -20,7 +20,7 @@ TEST(RealTakes, NineTrainedPeopleTellOfNineOthers) {
   const auto results = judge(judged, &trained, {}, 1, [](auto, auto) {});
   ASSERT_EQ(results.size(), 1U);
   const std::vector<std::size_t> wrap_or_tool{0, 0, 1, 1};  // bottle, cup, knife, pen
-  // Half the people to learn from: well below what docs/results/demonstration.md says of 17.
+  // Half the people to learn from: well below what is aimed at with 17.
   for (const auto& [method, least] :
        {std::pair(Method::hybrid, 0.75), std::pair(Method::posture, 0.62),
         std::pair(Method::hmm, 0.7)})
