@@ -14,7 +14,7 @@ namespace {
 
 using testing::Test;
 
-const std::vector<Take>& shown() {
+const std::vector<Take>& few() {
   static const auto takes = test::made_takes({.people = 2, .trials = 1, .samples = 3});
   return takes;
 }
@@ -41,31 +41,31 @@ std::string csv_of(const std::vector<std::vector<std::string>>& rows,
 }
 
 void expect_same(const std::vector<Take>& read, double tolerance = 1e-5) {
-  ASSERT_EQ(read.size(), shown().size());
+  ASSERT_EQ(read.size(), few().size());
   for (std::size_t i = 0; i < read.size(); ++i) {
-    EXPECT_EQ(read[i].user, shown()[i].user);
-    EXPECT_EQ(read[i].label, shown()[i].label);
+    EXPECT_EQ(read[i].user, few()[i].user);
+    EXPECT_EQ(read[i].label, few()[i].label);
     EXPECT_EQ(read[i].task, "1");
-    ASSERT_EQ(read[i].samples.size(), shown()[i].samples.size());
+    ASSERT_EQ(read[i].samples.size(), few()[i].samples.size());
     for (std::size_t k = 0; k < read[i].samples.size(); ++k)
       for (std::size_t f = 0; f < 4; ++f)
         EXPECT_LT(
-            (read[i].samples[k].p_thumb_tip_W[f] - shown()[i].samples[k].p_thumb_tip_W[f]).norm(),
+            (read[i].samples[k].p_thumb_tip_W[f] - few()[i].samples[k].p_thumb_tip_W[f]).norm(),
             2 * tolerance);
   }
 }
 
 TEST(TakesFile, ReadsWhatWasWritten) {
-  const auto takes = parse_takes(test::to_csv(shown()), "task1.csv", "1");
+  const auto takes = parse_takes(test::to_csv(few()), "task1.csv", "1");
   ASSERT_TRUE(takes) << takes.error().message();
   expect_same(takes->takes);
   EXPECT_TRUE(takes->complaints.empty());
-  EXPECT_NEAR(takes->takes[0].samples[1].hand_speed, shown()[0].samples[1].hand_speed, 1e-4);
+  EXPECT_NEAR(takes->takes[0].samples[1].hand_speed, few()[0].samples[1].hand_speed, 1e-4);
   EXPECT_EQ(takes->rows, 18U);
 }
 
 TEST(TakesFile, OrderOfColumnsLineEndsMarksAndQuotesDoNotMatter) {
-  auto rows = cells_of(test::to_csv(shown()));
+  auto rows = cells_of(test::to_csv(few()));
   for (auto& row : rows) {
     std::reverse(row.begin(), row.end());
     row.push_back(row.empty() ? "" : "more");  // a column that nobody asked for
@@ -85,7 +85,7 @@ TEST(TakesFile, OrderOfColumnsLineEndsMarksAndQuotesDoNotMatter) {
 }
 
 TEST(TakesFile, OptionalColumnsMayBeMissing) {
-  auto rows = cells_of(test::to_csv(shown()));
+  auto rows = cells_of(test::to_csv(few()));
   for (auto& row : rows) {
     row.erase(row.begin() + 7, row.begin() + 9);  // speeds
     row.erase(row.begin() + 3, row.begin() + 5);  // side, action
@@ -99,7 +99,7 @@ TEST(TakesFile, OptionalColumnsMayBeMissing) {
 }
 
 TEST(TakesFile, ANeededColumnIsNamed) {
-  auto rows = cells_of(test::to_csv(shown()));
+  auto rows = cells_of(test::to_csv(few()));
   rows[0][10] = "thumb_index_height_cm";
   const auto takes = parse_takes(csv_of(rows), "here/task1.csv", "1");
   ASSERT_FALSE(takes);
@@ -110,7 +110,7 @@ TEST(TakesFile, ANeededColumnIsNamed) {
 }
 
 TEST(TakesFile, BadRowsAreCountedAndTheOthersStay) {
-  auto rows = cells_of(test::to_csv(shown()));
+  auto rows = cells_of(test::to_csv(few()));
   rows[2][6] = "soon";                                                              // no time
   rows[3][0] = "";                                                                  // nobody
   rows[5].resize(4);                                                                // cut
@@ -119,7 +119,7 @@ TEST(TakesFile, BadRowsAreCountedAndTheOthersStay) {
   ASSERT_TRUE(takes) << takes.error().message();
   EXPECT_EQ(takes->bad_rows, 3U);
   EXPECT_EQ(takes->unknown_numbers, 4U);
-  EXPECT_EQ(takes->takes.size(), shown().size()) << "no take is lost";
+  EXPECT_EQ(takes->takes.size(), few().size()) << "no take is lost";
   ASSERT_EQ(takes->complaints.size(), 1U) << "one line a file";
   const std::string told = takes->complaints[0].message();
   EXPECT_NE(told.find("3 of 18 rows left out"), std::string::npos) << told;
@@ -128,7 +128,7 @@ TEST(TakesFile, BadRowsAreCountedAndTheOthersStay) {
 }
 
 TEST(TakesFile, SamplesAreInOrderOfTime) {
-  auto rows = cells_of(test::to_csv(shown()));
+  auto rows = cells_of(test::to_csv(few()));
   std::swap(rows[1], rows[3]);
   const auto takes = parse_takes(csv_of(rows), "task1.csv", "1");
   ASSERT_TRUE(takes);
@@ -149,7 +149,7 @@ TEST(TakesFile, OneBadFileDoesNotCostTheOthers) {
   const auto folder =
       std::filesystem::path(testing::TempDir()) / ("takes" + std::to_string(getpid()));
   std::filesystem::create_directories(folder / "task9.csv");  // a folder in place of a file
-  std::ofstream(folder / "task1.csv") << test::to_csv(shown());
+  std::ofstream(folder / "task1.csv") << test::to_csv(few());
   std::ofstream(folder / "task2.csv") << "nothing of use";
   std::ofstream(folder / "notes.txt") << "not asked for";
   const auto takes = load_takes(folder);

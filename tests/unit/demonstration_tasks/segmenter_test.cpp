@@ -51,13 +51,14 @@ Score score(const test::MadeDemonstration& kind, int shown) {
   return made;
 }
 
+// The segmenter's window and noise were chosen in sight of seeds 3 and 7.
 TEST(Segmenter, FindsPhasesOfPickAndPlaceWithinATenthOfASecond) {
   for (const double rate : {30.0, 100.0})
     for (const double noise : {0.0005, 0.001})
       for (const bool lost : {false, true})
         for (const int objects : {1, 2}) {
           const Score made = score(
-              {.objects = objects, .rate = rate, .noise = noise, .lost_in_hand = lost, .seed = 7},
+              {.objects = objects, .rate = rate, .noise = noise, .lost_in_hand = lost, .seed = 17},
               rate > 50 ? 10 : 40);
           const std::string what =
               testing::PrintToString(rate) + " Hz, " + testing::PrintToString(noise) + " m, " +
@@ -69,7 +70,7 @@ TEST(Segmenter, FindsPhasesOfPickAndPlaceWithinATenthOfASecond) {
 }
 
 TEST(Segmenter, WithoutRestBetweenObjects) {
-  const Score made = score({.objects = 3, .rests_between = false, .seed = 3}, 40);
+  const Score made = score({.objects = 3, .rests_between = false, .seed = 13}, 40);
   EXPECT_GE(made.right_orders, 0.97 * made.shown);
   EXPECT_GE(made.near_boundaries, 0.95 * made.boundaries) << made.worst;
 }

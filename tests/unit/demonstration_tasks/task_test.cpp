@@ -25,7 +25,6 @@ ShownTask lay_the_table(Random& random) {
     return make_pose(X.translation() + random.normal3(0.002), Eigen::Matrix3d(X.linear()));
   };
   const Pose cup_put = plate * make_pose({0, 0.12, 0});
-  const Pose spoon_put = cup_put * make_pose({0, 0, 0.06});
   ShownTask made(2);
   made[0] = {"cup",
              "medium wrap",
@@ -35,6 +34,8 @@ ShownTask lay_the_table(Random& random) {
              0.25,
              0.1,
              {{"plate", plate}, {"spoon", spoon}, {"tray", tray}}};
+  // Into the cup where it stands, not where it was meant to stand.
+  const Pose spoon_put = made[0].X_WO_after * make_pose({0, 0, 0.06});
   made[1] = {"spoon",
              "thumb-2 finger",
              spoon,

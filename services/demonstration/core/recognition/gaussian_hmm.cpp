@@ -36,11 +36,18 @@ struct Counts {
   Eigen::MatrixXd steps, sums, squares;
 };
 
+/// What was impossible stays so: Eigen's exp of -inf over several numbers at once is not quite 0.
+template <class Old, class Count>
+auto still_possible(const Old& old, const Count& count) {
+  return (old.array() > 0).select(count, 0.0).eval();
+}
+
 HmmParameters from_counts(const Counts& counts, HmmParameters made, double min_variance) {
-  made.initial = counts.initial / counts.initial.sum();
+  made.initial = still_possible(made.initial, counts.initial) / counts.initial.sum();
   for (Eigen::Index s = 0; s < made.initial.size(); ++s) {
     const double left = counts.steps.row(s).sum();
-    if (left > 0) made.transition.row(s) = counts.steps.row(s) / left;
+    if (left > 0)
+      made.transition.row(s) = still_possible(made.transition.row(s), counts.steps.row(s)) / left;
     if (counts.visits[s] <= 0) continue;  // nobody came here: it stays as it is
     made.means.col(s) = counts.sums.col(s) / counts.visits[s];
     made.variances.col(s) =

@@ -21,15 +21,15 @@ struct SceneSample {
 
 /// What segmentation knows of hands, and of how noisy they are seen.
 struct SegmenterOptions {
-  double still_speed = 0.02;   // m/s, standard deviation of a hand that is still
-  double still_rate = 0.012;   // m/s, of an aperture that stays
+  double still_speed = 0.008;   // m/s, standard deviation of a hand that is still
+  double still_rate = 0.004;   // m/s, of an aperture that stays
   double closing_rate = 0.15;  // m/s, about how fast fingers close and open
   double moving_speed = 0.5;   // m/s, about how fast a hand moves
   double near = 0.08;          // m, about how near the grasped object is
   double far = 0.3;            // m, about how near an object is otherwise
-  double window = 0.1;         // s, over which speeds are taken
+  double window = 0.2;         // s, over which speeds are taken
   /// s, of each phase.
-  std::array<double, phase_count> min_duration{0.15, 0.25, 0.12, 0.25, 0.12, 0.2};
+  std::array<double, phase_count> min_duration{0.25, 0.25, 0.12, 0.25, 0.12, 0.2};
   std::array<double, phase_count> max_duration{120, 6, 2.5, 120, 2.5, 6};
 };
 

@@ -16,7 +16,7 @@
 namespace prehend::demonstration {
 namespace {
 
-struct Arguments {
+struct TrainArguments {
   std::string folder, model;
   TrainerOptions options;
   bool json = false;
@@ -48,7 +48,7 @@ Expected<std::vector<TaskRecogniser>> train_all(const Takes& takes, const Traine
   return made;
 }
 
-int train(const Arguments& arguments) {
+int train(const TrainArguments& arguments) {
   const auto begin = std::chrono::steady_clock::now();
   const auto takes = told_takes(arguments.folder);
   if (!takes) return tool::complain(takes.error());
@@ -83,7 +83,7 @@ int train(const Arguments& arguments) {
 }  // namespace
 
 void add_train(tool::Program& program) {
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<TrainArguments>();
   CLI::App* command = program.app().add_subcommand(
       "train", "Learns to recognise grasps from a folder with files task*.csv, a row a sample.");
   command->add_option("folder", arguments->folder, "holds task*.csv")->required();
