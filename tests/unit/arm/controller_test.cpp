@@ -29,6 +29,11 @@ arm::ControllerOptions on_a_table(const model::ArmModel& model) {
   return options;
 }
 
+/// Not {X_WB, {}}: that leaves the numbers of the velocity unset.
+arm::Wish resting(const Pose& X_WB) {
+  return {.X_WB = X_WB, .velocity_W = arm::Vector6::Zero()};
+}
+
 /// What holds between two frames; the first that does not, or nothing.
 std::string broken(const model::ArmModel& model, const Joints& q, const Joints& v,
                    const Guidance& next, double step) {
@@ -50,7 +55,7 @@ class ControllerOf : public testing::TestWithParam<std::string> {
   /// Follows a fixed wish for `seconds`.
   Guidance settle(Controller& controller, const Pose& X_WB, double seconds = 6) const {
     Guidance guidance;
-    for (int k = 0; k < seconds / dt; ++k) guidance = controller.step({X_WB, {}}, dt);
+    for (int k = 0; k < seconds / dt; ++k) guidance = controller.step(resting(X_WB), dt);
     return guidance;
   }
 };
@@ -136,10 +141,10 @@ TEST_P(ControllerOf, BrakesForAWishThatCannotBeMeant) {
   Controller controller(model, on_a_table(model));
   Pose X_WB = arm::end_pose(model, model.home);
   X_WB.translation().x() += 0.2;
-  for (int k = 0; k < 20; ++k) controller.step({X_WB, {}}, dt);
+  for (int k = 0; k < 20; ++k) controller.step(resting(X_WB), dt);
   X_WB.translation().x() = std::numeric_limits<double>::quiet_NaN();
   Guidance end;
-  for (int k = 0; k < 100; ++k) end = controller.step({X_WB, {}}, dt);
+  for (int k = 0; k < 100; ++k) end = controller.step(resting(X_WB), dt);
   EXPECT_EQ(end.hindrance, Hindrance::no_wish);
   EXPECT_EQ(end.velocity.norm(), 0);
 }
@@ -159,7 +164,7 @@ TEST(Controller, PassesASingularWrist) {
   for (int k = 0; k <= 300; ++k) {
     Joints wished = q;
     wished[4] = 0.5 - std::min(k, 200) * 0.005;
-    end = controller.step({arm::end_pose(puma, wished), {}}, dt);
+    end = controller.step(resting(arm::end_pose(puma, wished)), dt);
     worst = std::max(worst, end.off_rad);
   }
   EXPECT_EQ(end.hindrance, Hindrance::none) << end.off_m << " " << end.off_rad;
