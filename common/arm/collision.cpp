@@ -60,42 +60,56 @@ Collision::Collision(const model::ArmModel& arm, Surroundings surroundings)
         pairs_.emplace_back(static_cast<int>(a), static_cast<int>(b));
 }
 
-std::vector<Collision::Pair> Collision::near(const Configuration& at, double range) const {
-  std::vector<model::Capsule> placed;
+template <class Visit>
+void Collision::visit(const Configuration& at, const double& range, const Visit& visit) const {
+  struct Placed {
+    model::Capsule capsule;
+    Vector3d middle;
+    double size = 0;  // of the sphere around it
+  };
+  std::vector<Placed> placed;
   placed.reserve(parts_.size());
   for (const Part& part : parts_) {
     const Pose& X_AL = at.X_AL[static_cast<std::size_t>(part.link)];
-    placed.push_back({X_AL * part.capsule.a, X_AL * part.capsule.b, part.capsule.radius});
+    const Vector3d a = X_AL * part.capsule.a, b = X_AL * part.capsule.b;
+    placed.push_back(
+        {{a, b, part.capsule.radius}, 0.5 * (a + b), 0.5 * (a - b).norm() + part.capsule.radius});
   }
-  std::vector<Pair> found;
   for (const auto& [a, b] : pairs_) {
-    const model::Capsule &first = placed[static_cast<std::size_t>(a)],
-                         &second = placed[static_cast<std::size_t>(b)];
-    const Nearest gap = nearest(first, second);
-    if (gap.distance > range) continue;
-    const Vector3d way = gap.p_A - gap.p_B;
-    const Vector3d direction =
-        way.norm() > 1e-9 ? Vector3d(way.normalized()) : Vector3d(Vector3d::UnitZ());
-    found.push_back({parts_[static_cast<std::size_t>(a)].link,
-                     parts_[static_cast<std::size_t>(b)].link, gap.distance, gap.p_A, gap.p_B,
-                     direction});
+    const Placed &first = placed[static_cast<std::size_t>(a)],
+                 &second = placed[static_cast<std::size_t>(b)];
+    const double far = range + first.size + second.size;  // spheres first: most are far away
+    if (far < 0 || (first.middle - second.middle).squaredNorm() > far * far) continue;
+    const Nearest gap = nearest(first.capsule, second.capsule);
+    if (gap.distance <= range) visit(a, b, gap);
   }
   for (std::size_t a = 0; table_ && a < parts_.size(); ++a) {
     // What the first joint turns keeps its height, wherever it is.
     if (parts_[a].link < 2) continue;
-    for (const Vector3d& end : {placed[a].a, placed[a].b}) {
-      const double distance = end.z() - placed[a].radius - *table_;
-      if (distance > range) continue;
-      found.push_back(
-          {parts_[a].link, -1, distance, end, {end.x(), end.y(), *table_}, Vector3d::UnitZ()});
+    for (const Vector3d& end : {placed[a].capsule.a, placed[a].capsule.b}) {
+      const double distance = end.z() - placed[a].capsule.radius - *table_;
+      if (distance <= range)
+        visit(static_cast<int>(a), -1, Nearest{distance, end, {end.x(), end.y(), *table_}});
     }
   }
+}
+
+std::vector<Collision::Pair> Collision::near(const Configuration& at, double range) const {
+  std::vector<Pair> found;
+  visit(at, range, [&](int a, int b, const Nearest& gap) {
+    const int first = parts_[static_cast<std::size_t>(a)].link;
+    const int second = b < 0 ? -1 : parts_[static_cast<std::size_t>(b)].link;
+    const Vector3d way = gap.p_A - gap.p_B;
+    const bool is_up = b < 0 || way.norm() <= 1e-9;
+    const Vector3d direction = is_up ? Vector3d(Vector3d::UnitZ()) : Vector3d(way.normalized());
+    found.push_back({first, second, gap.distance, gap.p_A, gap.p_B, direction});
+  });
   return found;
 }
 
 double Collision::clearance(const Configuration& at, double range) const {
   double least = range;
-  for (const Pair& pair : near(at, range)) least = std::min(least, pair.distance);
+  visit(at, least, [&](int, int, const Nearest& gap) { least = std::min(least, gap.distance); });
   return least;
 }
 

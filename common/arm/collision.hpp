@@ -46,6 +46,11 @@ class Collision {
     model::Capsule capsule;
   };
 
+  /// Calls with both parts (second -1: the table) and what is between them, for all that are not
+  /// farther away than `range` then is.
+  template <class Visit>
+  void visit(const Configuration& at, const double& range, const Visit& visit) const;
+
   std::vector<Part> parts_;
   std::vector<std::pair<int, int>> pairs_;  // of parts
   std::optional<double> table_;

@@ -119,7 +119,8 @@ Controller::Controller(const model::ArmModel& arm, ControllerOptions options)
       options_(std::move(options)),
       collision_(arm, options_.surroundings),
       X_AW_(options_.X_WA.inverse()),
-      X_BE_(options_.X_EB.inverse()) {
+      X_BE_(options_.X_EB.inverse()),
+      bend_(0.5 * reach_bound(arm)) {
   const auto count = static_cast<Eigen::Index>(arm.joints.size());
   lever_.setZero(count);
   for (Eigen::Index i = 0; i < count; ++i) {
@@ -214,14 +215,25 @@ Controller::Aim Controller::towards(const Configuration& at, const Pose& X_AE_wi
                lead = J.transpose() * weighed(velocity_A, lever);
   const Eigen::Index count = q_.size(), idle = count - 6;
   const double edge = options_.singular * options_.singular;
+  const auto strength_of = [&](Eigen::Index k) { return std::max(parts.eigenvalues()[k], 0.0); };
+  // What no turn can bring nearer bends the ways that E goes: a step that does not know of it
+  // swings about the nearest posture.
+  Vector6 beyond = weighed(way, lever);
+  for (Eigen::Index k = idle; k < count; ++k)
+    if (strength_of(k) > 0.25 * edge) {
+      const Vector6 moved = J * parts.eigenvectors().col(k);
+      beyond -= moved * (moved.dot(beyond) / strength_of(k));
+    }
+  const double bent = bend_ * beyond.norm();
   Joints turn = Joints::Zero(count);
   aim.velocity.setZero(count);
   Eigen::Index blind = 0;
   for (Eigen::Index k = idle; k < count; ++k) {
     const Joints direction = parts.eigenvectors().col(k);
-    const double strength = std::max(parts.eigenvalues()[k], 0.0);
-    const double damping =
-        strength < edge ? options_.max_damping * options_.max_damping * (1 - strength / edge) : 0.0;
+    const double strength = strength_of(k);
+    const double damping = bent + (strength < edge ? options_.max_damping * options_.max_damping *
+                                                         (1 - strength / edge)
+                                                   : 0.0);
     turn += direction * (direction.dot(pull) / (strength + damping));
     aim.velocity += direction * (direction.dot(lead) / (strength + damping));
     blind += strength < 0.25 * edge ? 1 : 0;
@@ -237,8 +249,10 @@ Controller::Aim Controller::towards(const Configuration& at, const Pose& X_AE_wi
   }
   aim.velocity += share * turn;
   if (idle > 0) {
+    // In a singularity the idle direction is one of many, and another each time.
+    const double known = std::min(1.0, strength_of(idle) / edge);
     const Joints direction = parts.eigenvectors().col(0);
-    aim.velocity += direction * (home_rate * direction.dot(arm_.home - q_));
+    aim.velocity += direction * (known * home_rate * direction.dot(arm_.home - q_));
   }
   return aim;
 }

@@ -92,6 +92,7 @@ class Controller {
   ControllerOptions options_;
   Collision collision_;
   Pose X_AW_, X_BE_;
+  double bend_;   // m: how much the ways of E bend with the joints
   Joints lever_;  // m: how far from a joint anything that it moves can be
   Joints q_, v_;
 };
