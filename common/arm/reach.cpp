@@ -81,9 +81,11 @@ ReachRow reach_at(const model::ArmModel& arm, const ReachTask& task, double heig
         found.limits = std::max(found.limits, once.limits);
         found.free = std::max(found.free, once.free);
       }
-      sum.limits += found.limits / task.places;
-      sum.free += found.free / task.places;
+      sum.limits += found.limits;
+      sum.free += found.free;
     }
+    sum.limits /= task.places;  // at last: a share is never above 1
+    sum.free /= task.places;
   }
   return row;
 }

@@ -48,11 +48,21 @@ TEST(Reach, ThePumaReachesWhatItIsKnownToReach) {
   const arm::ReachRow row = arm::reach_at(puma, task, 0.67);
   for (const arm::Share& share : row.shares) {
     std::cout << share.limits << " " << share.free << "\n";
-    EXPECT_LE(share.free, share.limits + 1e-9);
+    EXPECT_LE(share.free, share.limits);
+    EXPECT_LE(share.limits, 1);
   }
   EXPECT_GE(row.shares[0].limits, 0.9);
   EXPECT_GE(row.shares[1].limits, 0.8);
   EXPECT_GE(row.shares[2].limits, 0.5);
+}
+
+// Sixty sixtieths are 1, not a little more.
+TEST(Reach, AShareIsNeverAboveOne) {
+  arm::ReachTask task;
+  task.X_EG.translate(Eigen::Vector3d(0, 0, 0.12));
+  const arm::ReachRow row = arm::reach_at(test::arm("puma560"), task, 0.1);
+  EXPECT_GT(row.shares[0].limits, 0.5);
+  for (const arm::Share& share : row.shares) EXPECT_LE(share.limits, 1);
 }
 
 TEST(Reach, AnArmFarAboveReachesNothing) {
