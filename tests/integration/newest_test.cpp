@@ -1,14 +1,7 @@
 // After a cable was out the newest sample of each instance is there, of every reliable topic with
 // the QoS that it has in the lab, whatever of the older ones a history of that depth had to let go;
 // of topics that keep all nothing is missing. Writer and reader sit on two hosts.
-#if __has_include(<fastrtps/xmlparser/XMLProfileManager.h>)
-#include <fastrtps/xmlparser/XMLProfileManager.h>
-#else  // Fast DDS 3
-#include <fastdds/LibrarySettings.hpp>
-#endif
-
 #include <cstring>
-#include <fastdds/dds/domain/DomainParticipantFactory.hpp>
 #include <mutex>
 #include <thread>
 
@@ -20,23 +13,6 @@ namespace {
 
 constexpr double newest_healed = 1.0;  // s
 constexpr std::uint8_t instances = 5;
-
-/// Both participants are in this process: without this they would not use the network.
-void deliver_within_process(bool may) {
-#if PREHEND_FAST_DDS == 2
-  namespace library = eprosima::fastrtps;
-  library::LibrarySettingsAttributes settings;
-#else
-  namespace library = eprosima::fastdds;
-  library::LibrarySettings settings;
-#endif
-  settings.intraprocess_delivery = may ? library::INTRAPROCESS_FULL : library::INTRAPROCESS_OFF;
-#if PREHEND_FAST_DDS == 2
-  library::xmlparser::XMLProfileManager::library_settings(settings);
-#else
-  dds::fdds::DomainParticipantFactory::get_instance()->set_library_settings(settings);
-#endif
-}
 
 /// Both ends of a topic; the samples of an instance are numbered from 1.
 struct Line {
@@ -74,7 +50,6 @@ class Newest : public testing::Test {
  protected:
   void SetUp() override {
     if (const auto why = Hosts::unavailable()) GTEST_SKIP() << *why;
-    deliver_within_process(false);
     hosts_.emplace();
     for (const char* name : {"here", "there"}) hosts_->add(name);
     for (std::size_t i = 0; i < 2; ++i)
@@ -89,7 +64,6 @@ class Newest : public testing::Test {
   void TearDown() override {
     lines_.clear();
     for (auto& end : ends_) end.reset();
-    deliver_within_process(true);
   }
 
   int domain_ = static_cast<int>(now_ns() / 1000 % 200);

@@ -177,8 +177,8 @@ TEST_F(Recording, SnapshotPauseAndStopByTopic) {
 }
 
 TEST_F(Recording, OfASplitRecordingOnlyTheNewestFilesAreKept) {
-  auto process =
-      record("ring.mcap", {"--split-size", "0.05", "--keep", "2", "--compression", "none"});
+  auto process = record("ring.mcap", {"--split-size", "0.05", "--keep", "2", "--compression",
+                                      "none", "camera/image"});
   auto images = writer(dds::camera_image);
   meet(images);
   std::uint64_t sent = 0;

@@ -1,12 +1,14 @@
 // Nothing grows with time: instances come and go without number, and neither writers nor readers
 // keep anything of those that have gone. Memory is compared between one run of many instances and
-// the next one of as many, because the allocator and Fast DDS take what they need in the first;
-// what grows with each instance by 200 bytes or more shows.
+// the next one of as many, because the allocator and Fast DDS take what they need in the first, and
+// again where more was on its way at once than ever before. What leaks grows with every run: by 200
+// bytes or more an instance, it shows.
 #include <gtest/gtest.h>
 #include <unistd.h>
 
 #include <chrono>
 #include <fstream>
+#include <limits>
 #include <random>
 
 #include "common/dds/participant.hpp"
@@ -48,12 +50,16 @@ class Bounds : public testing::Test {
       return status.current_count >= readers;
     }));
   }
-  /// Bytes by which a second run grew for each instance.
+  /// Bytes for each instance by which the best of up to four more runs grew.
   static double growth(int count, const std::function<void()>& run) {
     run();
-    const double before = resident();
-    run();
-    return (resident() - before) / count;
+    double least = std::numeric_limits<double>::infinity();
+    for (int i = 0; i < 4 && least >= min_leak && !HasFailure(); ++i) {
+      const double before = resident();
+      run();
+      least = std::min(least, (resident() - before) / count);
+    }
+    return least;
   }
 
   int domain_ = static_cast<int>(std::random_device{}() % 200);
@@ -106,22 +112,29 @@ TEST_F(Bounds, ATrackThatIsGoneIsForgottenByAllAndUnknownToLateReaders) {
     message.track(track);
     return message;
   };
-  std::uint32_t track = 0, gone = 0;
+  std::uint32_t track = 0, gone = 0, seen = 0;  // a take is ordered by instance
+  const auto take = [&] {
+    for (const auto& sample : reader.take()) {
+      gone += sample.info.gone;
+      if (sample.data.track() == track) seen = track;
+    }
+  };
   ASSERT_TRUE(writer.write(detection(4'000'000'000)));  // stays
   const double grew = growth(many, [&] {
     for (int i = 0; i < many; ++i) {
       ASSERT_TRUE(writer.write(detection(++track)));
-      // A reader of the last sample alone need not see a track that is gone at once.
+      // A reader of the last sample alone need not see a track that is gone before it was taken.
       if (i % 50 == 0) {
         ASSERT_TRUE(eventually([&] {
-          for (const auto& sample : reader.take()) gone += sample.info.gone;
-          return reader.instances() > 1;
+          take();
+          return seen == track;
         }));
+        EXPECT_GT(reader.instances(), 1u);
       }
       ASSERT_TRUE(writer.dispose(detection(track)));
     }
     EXPECT_TRUE(eventually([&] {
-      for (const auto& sample : reader.take()) gone += sample.info.gone;
+      take();
       return reader.instances() == 1;
     })) << reader.instances();
   });

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 
 #include "common/base/random.hpp"
 
@@ -16,6 +17,15 @@ TEST(Distribution, ScoresBecomeProbabilitiesWhateverTheirSize) {
   EXPECT_NEAR(p[2] / p[0], std::exp(1.5), 1e-12);
   EXPECT_TRUE(p.isApprox(distribution_of((scores.array() + 1e5).matrix(), 2), 1e-9));
   EXPECT_TRUE(distribution_of(Eigen::Vector2d(-1e308, 1e308), 1).allFinite());
+}
+
+// A damaged recogniser whose weights overflow answered with no numbers at all.
+TEST(Distribution, ScoresThatTellNothingApartAreEven) {
+  constexpr double infinite = std::numeric_limits<double>::infinity();
+  for (const double useless : {infinite, -infinite, std::nan("")})
+    EXPECT_EQ(distribution_of(Eigen::Vector2d(useless, useless), 1), Eigen::Vector2d(0.5, 0.5));
+  EXPECT_EQ(distribution_of(Eigen::Vector2d(0, std::nan("")), 1), Eigen::Vector2d(0.5, 0.5));
+  EXPECT_EQ(distribution_of(Eigen::Vector2d(0, -infinite), 1), Eigen::Vector2d(1, 0));
 }
 
 // The cup of the thesis, figure 3.6: the object leaves three grasps, the task two of these.

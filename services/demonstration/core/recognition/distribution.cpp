@@ -5,7 +5,14 @@
 namespace prehend::demonstration {
 
 Distribution distribution_of(const Eigen::VectorXd& scores, double temperature) {
-  const Eigen::VectorXd powers = ((scores.array() - scores.maxCoeff()) / temperature).exp();
+  // Infinite below: impossible. All of them, or no numbers, and the scores tell nothing apart.
+  if (scores.hasNaN() || !std::isfinite(scores.maxCoeff()))
+    return Distribution::Constant(scores.size(), 1.0 / static_cast<double>(scores.size()));
+  // One by one: Eigen's exp of minus infinity over several numbers at once is not quite 0.
+  const Eigen::VectorXd powers =
+      ((scores.array() - scores.maxCoeff()) / temperature).unaryExpr([](double x) {
+        return std::exp(x);
+      });
   return powers / powers.sum();
 }
 

@@ -10,7 +10,8 @@ namespace prehend::demonstration {
 /// Probabilities of classes; they sum to 1.
 using Distribution = Eigen::VectorXd;
 
-/// exp(score / temperature), renormalised. A high temperature makes a modest answer.
+/// exp(score / temperature), renormalised. A high temperature makes a modest answer. A score of
+/// minus infinity is impossible; scores that are no numbers, or all impossible, tell nothing: even.
 Distribution distribution_of(const Eigen::VectorXd& scores, double temperature);
 
 /// What is known besides (of the object, of the task) multiplied in: p · prior, renormalised. A
