@@ -13,7 +13,6 @@
 #include <set>
 
 #include "common/base/log.hpp"
-#include "common/dds/delivery.hpp"
 #include "common/dds/guarded_transport.hpp"
 #include "common/dds/peers.hpp"
 #include "common/dds/serialized_transport.hpp"
@@ -206,7 +205,6 @@ Expected<Participant> Participant::join(const ParticipantOptions& options) {
     state->packets->add_server(prefix_of(server_prefix(static_cast<std::uint16_t>(locator.port))),
                                ip_of(locator));
   auto* factory = fdds::DomainParticipantFactory::get_instance();
-  deliver_by_network_only();
   state->participant =
       factory->create_participant(options.domain, *qos, &*state->peers, fdds::StatusMask::none());
   if (!state->participant)

@@ -162,8 +162,11 @@ Outcome Observer::outcome() const {
   }
   if (report_) {
     result.judged = true;
-    result.mode = report_->mode();
-    result.weight = report_->weight();
+    // When the glove was late just then, the hand closed on what it had been led to before.
+    if (report_->mode() != v1::MODE_HOLD) {
+      result.mode = report_->mode();
+      result.weight = report_->weight();
+    }
     result.grasp_type = report_->grasp_type();
     result.grasp = {static_cast<int>(report_->contacts().size()),
                     report_->epsilon(),

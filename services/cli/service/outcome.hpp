@@ -30,7 +30,7 @@ struct Outcome {
 
   std::string target;            // what the synthetic person reached for; empty where nobody knows
   std::optional<Object> object;  // as recognised
-  v1::MappingMode mode = v1::MODE_HOLD;  // at closure, otherwise when last followed
+  v1::MappingMode mode = v1::MODE_HOLD;  // at closure, or when last followed before it
   double weight = 0;                     // of the intelligent answer
   std::string hand;
   v1::GraspType grasp_type = v1::GRASP_NONE;

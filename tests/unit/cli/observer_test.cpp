@@ -155,6 +155,18 @@ TEST(Observer, WithoutAGraspTheModeIsThatOfTheLastCommandThatFollowed) {
   EXPECT_EQ(observer.outcome().weight, 0.5);
 }
 
+// Beside much load the glove was late at the moment of closure: the grasp was «held, mode hold».
+TEST(Observer, AHandThatClosedWhileItHeldWasLedBefore) {
+  Observer observer;
+  observer.hear(command(v1::MODE_INTELLIGENT, 0.5, "Cup"));
+  v1::GraspReport late = report("Cup", true, 100);
+  late.mode(v1::MODE_HOLD);
+  late.weight(0);
+  observer.hear(late);
+  EXPECT_EQ(observer.outcome().mode, v1::MODE_INTELLIGENT);
+  EXPECT_EQ(observer.outcome().weight, 0.5);
+}
+
 TEST(Observer, FramesLostOnTheWayCountToo) {
   Observer observer;
   v1::GloveFrame frame;
