@@ -110,6 +110,7 @@ class Mapping {
   bool start(const Pose& X_WG, Time stamp, Time now);                      // 3
   Pose clutch(const Pose& X_WG, Duration elapsed);                         // 3
   bool are_apart(const Eigen::VectorXd& a, const Eigen::VectorXd& b) const;
+  Eigen::VectorXd finger_distances(const RobotState& state) const;
   bool robot_is_elsewhere() const;
   void take_place_of_robot();
   std::optional<GraspTarget> select_target(const Pose& X_WG, Time now);  // 4
