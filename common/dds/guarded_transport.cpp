@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "common/base/clock.hpp"
+#include "common/dds/early_handshakes.hpp"
 #include "common/dds/pass_through_transport.hpp"
 #include "common/dds/registry.hpp"
 #include "common/dds/rtps_parts.hpp"
@@ -30,23 +31,112 @@ void add(PacketVerdict reason, const Ipv4& source, std::uint64_t times = 1) {
   dropped.last_source = fmt::format("{}", fmt::join(source, "."));
 }
 
+/// A message as it lies on the wire.
+#if PREHEND_FAST_DDS == 2
+std::span<const std::uint8_t> whole(const rtps::octet* bytes, std::uint32_t size) {
+  return {bytes, size};
+}
+#else
+std::vector<std::uint8_t> whole(const std::vector<transport::NetworkBuffer>& pieces,
+                                std::uint32_t size) {
+  std::vector<std::uint8_t> bytes;
+  bytes.reserve(size);
+  for (const auto& piece : pieces) {
+    const auto* begin = static_cast<const std::uint8_t*>(piece.buffer);
+    bytes.insert(bytes.end(), begin, begin + piece.size);
+  }
+  return bytes;
+}
+#endif
+
+/// Ports of samples are odd, those of discovery even (RTPS 2.2, 9.6.1.1).
+bool carries_samples(const rtps::Locator_t& locator) {
+  return locator.port % 2 == 1;
+}
+
+/// Sends through a resource of the lower transport, but by our send().
+class Sender final : public rtps::SenderResource {
+ public:
+  Sender(PassThroughTransport& through, rtps::SenderResource& lower)
+      : SenderResource(lower.kind()) {
+    const auto send = [&through, &lower](PassThroughTransport::Bytes bytes, std::uint32_t size,
+                                         rtps::LocatorsIterator* begin, rtps::LocatorsIterator* end,
+                                         const std::chrono::steady_clock::time_point& timeout) {
+      return through.send(&lower, bytes, size, begin, end, timeout);
+    };
+#if PREHEND_FAST_DDS == 2
+    send_lambda_ = send;
+#else
+    send_buffers_lambda_ = send;
+#endif
+  }
+};
+
 class Transport final : public PassThroughTransport {
  public:
   Transport(const transport::ChainingTransportDescriptor& descriptor, PacketGuard& guard)
       : PassThroughTransport(descriptor), guard_(guard) {}
+  /// The lower transport looks for its own resources to use them again: it has a list of them, and
+  /// Fast DDS gets one of ours for each, so that send() sees what is sent.
+  bool OpenOutputChannel(transport::SendResourceList& senders,
+                         const rtps::Locator_t& remote) override {
+    if (!guard_.paces()) return PassThroughTransport::OpenOutputChannel(senders, remote);
+    if (!low_level_transport_->OpenOutputChannel(lower_, remote)) return false;
+    for (; wrapped_ < lower_.size(); ++wrapped_)
+      senders.push_back(std::make_unique<Sender>(*this, *lower_[wrapped_]));
+    return true;
+  }
+  bool send(rtps::SenderResource* lower, Bytes bytes, std::uint32_t size,
+            rtps::LocatorsIterator* begin, rtps::LocatorsIterator* end,
+            const std::chrono::steady_clock::time_point& timeout) override {
+    if (!guard_.paces() || *begin == *end || carries_samples(**begin))
+      return lower->send(bytes, size, begin, end, timeout);
+    const auto said = repeated_saying(whole(bytes, size));
+    if (!said) return lower->send(bytes, size, begin, end, timeout);
+    std::vector<rtps::Locator_t> due;
+    for (; *begin != *end; ++*begin)
+      if (guard_.may_say({ip_of(**begin), static_cast<std::uint16_t>((**begin).port)}, lower,
+                         *said))
+        due.push_back(**begin);
+    if (due.empty()) return true;
+    rtps::Locators first(due.cbegin()), last(due.cend());
+    return lower->send(bytes, size, &first, &last, timeout);
+  }
   void receive(transport::TransportReceiverInterface* next, const rtps::octet* bytes,
                std::uint32_t size, const rtps::Locator_t& local,
                const rtps::Locator_t& remote) override {
     const Ipv4 source =
         low_level_transport_->is_local_locator(remote) ? Ipv4{127, 0, 0, 1} : ip_of(remote);
-    if (guard_.accepts({bytes, size}, source)) next->OnDataReceived(bytes, size, local, remote);
-    if (local.port % 2 == 1) return;  // ports of discovery are even
+    const bool accepted = guard_.accepts({bytes, size}, source);
+    if (accepted) next->OnDataReceived(bytes, size, local, remote);
+    if (const auto early = early_handshake({bytes, size}, accepted))
+      if (guard_.accepts(*early, source))
+        next->OnDataReceived(early->data(), static_cast<std::uint32_t>(early->size()), local,
+                             remote);
+    if (carries_samples(local)) return;
     for (const auto& late : guard_.take_departures())
       next->OnDataReceived(late.data(), static_cast<std::uint32_t>(late.size()), local, remote);
   }
 
  private:
+  /// What was kept of a sender that is admitted with this packet.
+  std::optional<std::vector<std::uint8_t>> early_handshake(std::span<const std::uint8_t> message,
+                                                           bool accepted) {
+    constexpr std::size_t header = 20;
+    if (message.size() < header) return std::nullopt;
+    const GuidPrefix sender = wire::array_at<12>(message, 8);
+    const bool keeps = !accepted && read_packet(message) && read_plaintext(message).shakes_hands;
+    const std::scoped_lock lock(mutex_);
+    if (keeps) early_.keep(sender, message, process_now());
+    if (!accepted || early_.empty()) return std::nullopt;
+    return early_.take(sender, process_now());
+  }
+
   PacketGuard& guard_;
+  transport::SendResourceList lower_;
+  std::size_t wrapped_ = 0;  // of these
+  std::mutex mutex_;
+  EarlyHandshakes early_;
 };
 
 struct Descriptor final : transport::ChainingTransportDescriptor {
@@ -66,8 +156,8 @@ Ipv4 ip_of(const rtps::Locator_t& locator) {
   return address;
 }
 
-PacketGuard::PacketGuard(bool serves, bool secured, Hear hear)
-    : book_(serves, secured), members_(secured), hear_(std::move(hear)) {
+PacketGuard::PacketGuard(bool serves, bool secured, bool paces, Hear hear)
+    : book_(serves, secured), members_(secured), hear_(std::move(hear)), paces_(paces) {
   Registry<PacketGuard>::of_process().add(*this);
 }
 
@@ -76,11 +166,11 @@ PacketGuard::~PacketGuard() {
 }
 
 PacketVerdict PacketGuard::judge(std::span<const std::uint8_t> message, const Ipv4& source,
-                                 std::vector<Announcement>* told) {
+                                 std::vector<Announcement>& told) {
   const Time now = process_now();
-  const PacketVerdict verdict = book_.judge(message, source, now, told);
+  const PacketVerdict verdict = book_.judge(message, source, now, &told);
   if (verdict != PacketVerdict::pass) return verdict;
-  switch (members_.judge(wire::array_at<12>(message, 8), message, now)) {
+  switch (members_.judge(wire::array_at<12>(message, 8), message, now, !told.empty())) {
     case Members::Verdict::not_encrypted:
       return PacketVerdict::not_encrypted;
     case Members::Verdict::contradicts:
@@ -99,14 +189,29 @@ bool PacketGuard::accepts(std::span<const std::uint8_t> message, const Ipv4& sou
   std::vector<Announcement> told;
   {
     const std::scoped_lock lock(mutex_);
-    verdict = judge(message, source, hear_ ? &told : nullptr);
+    verdict = judge(message, source, told);
     forged = members_.take_forged();
   }
-  if (verdict == PacketVerdict::pass)
-    for (const Announcement& one : told) hear_(one);
+  if (verdict == PacketVerdict::pass && !told.empty()) hear(message, told);
   if (forged > 0) add(PacketVerdict::forged_departure, source, forged);
   if (!verdict_names[static_cast<std::size_t>(verdict)].empty()) add(verdict, source);
   return verdict == PacketVerdict::pass;
+}
+
+void PacketGuard::hear(std::span<const std::uint8_t> message,
+                       const std::vector<Announcement>& told) {
+  if (paces_) {
+    const auto sender = wire::array_at<12>(message, 8);
+    const std::scoped_lock lock(pacing_);
+    for (const Place& place : announced_places(message)) pacer_.met(place, sender);
+  }
+  if (!hear_) return;
+  for (const Announcement& one : told) hear_(one);
+}
+
+bool PacketGuard::may_say(const Place& to, const void* way, const Saying& what) {
+  const std::scoped_lock lock(pacing_);
+  return pacer_.is_due(to, way, what, process_now());
 }
 
 std::vector<std::vector<std::uint8_t>> PacketGuard::take_departures() {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "common/dds/address_book.hpp"
+#include "common/dds/announcement_pacer.hpp"
 #include "common/dds/fastdds.hpp"
 #include "common/dds/members.hpp"
 
@@ -22,11 +23,15 @@ class PacketGuard {
   using Hear = std::function<void(const Announcement&)>;
   /// serves: for a discovery server. secured: for a participant with keys. hear: told of every
   /// announcement that it lets pass, before Fast DDS is.
-  explicit PacketGuard(bool serves, bool secured = false, Hear hear = {});
+  /// paces: announcements go to who is there, not to a discovery server.
+  explicit PacketGuard(bool serves, bool secured = false, bool paces = false, Hear hear = {});
   ~PacketGuard();
   PacketGuard(const PacketGuard&) = delete;
   PacketGuard& operator=(const PacketGuard&) = delete;
   bool accepts(std::span<const std::uint8_t> message, const Ipv4& source);
+  /// Is this to be sent there now? See AnnouncementPacer.
+  bool may_say(const Place& to, const void* way, const Saying& what);
+  bool paces() const { return paces_; }
   void add_own(const GuidPrefix& own);
   void add_server(const GuidPrefix& server, const Ipv4& address);
 
@@ -40,12 +45,16 @@ class PacketGuard {
 
  private:
   PacketVerdict judge(std::span<const std::uint8_t> message, const Ipv4& source,
-                      std::vector<Announcement>* told);
+                      std::vector<Announcement>& told);
+  void hear(std::span<const std::uint8_t> message, const std::vector<Announcement>& told);
 
   mutable std::mutex mutex_;
   AddressBook book_;
   Members members_;
   Hear hear_;
+  bool paces_;
+  std::mutex pacing_;  // not mutex_: who sends does not wait for who receives
+  AnnouncementPacer pacer_;
 };
 
 /// A participant of this process has lost a peer that it meets again only when it joins anew.

@@ -29,7 +29,8 @@ bool has_keys(const GuidPrefix& prefix) {
 }  // namespace
 
 Members::Verdict Members::judge(const GuidPrefix& sender, std::span<const std::uint8_t> message,
-                                Time now) {
+                                Time now, bool announces) {
+  if (!secured_ && !announces) return Verdict::pass;
   const bool matters = secured_ && has_keys(sender);
   const Plaintext said = read_plaintext(message);
   if (matters && said.out_of_place) return Verdict::not_encrypted;

@@ -25,8 +25,10 @@ class Members {
   explicit Members(bool secured) : secured_(secured) {}
 
   enum class Verdict : std::uint8_t { pass, keep, not_encrypted, contradicts };
-  /// Of a sound message, which its sender may send.
-  Verdict judge(const GuidPrefix& sender, std::span<const std::uint8_t> message, Time now);
+  /// Of a sound message, which its sender may send. announces: it tells of participants; without
+  /// keys nothing else is looked at.
+  Verdict judge(const GuidPrefix& sender, std::span<const std::uint8_t> message, Time now,
+                bool announces = true);
   /// Messages that were kept and count by now, each once.
   std::vector<std::vector<std::uint8_t>> take_departures(Time now);
   /// Departures since the last call of somebody who is still there.

@@ -175,7 +175,9 @@ Expected<Participant> Participant::join(const ParticipantOptions& options) {
   PacketGuard::Hear hear;
   if constexpr (hides_secured_peers)
     hear = [at = state.get()](const Announcement& said) { at->peers->hear(said); };
-  state->packets.emplace(!options.serves.empty(), state->keys.has_value(), std::move(hear));
+  const bool paces =
+      qos->wire_protocol().builtin.discovery_config.discoveryProtocol == DiscoveryProtocol::SIMPLE;
+  state->packets.emplace(!options.serves.empty(), state->keys.has_value(), paces, std::move(hear));
   state->peers.emplace(options.listener,
                        state->keys ? std::optional(state->keys->authority) : std::nullopt,
                        *state->packets);

@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 #include <sys/stat.h>
 
+#include <set>
+
 #include "common/base/file_text.hpp"
 #include "common/keys/certificate.hpp"
 
@@ -78,8 +80,30 @@ std::optional<std::string> newer_list(const Keys& keys) {
   if (!list || *list == keys.revoked) return std::nullopt;
   // Perhaps it is still being copied.
   const auto authority = text_of(keys.folder / key_files::authority);
-  if (!authority || !keys::revoked(*list, *authority)) return std::nullopt;
+  if (!authority) return std::nullopt;
+  const auto newer = keys::revoked(*list, *authority);
+  const auto known = keys::revoked(keys.revoked, *authority);
+  if (!newer) return std::nullopt;
+  // One that was only signed anew says nothing new.
+  const auto serials = [](const auto& entries) {
+    std::set<std::string> all;
+    for (const auto& one : entries) all.insert(one.serial);
+    return all;
+  };
+  if (known && serials(*known) == serials(*newer)) return std::nullopt;
   return std::move(*list);
+}
+
+std::optional<Error> old_list(const Keys& keys, Duration max_age, Time now) {
+  if (max_age <= Duration::zero()) return std::nullopt;
+  const auto list = text_of(keys.folder / key_files::revoked);
+  const auto when = list ? keys::signed_at(*list) : tl::unexpected(list.error());
+  if (when && now - *when <= max_age) return std::nullopt;
+  return Error{when ? fmt::format("the list of revoked keys is {:.1f} days old",
+                                  to_seconds(now - *when) / 86400)
+                    : when.error().what,
+               (keys.folder / key_files::revoked).string(),
+               "prehend keys refresh, and copy revoked.pem", exit_broken};
 }
 
 void secure(fdds::DomainParticipantQos& qos, const Keys& keys) {

@@ -40,9 +40,12 @@ struct Keys {
 /// only that it could not. `given` is the folder of one key, or one with a folder for each role.
 Expected<Keys> load_keys(const std::filesystem::path& given, std::string_view role, Time now);
 
-/// The list of revoked keys, if the authority has signed another one since these were loaded. Fast
+/// The list of revoked keys, if the authority has revoked others since these were loaded. Fast
 /// DDS takes notice of it only when a participant is made.
 std::optional<std::string> newer_list(const Keys& keys);
+
+/// What is wrong with the list that lies there, if it is older than this; zero: it may be.
+std::optional<Error> old_list(const Keys& keys, Duration max_age, Time now);
 
 /// Makes the participant a secured one.
 void secure(eprosima::fastdds::dds::DomainParticipantQos& qos, const Keys& keys);

@@ -2,7 +2,9 @@
 
 #include <arpa/inet.h>
 #include <fmt/format.h>
+#include <ifaddrs.h>
 #include <linux/tcp.h>
+#include <net/if.h>
 #include <netinet/in.h>
 #include <sys/socket.h>
 #include <sys/un.h>
@@ -24,6 +26,7 @@
 
 #include "common/dds/pass_through_transport.hpp"
 #include "common/dds/security.hpp"
+#include "common/dds/tls_front.hpp"
 
 namespace prehend::dds {
 
@@ -164,18 +167,24 @@ class PortLock {
   int socket_;
 };
 
+/// What others come to: a port, and with keys who stands before it.
+struct Door {
+  std::shared_ptr<const PortLock> port;
+  std::shared_ptr<const TlsFront> front;
+};
+
 /// As long as the participant has it, the port is its own.
 struct BetweenSitesDescriptor final : transport::ChainingTransportDescriptor {
   BetweenSitesDescriptor(std::shared_ptr<transport::TransportDescriptorInterface> lower,
-                         Dialled dialled, std::shared_ptr<const PortLock> port)
+                         Dialled dialled, Door door)
       : ChainingTransportDescriptor(std::move(lower)),
         dialled_(std::move(dialled)),
-        port_(std::move(port)) {}
+        door_(std::move(door)) {}
   transport::TransportInterface* create_transport() const override {
     return new WanTransport(*this, dialled_);
   }
   Dialled dialled_;
-  std::shared_ptr<const PortLock> port_;
+  Door door_;
 };
 
 /// Our own address on the way to another; 0.0.0.0: there is no way yet.
@@ -207,9 +216,35 @@ void use_tls(transport::TCPv4TransportDescriptor& tcp, const std::filesystem::pa
 }
 
 struct Listening {
-  rtps::Locator_t announced;
-  std::shared_ptr<const PortLock> port;
+  std::vector<rtps::Locator_t> announced;
+  Door door;
 };
+
+/// The addresses by which others reach this host; empty: it is alone.
+std::vector<Ip> own_addresses() {
+  std::vector<Ip> own;
+  ifaddrs* all = nullptr;
+  if (::getifaddrs(&all) != 0) return own;
+  for (const ifaddrs* one = all; one; one = one->ifa_next)
+    if (one->ifa_addr && one->ifa_addr->sa_family == AF_INET && (one->ifa_flags & IFF_UP) &&
+        !(one->ifa_flags & IFF_LOOPBACK))
+      own.push_back(ip_of(reinterpret_cast<const rtps::octet*>(
+          &reinterpret_cast<const sockaddr_in*>(one->ifa_addr)->sin_addr)));
+  ::freeifaddrs(all);
+  return own;
+}
+
+/// Fast DDS itself listens behind the front, on the loopback alone.
+Expected<std::shared_ptr<const TlsFront>> stand_before(transport::TCPv4TransportDescriptor& tcp,
+                                                       std::uint16_t port,
+                                                       const std::filesystem::path& keys) {
+  const std::uint16_t inner = free_inner_port();
+  tcp.interfaceWhiteList = {"127.0.0.1"};
+  tcp.add_listener_port(inner);
+  auto front = TlsFront::create({.port = port, .inner = inner, .keys = keys});
+  if (!front) return tl::unexpected(front.error());
+  return std::move(*front);
+}
 
 Expected<Listening> listen(transport::TCPv4TransportDescriptor& tcp, const Network& network) {
   std::uint16_t port = 0;
@@ -229,11 +264,24 @@ Expected<Listening> listen(transport::TCPv4TransportDescriptor& tcp, const Netwo
         return fail("all ports from 7420 to 7435 are taken", "lab.network = wan",
                     "end other processes of the lab on this machine");
   }
-  tcp.add_listener_port(port);
-  rtps::Locator_t own = locator(LOCATOR_KIND_TCPv4);
-  IPLocator::setPhysicalPort(own, port);
-  IPLocator::setLogicalPort(own, listens);
-  return Listening{own, std::move(ours)};
+  std::shared_ptr<const TlsFront> front;
+  if (network.keys.empty()) {
+    tcp.add_listener_port(port);
+  } else {
+    auto made = stand_before(tcp, port, network.keys);
+    if (!made) return tl::unexpected(made.error());
+    front = std::move(*made);
+  }
+  // Behind the front Fast DDS would announce the loopback, where it listens.
+  std::vector<Ip> addresses = front ? own_addresses() : std::vector<Ip>{};
+  if (addresses.empty()) addresses.emplace_back();
+  std::vector<rtps::Locator_t> own;
+  for (const Ip& ip : addresses) {
+    own.push_back(locator(LOCATOR_KIND_TCPv4, ip));
+    IPLocator::setPhysicalPort(own.back(), port);
+    IPLocator::setLogicalPort(own.back(), listens);
+  }
+  return Listening{std::move(own), {std::move(ours), std::move(front)}};
 }
 
 /// Dials all peers, and returns them with our own addresses on the way there.
@@ -288,12 +336,12 @@ Expected<void> join_sites(eprosima::fastdds::dds::DomainParticipantQos& qos,
     wire.default_unicast_locator_list.push_back(own);
   };
   Dialled places;
-  std::shared_ptr<const PortLock> port;
+  Door door;
   if (network.peers.empty()) {
     const auto own = listen(tcp, network);
     if (!own) return tl::unexpected(own.error());
-    announce(own->announced);
-    port = own->port;
+    for (const rtps::Locator_t& one : own->announced) announce(one);
+    door = own->door;
   } else {
     if (!network.listen.empty())
       return fail("a process listens or dials, not both", "lab.listen",
@@ -314,7 +362,7 @@ Expected<void> join_sites(eprosima::fastdds::dds::DomainParticipantQos& qos,
       announce(own);
     }
   }
-  *found = std::make_shared<BetweenSitesDescriptor>(*found, std::move(places), std::move(port));
+  *found = std::make_shared<BetweenSitesDescriptor>(*found, std::move(places), std::move(door));
   return {};
 }
 

@@ -20,6 +20,7 @@ namespace prehend::dds {
 /// - Who dials is known by its own address and process number, which repeat from container to
 ///   container: a number drawn at random is added.
 /// - A process behind a gateway is reached there, and only once.
+/// - With keys, one who calls and says nothing keeps nobody out (TlsFront).
 Expected<void> join_sites(eprosima::fastdds::dds::DomainParticipantQos& qos,
                           const Network& network);
 

@@ -12,6 +12,12 @@ struct ArmLimits {
   double turn_acceleration = 50.0;  // rad/s²
 };
 
+/// How hard it may brake when it is told to stop at once: harder than on its way.
+struct BrakeLimits {
+  double acceleration = 20.0;        // m/s²
+  double turn_acceleration = 100.0;  // rad/s²
+};
+
 /// The base's velocity on its way to where it was told to be: fast, within the limits, hardly any
 /// overshoot (1 mm at 500 Hz). A value: two with the same history move alike.
 class Arm {

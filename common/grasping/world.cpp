@@ -77,6 +77,7 @@ struct World::State {
   Vector3d velocity_command = Vector3d::Zero();
   VectorXd dof_command;
   Arm arm;
+  bool braking = false;
 
   State(const model::HandModel& model, const std::vector<analysis::Material>& materials,
         const WorldOptions& world_options)
@@ -111,13 +112,19 @@ struct World::State {
     fingers->place(X_WB, hand.joint_angles(hand.clamp(dof)),
                    VectorXd::Zero(static_cast<Eigen::Index>(hand.joints().size())));
     arm.stop();
+    braking = false;
     X_WB_command = X_WB;
     velocity_command.setZero();
     dof_command = hand.clamp(dof);
   }
 
   void drive() {
-    arm.step(fingers->X_WC(), fingers->X_WC_of(X_WB_command), velocity_command, options.arm, dt());
+    ArmLimits limits = options.arm;
+    if (braking) {
+      limits.acceleration = options.brake.acceleration;
+      limits.turn_acceleration = options.brake.turn_acceleration;
+    }
+    arm.step(fingers->X_WC(), fingers->X_WC_of(X_WB_command), velocity_command, limits, dt());
     fingers->move_base(arm.velocity(), arm.turning());
     fingers->drive(dof_command);
   }
@@ -198,6 +205,7 @@ std::unique_ptr<World> World::clone() const {
   to.arm = state_->arm;
   to.X_WB_command = state_->X_WB_command;
   to.velocity_command = state_->velocity_command;
+  to.braking = state_->braking;
   for (int i = 0; i < body_count(); ++i) {
     copy->add_body(body(i), body_motion(i).X_WO);
     const btRigidBody& original = *state_->bodies[static_cast<std::size_t>(i)].rigid;
@@ -281,7 +289,13 @@ Expected<void> World::command(const Pose& X_WB, const Eigen::VectorXd& dof,
   state_->X_WB_command = X_WB;
   state_->velocity_command = velocity;
   state_->dof_command = state_->hand.clamp(dof);
+  state_->braking = false;
   return {};
+}
+
+void World::brake() {
+  hold_still();
+  state_->braking = true;
 }
 
 void World::hold_still() {

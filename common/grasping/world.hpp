@@ -47,6 +47,7 @@ struct WorldOptions {
   /// 1/s: damps free objects; for closing without gravity.
   double object_damping = 0;
   ArmLimits arm;
+  BrakeLimits brake;
 };
 
 /// rad and N m; m and N of what slides.
@@ -103,6 +104,7 @@ class World {
   Expected<void> command(const Pose& X_WB, const Eigen::VectorXd& dof,
                          const Eigen::Vector3d& velocity = Eigen::Vector3d::Zero());
   void hold_still();  // commands base and fingers to stay where they are; a grip keeps its squeeze
+  void brake();       // the same, and until the next command the arm brakes as hard as it can
 
   void step();
   double time_step() const;

@@ -8,6 +8,9 @@
 #include <openssl/rand.h>
 #include <openssl/x509v3.h>
 
+#include <array>
+#include <utility>
+
 #include "common/keys/openssl.hpp"
 
 namespace prehend::keys {
@@ -69,21 +72,46 @@ bool extend(X509* certificate, X509* issuer, int id, const char* value) {
   return extension && X509_add_ext(certificate, extension.get(), -1) == 1;
 }
 
-/// issuer: nothing, and the certificate vouches for itself.
-Expected<Identity> make(std::string_view name, const Validity& valid, X509* issuer,
-                        EVP_PKEY* issuer_key) {
-  const Key key(EVP_EC_gen("P-256"));
+using Asking = Owned<X509_REQ, X509_REQ_free>;
+
+bool put_name(X509_NAME* to, std::string_view name) {
+  return X509_NAME_add_entry_by_txt(to, "CN", MBSTRING_UTF8,
+                                    reinterpret_cast<const unsigned char*>(name.data()),
+                                    static_cast<int>(name.size()), -1, 0) == 1;
+}
+
+Expected<std::string> text_of_key(EVP_PKEY* key) {
+  const Bio text = writing();
+  if (PEM_write_bio_PrivateKey(text.get(), key, nullptr, nullptr, 0, nullptr, nullptr) != 1)
+    return failed("a key cannot be written");
+  return text_of(text);
+}
+
+/// One that its own key has signed.
+Expected<Asking> asking_of(std::string_view text) {
+  const Bio in = reading(text);
+  Asking asking(PEM_read_bio_X509_REQ(in.get(), nullptr, nullptr, nullptr));
+  if (!asking) return failed("is no request for a certificate");
+  EVP_PKEY* key = X509_REQ_get0_pubkey(asking.get());
+  if (!key || X509_REQ_verify(asking.get(), key) != 1)
+    return failed("the request is not signed by the key that it is for");
+  if (EVP_PKEY_get_bits(key) != 256 || EVP_PKEY_get_base_id(key) != EVP_PKEY_EC)
+    return failed("the request is for a key of another kind", {}, "elliptic curve P-256");
+  return asking;
+}
+
+/// The certificate of a key. issuer: nothing, and the certificate vouches for itself.
+Expected<std::string> certify(std::string_view name, EVP_PKEY* key, const Validity& valid,
+                              X509* issuer, EVP_PKEY* issuer_key) {
   const Certificate certificate(X509_new());
   const Integer serial = new_serial();
-  if (!key || !certificate || !serial) return failed("a key cannot be made");
+  if (!certificate || !serial) return failed("a certificate cannot be made");
   X509* raw = certificate.get();
   bool good = X509_set_version(raw, 2) == 1 && X509_set_serialNumber(raw, serial.get()) == 1 &&
-              X509_set_pubkey(raw, key.get()) == 1 &&
+              X509_set_pubkey(raw, key) == 1 &&
               ASN1_TIME_set(X509_getm_notBefore(raw), seconds_of(valid.from)) &&
               ASN1_TIME_set(X509_getm_notAfter(raw), seconds_of(valid.until)) &&
-              X509_NAME_add_entry_by_txt(X509_get_subject_name(raw), "CN", MBSTRING_UTF8,
-                                         reinterpret_cast<const unsigned char*>(name.data()),
-                                         static_cast<int>(name.size()), -1, 0) == 1;
+              put_name(X509_get_subject_name(raw), name);
   X509* by = issuer ? issuer : raw;
   good =
       good && X509_set_issuer_name(raw, X509_get_subject_name(by)) == 1 &&
@@ -91,13 +119,22 @@ Expected<Identity> make(std::string_view name, const Validity& valid, X509* issu
       extend(raw, by, NID_key_usage,
              issuer ? "critical,digitalSignature,keyAgreement"
                     : "critical,digitalSignature,keyCertSign,cRLSign") &&
-      X509_sign(raw, issuer ? issuer_key : key.get(), EVP_sha256()) > 0;
-  const Bio certificate_text = writing(), key_text = writing();
-  good = good && PEM_write_bio_X509(certificate_text.get(), raw) == 1 &&
-         PEM_write_bio_PrivateKey(key_text.get(), key.get(), nullptr, nullptr, 0, nullptr,
-                                  nullptr) == 1;
-  if (!good) return failed("a certificate cannot be made", std::string(name));
-  return Identity{text_of(certificate_text), text_of(key_text)};
+      X509_sign(raw, issuer ? issuer_key : key, EVP_sha256()) > 0;
+  const Bio text = writing();
+  if (!good || PEM_write_bio_X509(text.get(), raw) != 1)
+    return failed("a certificate cannot be made", std::string(name));
+  return text_of(text);
+}
+
+Expected<Identity> make(std::string_view name, const Validity& valid, X509* issuer,
+                        EVP_PKEY* issuer_key) {
+  const Key key(EVP_EC_gen("P-256"));
+  if (!key) return failed("a key cannot be made");
+  auto certificate = certify(name, key.get(), valid, issuer, issuer_key);
+  if (!certificate) return tl::unexpected(certificate.error());
+  auto text = text_of_key(key.get());
+  if (!text) return tl::unexpected(text.error());
+  return Identity{std::move(*certificate), std::move(*text)};
 }
 
 /// Knows the authority, and the list when there is one.
@@ -125,6 +162,44 @@ Expected<Identity> issue(const Identity& authority, std::string_view name, const
   const auto key = key_of(authority.key);
   if (!key) return tl::unexpected(key.error());
   return make(name, valid, issuer->get(), key->get());
+}
+
+Expected<Request> request(std::string_view name) {
+  const Key key(EVP_EC_gen("P-256"));
+  const Asking asking(X509_REQ_new());
+  const Bio text = writing();
+  if (!key || !asking || X509_REQ_set_version(asking.get(), 0) != 1 ||
+      !put_name(X509_REQ_get_subject_name(asking.get()), name) ||
+      X509_REQ_set_pubkey(asking.get(), key.get()) != 1 ||
+      X509_REQ_sign(asking.get(), key.get(), EVP_sha256()) <= 0 ||
+      PEM_write_bio_X509_REQ(text.get(), asking.get()) != 1)
+    return failed("a request cannot be made", std::string(name));
+  auto secret = text_of_key(key.get());
+  if (!secret) return tl::unexpected(secret.error());
+  return Request{text_of(text), std::move(*secret)};
+}
+
+Expected<std::string> name_in(std::string_view text) {
+  const auto asking = asking_of(text);
+  if (!asking) return tl::unexpected(asking.error());
+  std::array<char, 65> name{};
+  const int length =
+      X509_NAME_get_text_by_NID(X509_REQ_get_subject_name(asking->get()), NID_commonName,
+                                name.data(), static_cast<int>(name.size()));
+  if (length <= 0) return fail("the request has no name");
+  return std::string(name.data(), static_cast<std::size_t>(length));
+}
+
+Expected<std::string> grant(const Identity& authority, std::string_view text,
+                            const Validity& valid) {
+  const auto name = name_in(text);
+  if (!name) return tl::unexpected(name.error());
+  const auto asking = asking_of(text);
+  const auto issuer = certificate_of(authority.certificate);
+  if (!issuer) return tl::unexpected(issuer.error());
+  const auto key = key_of(authority.key);
+  if (!key) return tl::unexpected(key.error());
+  return certify(*name, X509_REQ_get0_pubkey(asking->get()), valid, issuer->get(), key->get());
 }
 
 Expected<std::string> revocation_list(const Identity& authority, const std::vector<Revoked>& gone,
@@ -181,6 +256,12 @@ Expected<Facts> facts(std::string_view pem) {
                text_of_name(X509_get_issuer_name(raw)),
                text_of_serial(X509_get0_serialNumber(raw)),
                {time_of(X509_get0_notBefore(raw)), time_of(X509_get0_notAfter(raw))}};
+}
+
+Expected<Time> signed_at(std::string_view pem) {
+  const auto list = list_of(pem);
+  if (!list) return tl::unexpected(list.error());
+  return time_of(X509_CRL_get0_lastUpdate(list->get())) + dated_back;
 }
 
 Expected<std::vector<Revoked>> revoked(std::string_view pem, std::string_view authority) {

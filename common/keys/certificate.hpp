@@ -32,10 +32,25 @@ struct Revoked {
   Time when;
 };
 
+/// Clocks of other hosts may be behind: what is signed holds from so long ago.
+inline constexpr std::chrono::days dated_back{1};
+
 /// An authority that vouches for itself.
 Expected<Identity> make_authority(std::string_view name, const Validity& valid);
 /// An identity that the authority vouches for.
 Expected<Identity> issue(const Identity& authority, std::string_view name, const Validity& valid);
+/// A private key that never leaves its machine, and what asks an authority elsewhere for its
+/// certificate (PKCS #10).
+struct Request {
+  std::string text, key;
+};
+Expected<Request> request(std::string_view name);
+/// Who asks; only the holder of the private key can have written that.
+Expected<std::string> name_in(std::string_view request);
+/// The certificate that is asked for.
+Expected<std::string> grant(const Identity& authority, std::string_view request,
+                            const Validity& valid);
+
 /// The list of what the authority no longer vouches for.
 Expected<std::string> revocation_list(const Identity& authority, const std::vector<Revoked>& gone,
                                       const Validity& valid);
@@ -43,6 +58,8 @@ Expected<std::string> revocation_list(const Identity& authority, const std::vect
 Expected<std::string> sign(const Identity& authority, std::string_view text);
 
 Expected<Facts> facts(std::string_view certificate);
+/// When the list was signed, if it was dated back.
+Expected<Time> signed_at(std::string_view revocation_list);
 /// Entries of a list that this authority has signed.
 Expected<std::vector<Revoked>> revoked(std::string_view list, std::string_view authority);
 /// The text that this authority has signed.

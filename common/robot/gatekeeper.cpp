@@ -15,9 +15,6 @@ constexpr Duration patience = std::chrono::milliseconds(300);  // with silent co
 constexpr Duration start_up = std::chrono::seconds(3);         // until some come
 constexpr Duration noticed = std::chrono::seconds(1);          // a second writer is, for so long
 constexpr Duration state_period = std::chrono::seconds(1);
-/// An order that moves the hand again must be meant now.
-constexpr Duration max_order_age = std::chrono::seconds(10);
-constexpr std::size_t max_writers = 16;
 constexpr std::size_t max_counts = 32;  // idl/Robot.idl
 constexpr const char* target_name = "gate";
 
@@ -59,8 +56,9 @@ void put(Text& to, const std::string& from, std::size_t length) {
 }
 
 bool same(const v1::GateState& a, const v1::GateState& b) {
-  return a.leader() == b.leader() && a.refused() == b.refused() && a.stopped() == b.stopped() &&
-         a.consent() == b.consent() && a.stopped_by() == b.stopped_by() && a.reason() == b.reason();
+  return a.leader() == b.leader() && a.refused() == b.refused() && a.placed() == b.placed() &&
+         a.stopped() == b.stopped() && a.consent() == b.consent() &&
+         a.stopped_by() == b.stopped_by() && a.reason() == b.reason();
 }
 
 }  // namespace
@@ -85,6 +83,7 @@ Expected<std::unique_ptr<Gatekeeper>> Gatekeeper::create(service::Shell& shell,
   std::unique_ptr<Gatekeeper> made(
       new Gatekeeper(shell, hand, name, std::move(*gate), std::move(robot)));
   if (auto opened = made->open_audit(name); !opened) return tl::unexpected(opened.error());
+  made->recall_stop(name);
   return made;
 }
 
@@ -101,7 +100,8 @@ Gatekeeper::Gatekeeper(service::Shell& shell, const model::HandModel& hand, cons
   consented_ = gate_.has_consent(shell_.now());
   put(state_.hand(), name, 64);
   state_.deadman(shell.config().flag("safety.deadman"));
-  if (shell.config().flag("safety.start_stopped"))
+  shell_.busy_while([this] { return leader_.has_value(); });
+  if (shell_.config().flag("safety.start_stopped"))
     gate_.stop("safety.start_stopped", "not yet released", shell.now());
   shell_.subscribe(dds::robot_command, std::function([this](const v1::HandCommand& message,
                                                             const dds::SampleInfo& info) {
@@ -146,6 +146,26 @@ Expected<void> Gatekeeper::open_audit(const std::string& name) {
   return {};
 }
 
+void Gatekeeper::recall_stop(const std::string& name) {
+  if (shell_.lockstep()) return;
+  auto kept = KeptStop::create(shell_.config(), name);
+  if (!kept) return log::warning("a stop would end with this process: {}", kept.error().message());
+  kept_.emplace(std::move(*kept));
+  const auto stop = kept_->recall();
+  if (!stop) return;
+  gate_.release();  // of safety.start_stopped, which knows less
+  gate_.stop(stop->by, stop->reason, stop->since);
+  note(audit::Event::stop, stop->by, stop->reason, shell_.now());
+  log::warning("still stopped by {}{}{}; prehend release ends it", stop->by,
+               stop->reason.empty() ? "" : ": ", stop->reason);
+}
+
+Expected<void> Gatekeeper::keep_stop() {
+  if (shell_.lockstep()) return {};
+  if (!kept_) return fail("there is no folder for it", "safety.state");
+  return kept_->keep(*gate_.stopped());
+}
+
 void Gatekeeper::note(audit::Event event, const std::string& who, const std::string& what,
                       Time now) {
   if (audit_ && !audit_->write({now, state_.hand().to_string(), event, who, what}))
@@ -164,8 +184,7 @@ void Gatekeeper::on_command(const v1::HandCommand& message, const dds::SampleInf
   const Time now = shell_.now();
   const auto passed = gate_.admit(from_message(message, info), now);
   const bool ours = passed || passed.error() != gate::Refusal::another_hand;
-  if (ours && (writers_.size() < max_writers || writers_.contains(info.participant)))
-    writers_[info.participant] = now;
+  if (ours) writers_.heard(info.participant, now);
   watch_lead(now);
   if (passed)
     obey(message, info, *passed, now);
@@ -173,13 +192,13 @@ void Gatekeeper::on_command(const v1::HandCommand& message, const dds::SampleInf
     refuse(passed.error(), info, now);
 }
 
-/// Says and notes who leads, and who leads no more.
+/// Says and notes who leads, and who leads no more. Nobody leads a hand that is stopped.
 void Gatekeeper::watch_lead(Time now) {
   if (gate_.leads() != leads_) {
     shell_.status().count("leads", gate_.leads() - leads_);
     leads_ = gate_.leads();
   }
-  const auto leader = gate_.leader(now);
+  const auto leader = gate_.stopped() ? std::nullopt : gate_.leader(now);
   if (leader == leader_) return;
   if (leader_) note(audit::Event::lead_end, leader_name_, "", now);
   leader_ = leader;
@@ -238,9 +257,7 @@ void Gatekeeper::on_order(const v1::OperatorCommand& order, const dds::SampleInf
   if (action != v1::ACTION_STOP && action != v1::ACTION_RELEASE && action != v1::ACTION_TAKE_OVER)
     return;
   const Time now = shell_.now();
-  // Who gives an order as soon as it has come is not known by name yet.
-  std::string by = shell_.writer_of(info);
-  if (by.find('@') == std::string::npos) by = order.id().to_string();
+  const std::string by = service::given_by(order, shell_.writer_of(info));
   if (const auto known = orders_.find(order.id().to_string())) return replies_.publish(*known);
   const auto executed = execute(order, by, now);
   v1::OperatorReply reply;
@@ -264,18 +281,14 @@ void Gatekeeper::on_order(const v1::OperatorCommand& order, const dds::SampleInf
   }
 }
 
-/// A stop is obeyed from whom and whenever it comes; what moves the hand again must be meant now,
-/// and by somebody: a recording that is played must not release a robot.
+/// A stop is obeyed from whom and whenever it comes.
 Expected<std::string> Gatekeeper::execute(const v1::OperatorCommand& order, const std::string& by,
                                           Time now) {
   const std::string argument = order.argument().to_string();
   if (order.action() == v1::ACTION_STOP) return stop(by, argument, now);
-  if (!shell_.lockstep()) {
-    const double age = to_seconds(now - from_ns(order.stamp_ns()));
-    if (std::abs(age) > to_seconds(max_order_age))
-      return fail(fmt::format("the order is of {:.0f} s ago", age), by);
-    if (by.starts_with("replayer@")) return fail("an order that is played is not obeyed", by);
-  }
+  if (!shell_.lockstep())
+    if (const auto meant = service::meant_now(order, by, now); !meant)
+      return tl::unexpected(meant.error());
   return order.action() == v1::ACTION_RELEASE ? release(by, argument, now)
                                               : take_over(by, argument, now);
 }
@@ -283,20 +296,27 @@ Expected<std::string> Gatekeeper::execute(const v1::OperatorCommand& order, cons
 std::string Gatekeeper::stop(const std::string& by, const std::string& reason, Time now) {
   const bool already = gate_.stopped().has_value();
   gate_.stop(by, reason, now);
+  if (!already) robot_.hold();
+  const auto kept = keep_stop();
+  if (!kept) log::warning("the stop ends with this process: {}", kept.error().message());
   if (already)
     return fmt::format("stopped already, by {}{}{}", gate_.stopped()->by,
                        gate_.stopped()->reason.empty() ? "" : ": ", gate_.stopped()->reason);
-  robot_.hold();
   shell_.status().count("stops");
+  watch_lead(now);
   note(audit::Event::stop, by, reason, now);
   log::warning("stopped by {}{}{}", by, reason.empty() ? "" : ": ", reason);
-  return opens_ ? "stopped; the hand opens" : "stopped; the hand holds";
+  return fmt::format("stopped; the hand {}{}", opens_ ? "opens" : "holds",
+                     kept ? "" : ", until this process ends: " + kept.error().message());
 }
 
 Expected<std::string> Gatekeeper::release(const std::string& by, const std::string& reason,
                                           Time now) {
   if (reason.empty()) return fail("a release needs a reason", by);
   if (!gate_.stopped()) return "was not stopped";
+  if (kept_)
+    if (const auto gone = kept_->forget(); !gone)
+      log::warning("the next process is stopped again: {}", gone.error().message());
   robot_.hold();
   gate_.release();
   put(state_.reason(), reason, 127);
@@ -309,24 +329,15 @@ Expected<std::string> Gatekeeper::release(const std::string& by, const std::stri
 
 Expected<std::string> Gatekeeper::take_over(const std::string& by, const std::string& name,
                                             Time now) {
-  std::erase_if(writers_, [&](const auto& entry) { return now - entry.second > noticed; });
-  std::vector<gate::WriterId> meant;
-  std::string heard;
-  for (const auto& [writer, at] : writers_) {
-    const std::string service = name_of(writer);
-    heard += (heard.empty() ? "" : ", ") + service;
-    // «mapping» is the other one of two.
-    if (service == name || (service.starts_with(name + "@") && writer != gate_.leader(now)))
-      meant.push_back(writer);
-  }
-  if (name.empty() || meant.size() != 1)
-    return fail(meant.empty() ? "does not send robot/command" : "several are called so", name,
-                heard.empty() ? "nobody does" : "those who do: " + heard);
+  const auto meant = writers_.named(
+      name, gate_.leader(now), now, [this](const auto& writer) { return name_of(writer); },
+      dds::robot_command.name);
+  if (!meant) return tl::unexpected(meant.error());
   robot_.hold();
-  note(audit::Event::takeover, by, name_of(meant.front()), now);
-  gate_.take_over(meant.front(), now);
+  note(audit::Event::takeover, by, name_of(*meant), now);
+  gate_.take_over(*meant, now);
   watch_lead(now);
-  return name_of(meant.front()) + " leads";
+  return name_of(*meant) + (gate_.stopped() ? " leads after the release" : " leads");
 }
 
 // --- consent
@@ -392,6 +403,7 @@ void Gatekeeper::tell(Time now) {
       leading && second_ && now - second_->at <= noticed && second_->writer != *leading;
   put(state.refused(), second ? name_of(second_->writer) : "", 127);
   const auto& stop = gate_.stopped();
+  state.placed(robot_.where().has_value());
   state.stopped(stop.has_value());
   state.consent(state.deadman() && consented_);
   put(state.stopped_by(), stop ? stop->by : "", 127);

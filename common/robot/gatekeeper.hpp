@@ -12,8 +12,10 @@
 #include "common/dds/participant.hpp"
 #include "common/gate/command_gate.hpp"
 #include "common/model/hand_model.hpp"
-#include "common/robot/order_book.hpp"
+#include "common/robot/kept_stop.hpp"
+#include "common/service/order_book.hpp"
 #include "common/service/shell.hpp"
+#include "common/service/writers.hpp"
 #include "idl/Robot.h"
 
 namespace prehend::robot {
@@ -65,6 +67,10 @@ class Gatekeeper {
   void watch_consent(Time now);
   void watch_lead(Time now);
   Expected<void> open_audit(const std::string& name);
+  /// Stopped as the process before was.
+  void recall_stop(const std::string& name);
+  /// So that whoever comes after this process is stopped as well; else why not.
+  Expected<void> keep_stop();
   /// A line of the audit log, where there is one.
   void note(audit::Event event, const std::string& who, const std::string& what, Time now);
   void note_refused(std::string_view reason, const gate::WriterId& writer, Time now);
@@ -89,12 +95,13 @@ class Gatekeeper {
   bool opens_ = false;  // at a stop
   service::Shell::Output<v1::GateState> states_;
   service::Shell::Output<v1::OperatorReply> replies_;
-  OrderBook orders_;
-  std::uint64_t leads_ = 0;                 // as counted in the status
-  std::map<gate::WriterId, Time> writers_;  // of commands for this hand, when they last came
-  Time last_obeyed_;                        // or when somebody must have commanded at last
-  std::optional<Refused> refused_;          // the last one
-  std::optional<Refused> second_;           // of a second writer
+  std::optional<KeptStop> kept_;
+  service::OrderBook orders_;
+  std::uint64_t leads_ = 0;         // as counted in the status
+  service::Writers writers_;        // of commands for this hand
+  Time last_obeyed_;                // or when somebody must have commanded at last
+  std::optional<Refused> refused_;  // the last one
+  std::optional<Refused> second_;   // of a second writer
   std::string missing_;
   v1::GateState state_;  // as it was told last
   std::map<std::string, std::uint64_t, std::less<>> counts_;

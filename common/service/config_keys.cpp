@@ -91,6 +91,8 @@ const std::vector<ConfigKey>& config_keys() {
       {"simulation.hand_name", Text("hand"), "key of robot/command"},
       {"simulation.rate", 500.0, "Hz, physics steps"},
       {"simulation.state_rate", 100.0, "Hz, robot/state and object/state"},
+      {"simulation.brake", 20.0, "m/s², by which the arm brakes at a stop; else 10"},
+      {"simulation.brake_turn", 100.0, "rad/s², by which its turn brakes at a stop; else 50"},
 
       {"gate.max_age", 0.2, "s: robots refuse commands that are older, or as far ahead"},
       {"gate.max_silence", 0.3, "s without a command, after which another writer may lead"},
@@ -105,12 +107,18 @@ const std::vector<ConfigKey>& config_keys() {
        "where `prehend metrics` answers; 0.0.0.0: at every interface"},
       {"metrics.port", std::int64_t{9478}, "its TCP port; 0: any that is free"},
 
+      {"keys.revocation_max_age", 0.0,
+       "days, after which a list of revoked keys is called old (prehend keys refresh); 0: never"},
+      {"keys.refuse_old_list", false, "with such a list nobody joins"},
+
       {"safety.on_stop", Text("hold"),
        "what the fingers do at a stop: hold (keep their squeeze) or open; the base stays"},
       {"safety.deadman", false,
        "robots move only while operator/consent is held (prehend consent)"},
       {"safety.audit", Text(""),
        "folder where robots log who led and stopped them; empty: nowhere"},
+      {"safety.state", Text(""),
+       "folder where robots keep a stop until its release; empty: that of systemd or the user"},
       {"safety.start_stopped", false, "a robot obeys nothing before its first release"},
   };
   return keys;

@@ -1,6 +1,7 @@
 #include "common/service/shell.hpp"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -13,11 +14,13 @@
 #include "common/base/log.hpp"
 #include "common/base/log_format.hpp"
 #include "common/base/paths.hpp"
+#include "common/base/random.hpp"
 #include "common/dds/security.hpp"
 #include "common/dds/topics.hpp"
 #include "common/service/lockstep_loop.hpp"
 #include "common/service/membership.hpp"
 #include "common/service/pulse.hpp"
+#include "common/service/rejoin.hpp"
 #include "common/service/restart.hpp"
 #include "common/service/status_publisher.hpp"
 #include "common/service/supervisor.hpp"
@@ -56,7 +59,7 @@ Expected<Arguments> parse(int argc, char** argv, const Shell::Options& options) 
 
 void warn_of_expiry(const dds::Keys* keys, Time now) {
   if (keys && keys->expires - now < dds::expiry_warning)
-    log::warning("{}: expires in {:.1f} days (renew it with `prehend keys add --renew`)",
+    log::warning("{}: expires in {:.1f} days (renew it with `prehend keys renew`)",
                  keys->folder.string(), to_seconds(keys->expires - now) / 86400);
 }
 
@@ -85,6 +88,9 @@ struct Shell::State {
   std::atomic<Exit> exit = exit_done;
   std::atomic<bool> again = false;  // start anew after the end
   std::string revoked;              // the list of revoked keys that has been spoken of last
+  Rejoin rejoin;
+  std::function<bool()> moves_hand;
+  bool list_is_old = false;  // as has been said
 
   std::vector<std::unique_ptr<fdds::DataReaderListener>> listeners;
   std::unique_ptr<ClockSync> clock_sync;  // live only
@@ -105,17 +111,31 @@ struct Shell::State {
   Duration clock_step() const { return clock_sync ? clock_sync->clock_step() : Duration::zero(); }
 
   /// Fast DDS reads the list of revoked keys only when it joins. True: join anew.
-  bool list_has_changed() {
+  bool list_has_changed(Time now) {
     if (!participant->keys()) return false;
-    const auto list = dds::newer_list(*participant->keys());
-    if (!list || *list == revoked) return false;
-    revoked = *list;
-    if (may_restart()) {
-      log::info("the list of revoked keys has changed: joining anew");
-      return true;
+    say_how_old_the_list_is(now);
+    const bool busy = moves_hand && moves_hand();
+    if (const auto list = dds::newer_list(*participant->keys()); list && *list != revoked) {
+      revoked = *list;
+      if (!may_restart())
+        log::warning("the list of revoked keys has changed; it counts here after a restart");
+      else if (busy)
+        log::warning("the list of revoked keys has changed; it counts here when the hand rests");
+      if (may_restart())
+        rejoin.ask(now, seconds(Random(::getpid()).uniform(0, 1) * to_seconds(Rejoin::max_delay)));
     }
-    log::warning("the list of revoked keys has changed; it counts here after a restart");
-    return false;
+    if (!rejoin.is_due(now, busy)) return false;
+    log::info("the list of revoked keys has changed: joining anew");
+    return true;
+  }
+
+  void say_how_old_the_list_is(Time now) {
+    const auto limit = seconds(86400 * config.number("keys.revocation_max_age"));
+    const auto trouble = dds::old_list(*participant->keys(), limit, now);
+    if (list_is_old == trouble.has_value()) return;
+    list_is_old = trouble.has_value();
+    status.note(trouble ? trouble->message() : std::string());
+    if (trouble) log::warning("{}", trouble->message());
   }
 
   /// A peer that was lost is still there.
@@ -156,6 +176,10 @@ struct Shell::State {
     participant.emplace(std::move(*joined));
     const Time started = process_now();
     warn_of_expiry(participant->keys(), started);
+    if (const dds::Keys* keys = participant->keys(); keys && config.flag("keys.refuse_old_list"))
+      if (auto trouble = dds::old_list(
+              *keys, seconds(86400 * config.number("keys.revocation_max_age")), started))
+        return tl::unexpected(std::move(*trouble));
     const std::string host = host_name();
     auto publisher = StatusPublisher::create(*participant, options.name, host, started);
     if (!publisher) return tl::unexpected(publisher.error());
@@ -288,6 +312,10 @@ void Shell::exclusively(const std::function<void()>& task) {
   if (state_->running) task();
 }
 
+void Shell::busy_while(std::function<bool()> moves_hand) {
+  state_->moves_hand = std::move(moves_hand);
+}
+
 void Shell::stop(Exit exit) {
   state_->exit = exit;
   state_->stop();
@@ -299,7 +327,7 @@ Time Shell::beat(Time now) {
   State& state = *state_;
   const bool due = now >= state.status_publisher->next();
   const Time next = state.status_publisher->beat(now, state.status, state.clock_step());
-  if (due && state.list_has_changed()) state.again = state.stopping = true;
+  if (due && state.list_has_changed(now)) state.again = state.stopping = true;
   return std::min(next, state.supervisor.beat(now));
 }
 

@@ -81,6 +81,9 @@ class Shell {
   /// it outside of run(). For devices whose frames must not wait for a change of threads.
   void exclusively(const std::function<void()>& task);
 
+  /// As long as it moves a hand, it does not join anew for what can wait a minute.
+  void busy_while(std::function<bool()> moves_hand);
+
   /// Ends run() with this exit code.
   void stop(Exit exit = exit_done);
 

@@ -64,6 +64,11 @@ void Status::degraded(std::string message) {
   message_ = std::move(message);
 }
 
+void Status::note(std::string trouble) {
+  const std::scoped_lock lock(mutex_);
+  note_ = std::move(trouble);
+}
+
 std::uint64_t Status::dropped(std::string_view reason) const {
   const std::scoped_lock lock(mutex_);
   const auto found = drops_.find(reason);
@@ -74,8 +79,10 @@ void Status::fill(v1::ServiceStatus& message, Time now) {
   const std::scoped_lock lock(mutex_);
   const double elapsed = to_seconds(now - last_fill_);
   message.stamp_ns(to_ns(now));
-  message.state(state_);
-  message.message(message_.substr(0, 255).c_str());
+  const bool noted = !note_.empty() && state_ == v1::STATE_RUNNING;
+  message.state(noted ? v1::STATE_DEGRADED : state_);
+  const std::string both = message_ + (message_.empty() || note_.empty() ? "" : "; ") + note_;
+  message.message(both.substr(0, 255).c_str());
   // The message's lists are bounded (idl/Operation.idl).
   message.rates().clear();
   for (auto& [name, counter] : counts_) {

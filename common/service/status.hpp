@@ -44,6 +44,8 @@ class Status {
   void running();
   /// Works, but not fully; the message says what is missing and what to do.
   void degraded(std::string message);
+  /// Something that is wrong beside that, and degrades it as well; empty: nothing any more.
+  void note(std::string trouble);
   std::uint64_t dropped(std::string_view reason) const;
 
   /// Fills rates (per second since the last call), drops, latency, state and message.
@@ -55,7 +57,7 @@ class Status {
   };
   mutable std::mutex mutex_;
   v1::ServiceState state_ = v1::STATE_STARTING;
-  std::string message_;
+  std::string message_, note_;
   std::map<std::string, Counter, std::less<>> counts_;
   std::map<std::string, std::uint64_t, std::less<>> drops_;
   std::map<std::string, LatencyWindow, std::less<>> latencies_;

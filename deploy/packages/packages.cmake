@@ -7,9 +7,12 @@ install(FILES ${CMAKE_CURRENT_LIST_DIR}/prehend.bash DESTINATION share/bash-comp
 # Made from the commands' own help by deploy/packages/make, so that neither says something else.
 install(DIRECTORY ${CMAKE_BINARY_DIR}/man/ DESTINATION share/man/man1 COMPONENT lab OPTIONAL)
 # Not enabled: deploy/systemd.md says how.
-install(FILES ${CMAKE_CURRENT_LIST_DIR}/systemd/prehend@.service
-              ${CMAKE_CURRENT_LIST_DIR}/systemd/prehend-metrics.service
-  DESTINATION lib/systemd/system COMPONENT lab)
+install(DIRECTORY ${CMAKE_CURRENT_LIST_DIR}/systemd/ DESTINATION lib/systemd/system COMPONENT lab
+  FILES_MATCHING PATTERN *.service)
+foreach(units prehend- prehend@)
+  install(FILES ${CMAKE_CURRENT_LIST_DIR}/systemd/10-shared.conf
+    DESTINATION lib/systemd/system/${units}.service.d COMPONENT lab)
+endforeach()
 # Headers of these are compiled into the programs: no dependency names them, so the bill of materials
 # and their licences do.
 set(compiled_in libcli11-dev libeigen3-dev libexpected-dev nlohmann-json3-dev)

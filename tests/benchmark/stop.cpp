@@ -1,12 +1,14 @@
-// How long a hand still moves after a stop: a simulation in a process of its own, commands at 100
-// Hz that let its base go at 0.5 m/s, and a stop order at any time. Measured is the time from right
-// before the order is written until the last robot/state comes here that has moved from the one
-// before: order there, world, state back. Beside it the one-way time of robot/state in the same
-// run, from its source time stamp until it is handed over here: the floor is two of these.
+// How long a hand still moves after a stop: a simulation in a process of its own, commands at 500
+// Hz that let its base go around at 0.5 m/s, and a stop order at any time, once it has gone at that
+// speed for 0.2 s. Measured is the time from right before the order is written until the last
+// robot/state comes here that has moved from the one before: order there, world, state back. Beside
+// it, in the same run, the speed that the base had at the order, and the one-way time of
+// robot/state, from its source time stamp until it is handed over here. The floor is two of these
+// and the speed divided by how hard the arm brakes.
 //
 // The states come at 500 Hz, so 2 ms is what can be told apart.
 //
-//   benchmark_stop [--json] [--rounds N]
+//   benchmark_stop [--json] [--rounds N] [--brake M/S²]
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -30,6 +32,8 @@ namespace {
 
 using Eigen::Vector3d;
 using std::chrono::milliseconds;
+
+constexpr double commanded = 0.5;  // m/s
 
 Time now() {
   return std::chrono::time_point_cast<Duration>(std::chrono::system_clock::now());
@@ -58,8 +62,12 @@ class States : public eprosima::fastdds::dds::DataReaderListener {
       if (sample.info.gone) continue;
       const std::scoped_lock lock(mutex_);
       const Vector3d p = convert::from_message(sample.data.X_WB().position());
-      if ((p - p_).norm() > 1e-6) moved_ = at;
+      const double way = (p - p_).norm();
+      if (way > 1e-6) moved_ = at;
       p_ = p;
+      speed_ = way / (1e-9 * static_cast<double>(sample.data.stamp_ns() - stamp_ns_));
+      stamp_ns_ = sample.data.stamp_ns();
+      if (std::abs(speed_ - commanded) > 0.1 * commanded) unsteady_ = at;
       heard_ = at;
       if (hops_.size() < 1'000'000) hops_.push_back(to_seconds(at - sample.info.sent));
     }
@@ -67,6 +75,14 @@ class States : public eprosima::fastdds::dds::DataReaderListener {
   Time moved() {
     const std::scoped_lock lock(mutex_);
     return moved_;
+  }
+  double speed() {
+    const std::scoped_lock lock(mutex_);
+    return speed_;
+  }
+  bool is_steady() {
+    const std::scoped_lock lock(mutex_);
+    return heard_ > unsteady_ + milliseconds(200);
   }
   Time heard() {
     const std::scoped_lock lock(mutex_);
@@ -81,7 +97,9 @@ class States : public eprosima::fastdds::dds::DataReaderListener {
   std::mutex mutex_;
   std::optional<dds::Reader<v1::HandState>> reader_;
   Vector3d p_ = Vector3d::Zero();
-  Time moved_{}, heard_{};
+  Time moved_{}, heard_{}, unsteady_ = now();
+  std::int64_t stamp_ns_ = 0;
+  double speed_ = 0;
   std::vector<double> hops_;
 };
 
@@ -91,14 +109,15 @@ void command(dds::Writer<v1::HandCommand>& writer, const std::atomic<bool>& ende
   message.hand("hand");
   message.model("barrett");
   message.dof({0, 0, 0, 0});
+  const Time begin = now();
   for (std::uint64_t i = 0; !ended; ++i) {
-    const double angle = 5.0 * 0.01 * static_cast<double>(i);
+    const double angle = commanded / 0.1 * to_seconds(now() - begin);
     message.sequence_number(i);
     message.stamp_ns(to_ns(now()));
     message.X_WB(convert::to_message(
         make_pose(Vector3d(0.1 * std::cos(angle), 0.1 * std::sin(angle) - 0.4, 0.6))));
     writer.write(message);
-    std::this_thread::sleep_for(milliseconds(10));
+    std::this_thread::sleep_for(milliseconds(2));
   }
 }
 
@@ -111,24 +130,30 @@ void wait_until(const std::function<bool()>& condition, const char* what) {
   std::exit(3);
 }
 
-void report(bool json, std::vector<double> stops, std::vector<double> hops) {
+void report(bool json, double brake, std::vector<double> stops, std::vector<double> speeds,
+            std::vector<double> hops) {
   const double p50 = quantile_ms(stops, 0.5), p99 = quantile_ms(stops, 0.99),
                max = quantile_ms(stops, 1), hop50 = quantile_ms(hops, 0.5),
                hop99 = quantile_ms(hops, 0.99);
+  const double speed = quantile_ms(speeds, 0.5) / 1e3;
   if (json)
     std::cout << nlohmann::ordered_json{{"rounds", stops.size()},
                                         {"stop_ms", {{"p50", p50}, {"p99", p99}, {"max", max}}},
+                                        {"speed", speed},
+                                        {"braking_ms", 1e3 * speed / brake},
                                         {"one_way_ms", {{"p50", hop50}, {"p99", hop99}}}}
                      .dump()
               << "\n";
   else
     fmt::print(
         "{} stops, order written → last state that moved: p50 {:.1f} ms, p99 {:.1f} ms, most "
-        "{:.1f} ms\nrobot/state, one way: p50 {:.2f} ms, p99 {:.2f} ms\n",
-        stops.size(), p50, p99, max, hop50, hop99);
+        "{:.1f} ms\nof that, braking from {:.2f} m/s with {:.0f} m/s²: {:.1f} ms\nrobot/state, one "
+        "way: "
+        "p50 {:.2f} ms, p99 {:.2f} ms\n",
+        stops.size(), p50, p99, max, speed, brake, 1e3 * speed / brake, hop50, hop99);
 }
 
-int run(bool json, int rounds) {
+int run(bool json, int rounds, double brake) {
   const int domain = 20 + ::getpid() % 180;
   const std::string rig = fmt::format("stop-{}", ::getpid());
   States states;
@@ -140,7 +165,8 @@ int run(bool json, int rounds) {
   auto simulation = need(service::Process::start(
       {.command = {(program_directory() / "prehend-simulation").string(), "--set", "lab.rig=" + rig,
                    "--set", fmt::format("lab.domain={}", domain), "--set",
-                   "simulation.state_rate=500"},
+                   "simulation.state_rate=500", "--set",
+                   fmt::format("simulation.brake={:.3f}", brake)},
        .log = std::filesystem::temp_directory_path() / (rig + ".log")}));
   const auto matched = [](auto& writer) {
     eprosima::fastdds::dds::PublicationMatchedStatus status;
@@ -159,13 +185,15 @@ int run(bool json, int rounds) {
     message.stamp_ns(to_ns(now()));
     orders.write(message);
   };
-  std::vector<double> stops;
+  std::vector<double> stops, speeds;
   std::mt19937 random(1);
   for (int round = 0; round < rounds; ++round) {
     order(v1::ACTION_RELEASE);
     const Time released = now();
-    wait_until([&] { return states.moved() > released + milliseconds(50); }, "motion");
-    std::this_thread::sleep_for(milliseconds(random() % 50));
+    wait_until([&] { return now() > released + milliseconds(300) && states.is_steady(); },
+               "a steady motion");
+    std::this_thread::sleep_for(std::chrono::microseconds(random() % 20'000));
+    speeds.push_back(states.speed());
     const Time stopped = now();
     order(v1::ACTION_STOP);
     wait_until([&] { return states.heard() > states.moved() + milliseconds(200); }, "a stop");
@@ -175,7 +203,7 @@ int run(bool json, int rounds) {
   stream.join();
   simulation.stop(std::chrono::seconds(5));
   std::filesystem::remove(std::filesystem::temp_directory_path() / (rig + ".log"));
-  report(json, stops, states.hops());
+  report(json, brake, stops, speeds, states.hops());
   return 0;
 }
 
@@ -185,16 +213,19 @@ int run(bool json, int rounds) {
 int main(int argc, char** argv) {
   bool json = false;
   int rounds = 100;
+  double brake = 20;
   for (int i = 1; i < argc; ++i) {
     const std::string_view argument = argv[i];
     if (argument == "--json") {
       json = true;
     } else if (argument == "--rounds" && i + 1 < argc) {
       rounds = std::max(1, std::atoi(argv[++i]));
+    } else if (argument == "--brake" && i + 1 < argc) {
+      brake = std::max(0.1, std::atof(argv[++i]));
     } else {
-      std::cerr << "benchmark_stop [--json] [--rounds N]\n";
+      std::cerr << "benchmark_stop [--json] [--rounds N] [--brake M/S²]\n";
       return 2;
     }
   }
-  return prehend::run(json, rounds);
+  return prehend::run(json, rounds, brake);
 }

@@ -1,8 +1,10 @@
 // After an interruption of any kind the hand does not sweep to where the operator is now: real
 // processes of mapping and simulation, and a glove that is this test.
+#include <atomic>
 #include <csignal>
 #include <deque>
 
+#include "common/base/file_text.hpp"
 #include "tests/integration/safety_rig.hpp"
 #include "tests/integration/shown_hand.hpp"
 
@@ -107,6 +109,123 @@ TEST_F(Interruption, ARobotThatStartsAnew) {
   EXPECT_TRUE(show(there, 30, [&] { return heard_ > 2 && gate_.leader().size() > 0; }));
   EXPECT_TRUE(show_for(there, 10));
   expect_slow_way(there);
+}
+
+// The operator has gone on, while the robot stood.
+TEST_F(Interruption, AMappingThatStartsAnew) {
+  start_both();
+  mapping_->signal(SIGKILL);
+  ASSERT_TRUE(mapping_->wait(seconds(5)));
+  mapping_.emplace(start("mapping", {"mapping.clutch_speed=" + std::to_string(clutch_speed)}));
+  meet(postures_);
+  expect_slow_way(there);
+}
+
+// Nobody leads a hand that is stopped, not even a mapping that is new.
+TEST_F(Interruption, AMappingThatStartsAnewLeadsNobodyDuringAStop) {
+  start_both();
+  ASSERT_EQ(run("prehend", with_lab({"stop"}), 30).exit_code, 0);
+  mapping_->signal(SIGKILL);
+  ASSERT_TRUE(mapping_->wait(seconds(5)));
+  const auto leads = [&] {
+    const std::string log = read_file(folder_ / "prehend-simulation.log").value_or("");
+    int found = 0;
+    for (std::size_t at = 0; (at = log.find("leads the hand", at)) != std::string::npos; ++at)
+      ++found;
+    return found;
+  };
+  const int before = leads();
+  mapping_.emplace(start("mapping"));
+  meet(postures_);
+  const std::uint64_t refused = dropped("command while stopped");
+  EXPECT_TRUE(show(there, 30, [&] { return dropped("command while stopped") > refused + 100; }));
+  EXPECT_EQ(leads(), before);
+  ASSERT_EQ(run("prehend", with_lab({"release", "--reason", "a test"}), 30).exit_code, 0);
+  EXPECT_TRUE(show(there, 30, [&] { return leads() > before; }));
+}
+
+/// Postures of another participant, as of a second glove.
+class Gloves : public Interruption {
+ protected:
+  void start_second() {
+    auto made = dds::Participant::create({.name = "other", .domain = domain_, .rig = name_});
+    ASSERT_TRUE(made);
+    other_.emplace(std::move(*made));
+    auto writing = other_->writer(dds::hand_posture);
+    ASSERT_TRUE(writing);
+    second_.emplace(std::move(*writing));
+    meet(*second_);
+  }
+  /// What mapping says of itself.
+  std::string said() {
+    for (const auto& sample : mapping_statuses_.take())
+      if (!sample.info.gone && sample.data.name().to_string() == "mapping")
+        said_ = sample.data.message().to_string();
+    return said_;
+  }
+  /// Who is refused, as mapping calls it, while both send.
+  std::string refused(const Vector3d& p, const Vector3d& q, const std::string& unlike) {
+    std::string name;
+    EXPECT_TRUE(show(p, 30, [&] {
+      second_->write(posture(q));
+      const std::string words = said();
+      const std::size_t begin = words.find("hand/posture of "), end = words.find(" is refused");
+      if (begin == std::string::npos || end == std::string::npos) return false;
+      name = words.substr(begin + 16, end - begin - 16);
+      return name != unlike;
+    })) << said_;
+    return name;
+  }
+
+  std::optional<dds::Participant> other_;
+  std::optional<dds::Writer<v1::HandPosture>> second_;
+  dds::Reader<v1::ServiceStatus> mapping_statuses_ = reader(dds::service_status);
+  std::string said_;
+};
+
+TEST_F(Gloves, TheLeadIsTakenOverByName) {
+  start_both();
+  start_second();
+  const std::string second = refused({0, 0, 0}, there, "");
+  forget_way();
+  // Both go on while the order is given.
+  std::atomic<int> exit_code = -1;
+  std::string output;
+  std::jthread order([&] {
+    const Answer answer = run("prehend", with_lab({"takeover", second}), 30);
+    output = answer.output;
+    exit_code = answer.exit_code;
+  });
+  EXPECT_TRUE(show({0, 0, 0}, 30, [&] {
+    second_->write(posture(there));
+    return exit_code >= 0;
+  }));
+  EXPECT_EQ(exit_code, 0) << output;
+  EXPECT_NE(output.find("mapping: " + second + " leads"), std::string::npos) << output;
+  EXPECT_NE(refused({0, 0, 0}, there, second), second);
+  EXPECT_TRUE(show({0, 0, 0}, 30, [&] {
+    second_->write(posture(there));
+    return rests_at(there);
+  }));
+  EXPECT_LT(way_, slow);
+  const Answer nobody = run("prehend", with_lab({"takeover", "nobody", "--timeout", "1"}), 30);
+  EXPECT_EQ(nobody.exit_code, 1);
+  EXPECT_NE(nobody.output.find("does not send hand/posture"), std::string::npos) << nobody.output;
+}
+
+// Not far enough to be a jump of the tracker.
+TEST_F(Gloves, AnotherGloveBesideTheFirstTakesTheHandAlongSlowly) {
+  start_both();
+  start_second();
+  const Vector3d beside(0.15, 0, 0);
+  forget_way();
+  EXPECT_TRUE(eventually(30, [&] {
+    second_->write(posture(beside));
+    std::this_thread::sleep_for(milliseconds(20));
+    look();
+    return rests_at(beside);
+  }));
+  EXPECT_LT(way_, 0.1) << "it was 15 cm";
 }
 
 TEST_F(Interruption, ASecondGloveIsRefusedAndNamed) {

@@ -4,9 +4,11 @@
 #include <fmt/format.h>
 
 #include <fstream>
+#include <iostream>
 #include <iterator>
 #include <random>
 #include <regex>
+#include <sstream>
 
 #include "common/base/paths.hpp"
 #include "tests/integration/rig.hpp"
@@ -176,6 +178,61 @@ sees --timeout 30 --set lab.keys=$keys || exit 15
                               150);
   if (answer.exit_code == 77) GTEST_SKIP() << "iptables is needed to stop UDP";
   EXPECT_EQ(answer.exit_code, 0) << answer.log;
+}
+
+// Of a hundred who call and say nothing, and of a hundred who begin a greeting and do not end it,
+// nobody keeps out a site with keys. With one of them nobody else came in for as long as it stayed.
+TEST_F(Profiles, ThoseWhoCallAndSayNothingKeepNoSiteOut) {
+  if (!may_make_namespaces()) GTEST_SKIP() << "a network namespace needs root";
+  const Answer answer = alone(R"sh(
+unshare -n sleep 300 & far=$!
+until [ "$(readlink /proc/$far/ns/net)" != "$(readlink /proc/$$/ns/net)" ]; do sleep 0.05; done
+there="nsenter -t $far -n"
+ip link set lo up; ip link add here type veth peer name there; ip link set there netns $far
+ip addr add 10.9.0.1/24 dev here; ip link set here up
+$there ip link set lo up; $there ip addr add 10.9.0.2/24 dev there; $there ip link set there up
+iptables -A INPUT -i here -p udp -j DROP && $there iptables -A INPUT -i there -p udp -j DROP ||
+  exit 77
+keys=$(mktemp -d)/keys
+simulation= callers=
+trap 'kill $far $simulation $callers || true; rm -r ${keys%/keys}' EXIT
+$bin/prehend keys init $keys $lab
+wan="$lab --set lab.network=wan --set lab.keys=$keys"
+$bin/prehend-simulation $wan & simulation=$!
+sees() { $there $bin/prehend status --wait simulation $wan --set 'lab.peers=["10.9.0.1:7420"]' "$@"; }
+took() { begin=$(date +%s%N); "$@" || return 1; echo "took $((($(date +%s%N) - begin) / 1000000)) ms" >&2; }
+took sees --timeout 30 || exit 10
+# Silent, and with the head of a ClientHello that never ends; they call again when they are cut.
+calls='while :; do
+  held=
+  for n in $(seq 50); do
+    exec {fd}<>/dev/tcp/10.9.0.1/7420 || continue
+    held="$held $fd"
+    [ -z "$1" ] || printf "\x16\x03\x01\x01\x00\x01" >&$fd
+  done
+  sleep 3
+  for fd in $held; do exec {fd}>&-; done
+done'
+for one in "" "" greets greets; do
+  $there bash -c "$calls" calls "$one" 2>/dev/null & callers="$callers $!"
+done
+sleep 1
+took sees --timeout 30 || exit 11
+took sees --timeout 30 || exit 12
+kill -0 $simulation
+)sh",
+                              150);
+  if (answer.exit_code == 77) GTEST_SKIP() << "iptables is needed to stop UDP";
+  EXPECT_EQ(answer.exit_code, 0) << answer.log;
+  std::vector<int> took;
+  std::istringstream log(answer.log);
+  for (std::string line; std::getline(log, line);)
+    if (int ms = 0; std::sscanf(line.c_str(), "took %d ms", &ms) == 1) took.push_back(ms);
+  ASSERT_EQ(took.size(), 3u) << answer.log;
+  std::cout << "joined and seen after " << took[0] << " ms, among silent ones after " << took[1]
+            << " and " << took[2] << " ms\n";
+  EXPECT_LT(took[1], took[0] + 2000);
+  EXPECT_LT(took[2], took[0] + 2000);
 }
 
 // Two sites whose networks have the same addresses, as two container engines give them, each behind

@@ -65,7 +65,8 @@ std::string Rig::program(const std::string& name) {
 Strings Rig::lab_arguments(const Strings& sets) const {
   Strings arguments{"--set", "lab.rig=" + name_,
                     "--set", "lab.domain=" + std::to_string(domain_),
-                    "--set", "lab.network=" + network_.profile};
+                    "--set", "lab.network=" + network_.profile,
+                    "--set", "safety.state=" + (folder_ / "state").string()};
   if (!network_.servers.empty())
     arguments.insert(
         arguments.end(),

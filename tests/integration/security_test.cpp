@@ -13,6 +13,7 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
+#include "common/base/file_text.hpp"
 #include "common/dds/raw.hpp"
 #include "common/keys/certificate.hpp"
 #include "services/cli/tools/keys/keystore.hpp"
@@ -355,6 +356,126 @@ TEST_F(Security, ThoseWhoComeAndGoLockNobodyUp) {
   EXPECT_FALSE(simulation.exit());
   const std::string log = service::last_lines(folder_ / "prehend-simulation.log", 1000);
   EXPECT_EQ(log.find("locked itself up"), std::string::npos) << log;
+}
+
+// The authority is on another machine: only requests and what it grants travel.
+TEST_F(Security, PrivateKeysNeverLeaveTheMachineWhereTheyAreUsed) {
+  const fs::path here = folder_ / "here";
+  const std::string asked = (folder_ / "asked").string(), granted = (folder_ / "granted").string();
+  const auto keys = [&](Strings words, int exit_code = 0) {
+    words.insert(words.begin(), "keys");
+    const Answer answer = run("prehend", words, 20);
+    EXPECT_EQ(answer.exit_code, exit_code) << answer.log << answer.output;
+    return answer;
+  };
+  const auto text = [](const fs::path& file) { return read_file(file).value_or(""); };
+  const Strings there{"--store", store_.folder().string()}, at{"--store", here.string()};
+  const auto with = [](Strings words, const Strings& more) {
+    words.insert(words.end(), more.begin(), more.end());
+    return words;
+  };
+  keys(with({"request", "viewer-anna", "--output", asked}, at));
+  keys(with({"sign", asked, "--rig", "any", "--output", granted}, there));
+  for (const std::string& file : {asked, granted})
+    EXPECT_EQ(text(file).find("PRIVATE"), std::string::npos) << file;
+  EXPECT_FALSE(fs::exists(store_.folder() / "viewer-anna" / dds::key_files::key));
+  keys(with({"install", granted}, at));
+  auto simulation = start("simulation", {"lab.keys=" + store_.folder().string()});
+  EXPECT_EQ(
+      status_with(here / "viewer-anna", {"--wait", "simulation", "--timeout", "15"}).exit_code, 0);
+  EXPECT_NE(keys(with({"show"}, there)).output.find("elsewhere"), std::string::npos);
+
+  // The next one; until it is installed the old one goes on.
+  const std::string before = text(here / "viewer-anna" / dds::key_files::key);
+  keys(with({"renew", "viewer-anna"}, there), 1);
+  keys(with({"request", "viewer-anna", "--output", asked}, at));
+  EXPECT_EQ(text(here / "viewer-anna" / dds::key_files::key), before);
+  keys(with({"install", granted}, at), 1);  // what was granted to the first key
+  keys(with({"sign", asked, "--rig", "any", "--output", granted}, there));
+  keys(with({"install", granted}, at));
+  EXPECT_NE(text(here / "viewer-anna" / dds::key_files::key), before);
+  // Of another lab: not in its place.
+  const Keystore other = make_store("other-lab");
+  keys(with({"request", "viewer-anna", "--output", asked}, at));
+  keys({"sign", asked, "--rig", "any", "--output", granted, "--store", other.folder().string()});
+  keys(with({"install", granted}, at), 1);
+
+  // Where the authority is, too, a key is renewed with what it had.
+  const auto serial = [&] {
+    return keys::facts(text(store_.folder() / "viewer" / dds::key_files::certificate))->serial;
+  };
+  const std::string first = serial();
+  keys(with({"renew", "viewer"}, there));
+  EXPECT_NE(serial(), first);
+  keys(with({"renew", "nobody"}, there), 1);
+}
+
+// A list that nobody signs anew is called old, and where that is set nobody joins with it.
+TEST_F(Security, AnOldListIsSaid) {
+  const fs::path anna = copy_of("viewer", "old-list");
+  const Strings old{"keys.revocation_max_age=0.00001"};
+  const auto doctor = [&](const Strings& sets) {
+    Strings words{"doctor", "--json", "--listen", "0.5"};
+    Strings all = sets;
+    all.push_back("lab.keys=" + anna.string());
+    const Strings lab = lab_arguments(all);
+    words.insert(words.end(), lab.begin(), lab.end());
+    return run("prehend", words, 30).output;
+  };
+  std::this_thread::sleep_for(std::chrono::seconds(1));  // the list's age
+  EXPECT_NE(doctor(old).find("the list of revoked keys is"), std::string::npos);
+  EXPECT_EQ(doctor({"keys.revocation_max_age=30"}).find("the list of revoked keys is"),
+            std::string::npos);
+  const std::string folder = store_.folder().string();
+  auto simulation = start("simulation", {"lab.keys=" + folder, old[0]});
+  participant_ = member("viewer", store_.folder());
+  auto statuses = reader(dds::service_status);
+  EXPECT_TRUE(hear<v1::ServiceStatus>(statuses, 20, [](const v1::ServiceStatus& status) {
+    return status.message().to_string().find("the list of revoked keys is") != std::string::npos;
+  }));
+  const Answer refused =
+      run("prehend-mapping",
+          lab_arguments({"lab.keys=" + folder, old[0], "keys.refuse_old_list=true"}), 20);
+  EXPECT_EQ(refused.exit_code, 3) << refused.log;
+}
+
+// Who leads a hand ends that first, and a list that was only signed anew changes nothing.
+TEST_F(Security, AChangedListDoesNotTakeTheHandFromAnybody) {
+  ASSERT_TRUE(store_.add("viewer-eve", dds::Role::viewer, year, false, now(), {}));
+  const std::string folder = store_.folder().string();
+  const Strings sets{"lab.keys=" + folder, "lab.scene=" + scene(1)};
+  auto simulation = start("simulation", sets), mapping = start("mapping", sets),
+       glove = start("glove", sets);
+  participant_ = member("viewer", store_.folder());
+  auto gates = reader(dds::robot_gate);
+  std::uint64_t most = 0;
+  bool went_back = false;
+  const auto obeys = [&](std::uint64_t more) {
+    const std::uint64_t aim = most + more;
+    return hear<v1::GateState>(gates, 40,
+                               [&](const v1::GateState& gate) {
+                                 went_back = went_back || gate.obeyed() < most;
+                                 most = std::max<std::uint64_t>(most, gate.obeyed());
+                                 return most >= aim;
+                               })
+        .has_value();
+  };
+  const auto says = [&](const std::string& service, const std::string& words) {
+    return service::last_lines(folder_ / ("prehend-" + service + ".log"), 50).find(words) !=
+           std::string::npos;
+  };
+  ASSERT_TRUE(obeys(100));
+  ASSERT_EQ(run("prehend", {"keys", "refresh", "--store", folder}, 10).exit_code, 0);
+  ASSERT_TRUE(obeys(100));
+  ASSERT_EQ(run("prehend", {"keys", "revoke", "viewer-eve", "--store", folder}, 10).exit_code, 0);
+  EXPECT_TRUE(eventually(10, [&] { return says("simulation", "when the hand rests"); }));
+  ASSERT_TRUE(obeys(200));
+  EXPECT_FALSE(went_back) << "the robot's process has started anew";
+  for (const char* service : {"simulation", "mapping"}) EXPECT_FALSE(says(service, "joining anew"));
+  // The hand is let go: now it counts.
+  glove.stop(std::chrono::seconds(5));
+  for (const char* service : {"simulation", "mapping"})
+    EXPECT_TRUE(eventually(20, [&] { return says(service, "joining anew"); })) << service;
 }
 
 // A service that has been running since before reads the list anew and keeps its process number.

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "common/base/file_text.hpp"
 #include "tests/integration/safety_rig.hpp"
 #include "tests/integration/terminal.hpp"
 
@@ -225,6 +226,56 @@ TEST_F(Stop, IsThereFromTheStartWhereThatIsAsked) {
       [&] { return (base() - beginning).norm() < 1e-3; }));
 }
 
+// The stop is kept on disk: whoever starts the process anew does not release the hand.
+TEST_F(Stop, OutlivesTheProcessOfTheRobot) {
+  start_hand();
+  ordered({"stop", "--reason", "a test"});
+  simulation_->signal(SIGKILL);
+  ASSERT_TRUE(simulation_->wait(seconds(5)));
+  gate_ = {};
+  status_ = {};
+  simulation_.emplace(start("simulation"));
+  meet(commands_);
+  ASSERT_TRUE(wait(20, [&, first = heard_] { return heard_ > first + 5; }));
+  const Vector3d before = base();
+  EXPECT_TRUE(send(
+      commands_, 20, [&] { return command(beginning); },
+      [&] { return dropped("command while stopped") > 20; }));
+  EXPECT_EQ(base(), before);
+  EXPECT_TRUE(gate_.stopped());
+  EXPECT_EQ(gate_.reason().to_string(), "a test");
+  EXPECT_TRUE(says("stopped by operator-")) << status_.message().to_string();
+  ordered({"release", "--reason", "all is clear"});
+  EXPECT_TRUE(send(
+      commands_, 20, [&] { return command(beginning); },
+      [&] { return (base() - beginning).norm() < 1e-3; }));
+  // And a release does so, too.
+  simulation_->signal(SIGKILL);
+  ASSERT_TRUE(simulation_->wait(seconds(5)));
+  EXPECT_TRUE(std::filesystem::is_empty(folder_ / "state"));
+}
+
+// A file that nobody understands is a stop; without a folder one is told.
+TEST_F(Stop, WhatIsKeptAndCannotBeReadStopsAndWhatCannotBeKeptIsSaid) {
+  start_hand();
+  ordered({"stop"});
+  simulation_->stop(seconds(5));
+  listen();  // to its last words
+  for (const auto& file : std::filesystem::directory_iterator(folder_ / "state"))
+    ASSERT_TRUE(write_file(file.path(), "{"));
+  gate_ = {};
+  simulation_.emplace(start("simulation"));
+  ASSERT_TRUE(wait(20, [&] { return gate_.stopped(); }));
+  EXPECT_NE(gate_.reason().to_string().find("cannot be read"), std::string::npos);
+  simulation_->stop(seconds(5));
+  gate_ = {};
+  simulation_.emplace(start("simulation", {"safety.state=/proc/nothing"}));
+  ASSERT_TRUE(wait(20, [&] { return gate_.hand().size() > 0; }));
+  EXPECT_FALSE(gate_.stopped());
+  const std::string said = ordered({"stop"})["gates"][0]["message"];
+  EXPECT_NE(said.find("until this process ends"), std::string::npos) << said;
+}
+
 // The space bar on a terminal, pressed as a keyboard repeats it.
 TEST_F(Stop, TheHandMovesOnlyWhileTheDeadmanIsHeld) {
   start_hand_without_consent();
@@ -290,8 +341,14 @@ TEST_F(Stop, TheAuditLogTellsWhoDidWhat) {
   ASSERT_EQ(answer.exit_code, 0) << answer.log;
   std::map<std::string, std::set<std::string>> events;
   const json document = json::parse(answer.output);
-  for (const json& event : document["events"])
+  int leads = 0, ends = 0;
+  for (const json& event : document["events"]) {
     events[event["event"]].insert(event.value("what", ""));
+    leads += event["event"] == "lead";
+    ends += event["event"] == "lead_end";
+    EXPECT_FALSE(events.contains("stop") && !events.contains("release") && leads > ends)
+        << "nobody leads a hand that is stopped";
+  }
   EXPECT_TRUE(events.contains("begin"));
   EXPECT_TRUE(events.contains("lead"));
   EXPECT_TRUE(events["stop"].contains("a noise")) << answer.output;

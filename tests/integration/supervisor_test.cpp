@@ -70,14 +70,23 @@ TEST_F(Supervised, EachServiceIsReadyWhenItAnswersAndSaysThatItStops) {
   }
 }
 
-TEST_F(Supervised, SoDoesTheExporterOfMetrics) {
-  auto process = start_supervised({"prehend", "metrics"}, "1000000", {"metrics.port=0"});
-  ASSERT_EQ(next(60), "READY=1");
-  for (int i = 0; i < 3; ++i) ASSERT_EQ(next(20), "WATCHDOG=1");
-  process.signal(SIGTERM);
-  std::string heard = next(20);
-  while (heard == "WATCHDOG=1") heard = next(20);
-  EXPECT_EQ(heard, "STOPPING=1");
+TEST_F(Supervised, SoDoWhoExportsWhoRecordsAndWhoServesDiscovery) {
+  const std::string port = std::to_string(20000 + ::getpid() % 10000);
+  for (const auto& [command, sets] : std::vector<std::pair<Strings, Strings>>{
+           {{"prehend", "metrics"}, {"metrics.port=0"}},
+           {{"prehend-record", "--quiet", "--output", (folder_ / "all.mcap").string()}, {}},
+           {{"prehend", "discovery-server", "--listen", "127.0.0.1:" + port}, {}}}) {
+    auto process = start_supervised(command, "1000000", sets);
+    ASSERT_EQ(next(60), "READY=1") << command[1];
+    for (int i = 0; i < 3; ++i) ASSERT_EQ(next(20), "WATCHDOG=1") << command[1];
+    process.signal(SIGTERM);
+    std::string heard = next(20);
+    while (heard == "WATCHDOG=1") heard = next(20);
+    EXPECT_EQ(heard, "STOPPING=1") << command[1];
+    const auto exit = process.wait(seconds(20));
+    ASSERT_TRUE(exit) << command[1];
+    EXPECT_EQ(exit->code, 0) << command[1];
+  }
 }
 
 TEST_F(Supervised, OneThatCannotStartIsNeverReady) {

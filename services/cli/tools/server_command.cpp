@@ -4,8 +4,10 @@
 
 #include <CLI/CLI.hpp>
 
+#include "common/base/clock.hpp"
 #include "common/base/log.hpp"
 #include "common/service/membership.hpp"
+#include "common/service/supervisor.hpp"
 #include "services/cli/tools/arguments.hpp"
 
 namespace prehend::cli {
@@ -49,8 +51,11 @@ int server_command(const std::vector<std::string>& arguments) {
   const auto server = dds::Participant::create(options);
   if (!server) return complain(server.error(), exit_broken);
   log::info("listens at {}", listen);
-  int signal = 0;
-  sigwait(&ends, &signal);
+  service::Supervisor supervisor;
+  supervisor.beat(process_now());
+  const timespec round{0, 250'000'000};
+  while (sigtimedwait(&ends, nullptr, &round) <= 0) supervisor.beat(process_now());
+  supervisor.stopping();
   return exit_done;
 }
 

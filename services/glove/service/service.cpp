@@ -76,6 +76,8 @@ Service::Service(service::Shell& shell, const DeviceKind& kind, const DeviceOpti
                     }));
   else
     frames_ = shell.publish(dds::glove_frame);
+  // Somebody may be led by it.
+  shell.busy_while([this] { return shell_.now() - last_posture_ < silence; });
   shell.on_tick(tick_period, [this](Time now) { on_tick(now); });
 }
 

@@ -24,6 +24,8 @@ class GloveLead {
     leader_ = writer;
     led_ = now;
   }
+  /// From now on this one leads, whoever led before.
+  void take_over(const Writer& writer, Time now) { followed(writer, now); }
   void refused(const Writer& writer, Time now) {
     second_ = writer;
     refused_ = now;

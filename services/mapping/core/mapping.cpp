@@ -89,9 +89,10 @@ Eigen::VectorXd Mapping::finger_distances(const RobotState& state) const {
   return of_dofs;
 }
 
-void Mapping::on_gate(bool obeys) {
+void Mapping::on_gate(bool obeys, std::optional<bool> placed) {
   if (obeys != obeyed_) interrupted_ = true;
   obeyed_ = obeys;
+  placed_ = placed;
 }
 
 /// Have fingers become so different that they would sweep from one posture to the other?
@@ -174,7 +175,8 @@ Expected<Features> Mapping::features_of(const Posture& posture, Time now) const 
 /// be. False: not yet.
 bool Mapping::start(const Pose& X_WG, Time stamp, Time now) {
   if (!first_posture_) first_posture_ = now;
-  if (!state_ && now - *first_posture_ < options_.state_wait) return false;
+  const bool told = state_ && (placed_ || !options_.start_slowly);
+  if (!told && now - *first_posture_ < options_.state_wait) return false;
   time_ = stamp;
   if (!state_) {
     command_.dof = hand_.clamp(hand_.postures().at("open"));
@@ -186,6 +188,8 @@ bool Mapping::start(const Pose& X_WG, Time stamp, Time now) {
   command_.dof = grip_.squeeze(hand_.clamp(state_->dof));
   command_.X_WB = state_->X_WB;
   if (grip_.touching()) placement_.start(X_WG, state_->X_WB);
+  // One without a gate may be somewhere, too.
+  if (options_.start_slowly && placed_.value_or(true)) interrupted_ = true;
   return true;
 }
 

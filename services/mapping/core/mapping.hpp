@@ -70,6 +70,9 @@ struct MappingOptions {
   Duration max_posture_age = std::chrono::milliseconds(500);
   /// Without robot/state for this time from the first posture, it starts with an open hand.
   Duration state_wait = std::chrono::seconds(1);
+  /// A robot hand that is somewhere already is not swept to where the operator is, as after any
+  /// interruption; its gate says whether it is. In lockstep there is no gate, and no danger.
+  bool start_slowly = false;
 };
 
 /// From postures, detections and robot states to commands. Pure and deterministic; time comes as
@@ -96,8 +99,10 @@ class Mapping {
   /// Refuses what has not this hand's sizes or is not finite.
   Expected<void> on_state(const RobotState& state);
   /// Whether the robot hand obeys anybody, as its gate says. While it does not, commands stay where
-  /// it is.
-  void on_gate(bool obeys);
+  /// it is. placed: it is somewhere already; nothing: nobody says so.
+  void on_gate(bool obeys, std::optional<bool> placed = {});
+  /// The next posture is of somebody else: the hands come together slowly.
+  void interrupt() { interrupted_ = true; }
   /// A command to stay, once no posture has been answered for a while (HoldTimerOptions).
   std::optional<Command> tick(Time now);
 
@@ -148,6 +153,7 @@ class Mapping {
   std::optional<Time> first_posture_;
   bool interrupted_ = false;       // since the last posture that was answered
   bool obeyed_ = true;             // by the robot hand, as its gate says
+  std::optional<bool> placed_;     // the robot hand is somewhere, as its gate says
   std::optional<Pose> last_X_WG_;  // of that posture
   Time last_stamp_{};              // of that posture
   Time time_{};                    // that the last command is for

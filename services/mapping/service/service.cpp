@@ -8,6 +8,8 @@
 #include "common/base/paths.hpp"
 #include "common/convert/convert.hpp"
 #include "common/dds/topics.hpp"
+#include "common/service/order_book.hpp"
+#include "common/service/writers.hpp"
 #include "services/mapping/core/glove_lead.hpp"
 #include "services/mapping/core/mapping.hpp"
 #include "services/mapping/core/mapping_model.hpp"
@@ -105,6 +107,7 @@ class Service::Topics {
                       Handler<v1::GateState>([this](auto& s, auto& i) { on_gate(s, i); }));
     shell.subscribe(dds::operator_command,
                     Handler<v1::OperatorCommand>([this](auto& s, auto& i) { on_order(s, i); }));
+    shell.busy_while([this] { return shell_.now() - last_posture_ < patience; });
     shell.on_tick(std::chrono::milliseconds(20), [this](Time now) {
       if (const auto command = mapping_.tick(now)) {
         shell_.status().count("hold commands");
@@ -122,11 +125,13 @@ class Service::Topics {
     if (info.gone) return;
     const Time now = shell_.now();
     service::Status& status = shell_.status();
+    heard_.heard(info.participant, now);
     if (!gloves_.admits(info.participant, now)) {
       status.drop("posture of a second glove");
       gloves_.refused(info.participant, now);
       return;
     }
+    if (led_ && *led_ != info.participant) mapping_.interrupt();
     const auto posture = posture_from_message(message);
     const auto command =
         posture.and_then([&](const Posture& value) { return mapping_.on_posture(value, now); });
@@ -137,6 +142,7 @@ class Service::Topics {
     }
     publish(*command);
     gloves_.followed(info.participant, now);
+    led_ = info.participant;
     last_posture_ = now;
     last_reject_.clear();
     status.latency("posture hop", now - info.sent);
@@ -165,28 +171,57 @@ class Service::Topics {
   void on_gate(const v1::GateState& message, const dds::SampleInfo& info) {
     if (message.hand().to_string() != hand_name_) return;
     // Of a gate that is gone nothing is known.
-    mapping_.on_gate(info.gone ||
-                     (!message.stopped() && (!message.deadman() || message.consent())));
+    if (info.gone) return mapping_.on_gate(true);
+    mapping_.on_gate(!message.stopped() && (!message.deadman() || message.consent()),
+                     message.placed());
   }
 
-  /// «Set mode», for us or for all; other orders are not ours.
+  /// «Set mode» and «take over», for us or for all; other orders are not ours.
   void on_order(const v1::OperatorCommand& message, const dds::SampleInfo& info) {
     const std::string target = message.target().to_string();
-    if (info.gone || message.action() != v1::ACTION_SET_MODE) return;
+    const auto action = message.action();
+    if (info.gone || (action != v1::ACTION_SET_MODE && action != v1::ACTION_TAKE_OVER)) return;
     if (!target.empty() && target != "mapping") return;
-    const auto executed =
-        changed(modes_, message.argument().to_string()).and_then([this](const MappingModes& modes) {
-          return use(modes);
-        });
-    if (!executed) shell_.status().drop("order not understood");
+    if (const auto known = orders_.find(message.id().to_string())) return replies_.publish(*known);
+    const auto executed = action == v1::ACTION_SET_MODE ? set_mode(message.argument().to_string())
+                                                        : take_over(message, info);
     v1::OperatorReply reply;
     reply.id(message.id());
     reply.stamp_ns(to_ns(shell_.now()));
     reply.service("mapping");
     reply.done(executed.has_value());
     // Long enough for every reason that there is.
-    reply.message((executed ? to_string(modes_) : executed.error().message()).substr(0, 255));
+    reply.message((executed ? *executed : executed.error().message()).substr(0, 255));
+    if (executed) orders_.add(reply);
     replies_.publish(reply);
+  }
+
+  Expected<std::string> set_mode(const std::string& words) {
+    const auto used =
+        changed(modes_, words).and_then([this](const MappingModes& modes) { return use(modes); });
+    if (used) return to_string(modes_);
+    shell_.status().drop("order not understood");
+    return tl::unexpected(used.error());
+  }
+
+  /// Another glove leads from now on.
+  Expected<std::string> take_over(const v1::OperatorCommand& order, const dds::SampleInfo& info) {
+    const std::string by = service::given_by(order, shell_.writer_of(info));
+    const Time now = shell_.now();
+    if (!shell_.lockstep())
+      if (const auto meant = service::meant_now(order, by, now); !meant)
+        return tl::unexpected(meant.error());
+    const auto chosen = heard_.named(
+        order.argument().to_string(), gloves_.followed(), now,
+        [this](const auto& writer) { return name_of(writer); }, dds::hand_posture.name);
+    if (!chosen) return tl::unexpected(chosen.error());
+    gloves_.take_over(*chosen, now);
+    log::warning("{} leads, by order of {}", name_of(*chosen), by);
+    return name_of(*chosen) + " leads";
+  }
+
+  std::string name_of(const dds::GuidPrefix& writer) const {
+    return shell_.writer_of({.participant = writer});
   }
 
   Expected<void> use(const MappingModes& modes) {
@@ -208,9 +243,8 @@ class Service::Topics {
                          [&](const auto& track) { return now - track.second > camera_patience; }))
       missing = "recognition has fallen silent; objects are no longer known";
     else if (const auto second = gloves_.second(now))
-      missing = "hand/posture of " + shell_.writer_of({.participant = *second}) +
-                " is refused, for " + shell_.writer_of({.participant = *gloves_.followed()}) +
-                " leads";
+      missing = "hand/posture of " + name_of(*second) + " is refused, for " +
+                name_of(*gloves_.followed()) + " leads";
     if (missing == missing_) return;
     missing_ = missing;
     if (missing.empty()) {
@@ -240,6 +274,9 @@ class Service::Topics {
   std::unique_ptr<const MappingModel> model_;
   Mapping mapping_;
   GloveLead gloves_;
+  service::Writers heard_;                // of postures
+  std::optional<GloveLead::Writer> led_;  // whose posture was answered last
+  service::OrderBook orders_;
   MappingModes modes_;
   std::string hand_name_;
   service::Shell::Output<v1::HandCommand> output_;
@@ -276,6 +313,7 @@ Expected<std::unique_ptr<Service>> Service::create(service::Shell& shell) {
   modes.placement = config.flag("mapping.placement");
   MappingOptions options;
   options.modes = effective(modes);
+  options.start_slowly = !shell.lockstep();
   options.clutch.speed = config.number("mapping.clutch_speed");
   options.clutch.turn_speed = config.number("mapping.clutch_turn_speed");
   options.clutch.finger_speed = config.number("mapping.clutch_finger_speed");

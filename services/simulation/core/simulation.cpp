@@ -36,7 +36,7 @@ grasping::Body body_of(const model::CatalogueObject& object) {
 Expected<std::unique_ptr<Simulation>> Simulation::create(const model::HandModel& hand,
                                                          const Options& options) {
   auto world = grasping::World::create(hand, resting_place, hand.postures().at("open"),
-                                       {.rate = options.rate});
+                                       {.rate = options.rate, .brake = options.brake});
   if (!world) return tl::unexpected(world.error());
   return std::unique_ptr<Simulation>(new Simulation(hand, options, std::move(*world)));
 }
@@ -94,7 +94,7 @@ Expected<void> Simulation::accept(const Command& command, Time now) {
 }
 
 void Simulation::hold() {
-  world_->hold_still();
+  world_->brake();
   holding_ = braking_ = true;
 }
 

@@ -21,6 +21,7 @@ struct Options {
   double rate = 500;                                    // Hz, physics steps
   Duration stale = std::chrono::milliseconds(200);      // without commands: the hand holds still
   Duration max_behind = std::chrono::milliseconds(50);  // the world catches up at most this much
+  grasping::BrakeLimits brake;                          // of the arm, at a stop
   double far_away = 0.10;  // m, of the hand from an object that sightings may still move
 };
 
@@ -60,6 +61,8 @@ class Simulation {
   Time time() const { return time_; }
   const std::optional<Command>& command() const { return command_; }
   bool is_holding_still() const { return holding_; }
+  /// The base still moves, though it was told to stop.
+  bool is_braking() const { return braking_; }
   const grasping::World& world() const { return *world_; }
 
  private:

@@ -54,7 +54,11 @@ Service::~Service() {
 Expected<void> Service::start() {
   const service::Config& config = shell_.config();
   const double rate = config.number("simulation.rate");
-  auto simulation = Simulation::create(hand_, {.rate = rate});
+  const grasping::BrakeLimits brake{config.number("simulation.brake"),
+                                    config.number("simulation.brake_turn")};
+  if (!(brake.acceleration > 0 && brake.turn_acceleration > 0))
+    return wrong_use("must be positive", "simulation.brake, simulation.brake_turn");
+  auto simulation = Simulation::create(hand_, {.rate = rate, .brake = brake});
   if (!simulation) return tl::unexpected(simulation.error());
   simulation_ = std::move(*simulation);
   if (const auto file = config.path("lab.scene"); !file.empty()) {
@@ -92,8 +96,9 @@ std::optional<gate::Place> Service::where() const {
   return gate::Place{simulation_->world().commanded_dof(), simulation_->world().commanded_base()};
 }
 
-/// As a command that answers no glove frame.
+/// As a command that answers no glove frame. The base comes to rest first.
 void Service::go(const gate::Place& place, Time now) {
+  if (simulation_->is_braking()) return;
   Command command = simulation_->command().value_or(Command{});
   command.stamp = now;
   command.origin = {};

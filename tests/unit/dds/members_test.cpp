@@ -118,6 +118,15 @@ TEST_F(MembersTest, WithoutKeysDeparturesAreBelievedAndCounted) {
   EXPECT_FALSE(plain.is_stranded(beginning + seconds(9.0))) << "it is met again by itself";
 }
 
+TEST_F(MembersTest, WithoutKeysOnlyAnnouncementsAreLookedAt) {
+  Members plain(false);
+  plain.judge(without_keys, Message(without_keys).sample().bytes(), beginning, false);
+  EXPECT_EQ(plain.size(), 0u);
+  plain.judge(without_keys, Message(without_keys).announcement(without_keys, {}).bytes(),
+              beginning);
+  EXPECT_EQ(plain.size(), 1u);
+}
+
 TEST_F(MembersTest, NothingButDiscoveryAndHandshakesIsSaidInPlainText) {
   let_in();
   for (const bool little_endian : {true, false}) {

@@ -47,6 +47,36 @@ TEST(Certificate, IsGoodBeforeItsAuthorityForItsTime) {
   EXPECT_FALSE(good({"", lab.glove.key}, authority, lab.nobody_gone, now));
 }
 
+TEST(Certificate, IsGrantedToAKeyThatTheAuthorityNeverSees) {
+  const Lab lab;
+  const auto asked = request("glove-left");
+  ASSERT_TRUE(asked) << asked.error().message();
+  EXPECT_EQ(asked->text.find("PRIVATE"), std::string::npos);
+  EXPECT_EQ(name_in(asked->text), "glove-left");
+  const auto granted = grant(lab.authority, asked->text, {now - days(1), now + days(30)});
+  ASSERT_TRUE(granted) << granted.error().message();
+  EXPECT_EQ(facts(*granted)->subject, "CN=glove-left");
+  EXPECT_TRUE(check({*granted, asked->key}, lab.authority.certificate, lab.nobody_gone, now));
+  EXPECT_FALSE(check({*granted, lab.glove.key}, lab.authority.certificate, lab.nobody_gone, now));
+}
+
+TEST(Certificate, IsNotGrantedToWhoDoesNotHoldTheKey) {
+  const Lab lab;
+  std::string asked = request("glove")->text;
+  // Another name in the same request: its signature no longer holds.
+  const std::size_t middle = asked.size() / 2;
+  for (std::size_t i = middle; i < middle + 8; ++i) asked[i] = asked[i] == 'A' ? 'B' : 'A';
+  EXPECT_FALSE(grant(lab.authority, asked, long_time));
+  EXPECT_FALSE(grant(lab.authority, "", long_time));
+  EXPECT_FALSE(grant(lab.authority, lab.glove.certificate, long_time));
+}
+
+TEST(Certificate, AListTellsWhenItWasSigned) {
+  const Lab lab;
+  EXPECT_EQ(signed_at(lab.nobody_gone), now);
+  EXPECT_FALSE(signed_at(""));
+}
+
 TEST(Certificate, RevokedIsNoLongerGood) {
   const Lab lab;
   const Identity mapping = *issue(lab.authority, "mapping", long_time);

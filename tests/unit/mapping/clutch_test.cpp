@@ -83,13 +83,16 @@ class Interrupted : public testing::TestWithParam<std::string> {
   Interrupted()
       : hand_(test::hand(GetParam())),
         model_(random_model(3, hand_)),
-        mapping_(*Mapping::create(hand_, model_, {})),
-        robot_(hand_.postures().at("open")) {}
+        robot_(hand_.postures().at("open")) {
+    mapping_.emplace(*Mapping::create(hand_, model_, {}));
+  }
+  /// A new one, as a live service starts it.
+  void start_slowly() { mapping_.emplace(*Mapping::create(hand_, model_, {.start_slowly = true})); }
 
   static Time at(int ms) { return Time(std::chrono::seconds(1'700'000'000) + milliseconds(ms)); }
   void robot_says() {
     const auto joints = static_cast<Eigen::Index>(hand_.joints().size());
-    ASSERT_TRUE(mapping_.on_state(
+    ASSERT_TRUE(mapping_->on_state(
         {at(ms_), robot_, Eigen::VectorXd::Zero(joints), Eigen::VectorXd::Zero(joints), base_}));
   }
   /// For so long the operator is at p with fingers closed by c.
@@ -99,7 +102,7 @@ class Interrupted : public testing::TestWithParam<std::string> {
       const Pose X_WG = make_pose(p);
       const Posture posture{at(ms_), at(ms_), X_WG * model::HumanHand(1.0).X_HG().inverse(), 1.0,
                             tips({c, c, c, c, c})};
-      const auto command = mapping_.on_posture(posture, at(ms_));
+      const auto command = mapping_->on_posture(posture, at(ms_));
       ASSERT_TRUE(command) << command.error().message();
       watch(*command);
     }
@@ -107,7 +110,7 @@ class Interrupted : public testing::TestWithParam<std::string> {
   void pause(int duration) {
     for (const int end = ms_ + duration; ms_ < end; ms_ += 20) {
       robot_says();
-      if (const auto command = mapping_.tick(at(ms_))) watch(*command);
+      if (const auto command = mapping_->tick(at(ms_))) watch(*command);
     }
   }
   void watch(const Command& command) {
@@ -130,7 +133,7 @@ class Interrupted : public testing::TestWithParam<std::string> {
 
   const model::HandModel& hand_;
   MappingModel model_;
-  Mapping mapping_;
+  std::optional<Mapping> mapping_;
   Eigen::VectorXd robot_;
   Pose base_ = make_pose(Eigen::Vector3d(0, -0.3, 0.4));
   int ms_ = 0;
@@ -198,12 +201,12 @@ TEST_P(Interrupted, AJumpIsNoMotion) {
 TEST_P(Interrupted, WhileItIsStoppedCommandsStayWhereTheHandIs) {
   operate(3000, here, 0.2);
   stopped_ = true;
-  mapping_.on_gate(false);
+  mapping_->on_gate(false);
   forget();
   const Pose stopped_at = base_;
   for (int i = 1; i <= 100; ++i) operate(20, here + 0.01 * i * Eigen::Vector3d::UnitX(), 0.2);
   EXPECT_LT((last_->X_WB.translation() - stopped_at.translation()).norm(), 0.051);
-  mapping_.on_gate(true);
+  mapping_->on_gate(true);
   stopped_ = false;
   forget();
   operate(1000, here + Eigen::Vector3d::UnitX(), 0.2);
@@ -230,6 +233,44 @@ TEST_P(Interrupted, ARobotThatStartsAnewIsMetWhereItIs) {
 TEST_P(Interrupted, AtTheBeginningItGoesAsFastAsItMay) {
   operate(200, there, 0.2);
   EXPECT_GT(base_step_, 0.019);
+}
+
+// A mapping that is new meets a hand that is somewhere already.
+TEST_P(Interrupted, AMappingThatStartsAnewMeetsTheHandWhereItIs) {
+  start_slowly();
+  const auto answers = [&](std::optional<bool> placed) {
+    if (placed) mapping_->on_gate(true, placed);
+    robot_says();
+    const Pose X_WH = make_pose(there) * model::HumanHand(1.0).X_HG().inverse();
+    const auto command = mapping_->on_posture(
+        {at(ms_), at(ms_), X_WH, 1.0, tips({0.2, 0.2, 0.2, 0.2, 0.2})}, at(ms_));
+    ms_ += 20;
+    return command.has_value();
+  };
+  EXPECT_FALSE(answers({})) << "it may be anywhere";
+  ASSERT_TRUE(answers(true));
+  operate(1000, there, 0.2);
+  EXPECT_LE(base_step_, slow());
+  EXPECT_LE(finger_step_, slow_finger);
+  operate(9000, there, 0.2);
+  EXPECT_LT(to_operator(there), 1e-3);
+}
+
+// It may be put anywhere: as it always was.
+TEST_P(Interrupted, AMappingThatStartsAnewPutsAHandThatIsNowhere) {
+  start_slowly();
+  mapping_->on_gate(true, false);
+  operate(200, there, 0.2);
+  EXPECT_GT(base_step_, 0.019);
+}
+
+// Of another operator, whose hand is not far from that of the first.
+TEST_P(Interrupted, WhoLeadsAnewTakesTheHandAlongSlowly) {
+  operate(3000, here, 0.2);
+  mapping_->interrupt();
+  forget();
+  operate(1000, here + 0.15 * Eigen::Vector3d::UnitX(), 0.2);
+  EXPECT_LE(base_step_, slow());
 }
 
 INSTANTIATE_TEST_SUITE_P(Mapping, Interrupted, testing::ValuesIn(test::hand_names()));

@@ -128,8 +128,8 @@ TEST(Simulation, HoldsStillWhenCommandsStop) {
   EXPECT_FALSE(simulation->is_holding_still());
 }
 
-// A stop: the arm brakes with 10 m/s², so from 1 m/s it needs 0.1 s and 5 cm, and does not come
-// back.
+// A stop: the arm brakes with 20 m/s², twice as hard as on its way, so from 1 m/s it needs 50 ms
+// and 2.5 cm, and does not come back.
 TEST(Simulation, StopsWithoutComingBack) {
   const auto simulation = made();
   ASSERT_TRUE(simulation->accept(command({0, 0, 0.5}, 0), start));
@@ -142,14 +142,19 @@ TEST(Simulation, StopsWithoutComingBack) {
   for (int ms = 192; ms < 1000; ms += 2) {
     run_until(*simulation, start + milliseconds(ms));
     EXPECT_GE(height(), before - 1e-5) << ms;
-    if (ms > 310) {
+    if (ms > 250) {
       EXPECT_LT(height() - before, 1e-6) << ms;
     }
     before = height();
   }
-  EXPECT_GT(before, at_stop + 0.02);
-  EXPECT_LT(before, at_stop + 0.06);
+  EXPECT_GT(before, at_stop + 0.015);
+  EXPECT_LT(before, at_stop + 0.03);
   EXPECT_TRUE(simulation->is_holding_still());
+  EXPECT_FALSE(simulation->is_braking());
+  // Then it goes on no harder than before: with 10 m/s² it has 0.22 m/s after 22 ms.
+  ASSERT_TRUE(simulation->accept(command({0, 0, 2.5}, 0), start + milliseconds(1000)));
+  run_until(*simulation, start + milliseconds(1020));
+  EXPECT_LT(height() - before, 0.22 * 0.022);
 }
 
 TEST(Simulation, SightingsPlaceObjectsAndMoveThemOnlyWhileTheHandIsFar) {

@@ -142,7 +142,10 @@ Check check_keys(const service::Config& config, Time now) {
   const double days = to_seconds(keys->expires - now) / 86400;
   const std::string detail = fmt::format("{} is valid for {:.0f} days", keys->subject, days);
   if (keys->expires - now < dds::expiry_warning)
-    return fault("keys", detail, "prehend keys add --renew, and copy the folder");
+    return fault("keys", detail, "prehend keys renew, and copy the folder");
+  if (const auto old =
+          dds::old_list(*keys, seconds(86400 * config.number("keys.revocation_max_age")), now))
+    return fault("keys", old->what, old->hint);
   return {"keys", true, detail, ""};
 }
 
@@ -196,7 +199,7 @@ Check check_programs() {
         fmt::format("prehend-{}: {}", name, said.empty() ? "cannot be started" : said);
   }
   if (trouble.empty()) return {"programs", true, "all services can be started", ""};
-  return fault("programs", trouble, "deploy/install-dependencies runtime");
+  return fault("programs", trouble, "apt install ./prehend*.deb, or deploy/install-dependencies");
 }
 
 Check check_devices(const service::Config& config) {

@@ -13,7 +13,6 @@
 #include <string_view>
 #include <vector>
 
-#include "common/dds/fastdds.hpp"
 #include "common/dds/wan_transport.hpp"
 
 namespace prehend::cli {
@@ -130,21 +129,9 @@ std::map<int, int> heard_domains(const service::Config& config, Duration listen)
   }
 }
 
-namespace {
-
-std::string listening(const service::Config& config) {
-  const std::string text = "this site listens";
-  if (PREHEND_FAST_DDS > 2 || config.path("lab.keys").empty()) return text;
-  return text + "; with Fast DDS " PREHEND_FAST_DDS_RELEASE
-                " one connection that says nothing keeps all others out: let only known addresses "
-                "reach ports 7420 to 7435";
-}
-
-}  // namespace
-
 Check check_sites(const service::Config& config) {
   const auto peers = config.names("lab.peers");
-  if (peers.empty()) return {"sites", true, listening(config), ""};
+  if (peers.empty()) return {"sites", true, "this site listens", ""};
   std::string silent;
   for (const std::string& peer : peers) {
     bool answers = false;

@@ -7,6 +7,7 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
 
+#include "common/base/file_text.hpp"
 #include "common/dds/security.hpp"
 #include "common/service/arguments.hpp"
 #include "services/cli/tools/keys/keystore.hpp"
@@ -29,6 +30,7 @@ std::string_view state_of(const Keystore::Entry& entry) {
   if (entry.expires <= now()) return "expired";
   if (entry.trouble) return "broken";
   if (!entry.role) return "outdated";
+  if (entry.elsewhere) return "elsewhere";
   return entry.expires - now() < dds::expiry_warning ? "expires soon" : "valid";
 }
 
@@ -46,7 +48,8 @@ int show(const Keystore& store, bool json) {
   std::string table;
   for (const Keystore::Entry& entry : *entries) {
     const std::string_view state = state_of(entry);
-    usable = usable && (state == "valid" || state == "expires soon" || state == "revoked");
+    usable = usable && (state == "valid" || state == "expires soon" || state == "revoked" ||
+                        state == "elsewhere");
     list.push_back(
         {{"name", entry.name},
          {"role", role_name(entry)},
@@ -82,11 +85,13 @@ Expected<dds::Role> choose_role(const std::string& name, const std::string& want
 }
 
 struct Arguments {
-  std::string folder, name, role, store, rig;
+  std::string folder, name, role, store, rig, file, output;
   LabArguments lab;
   double days = 365;
   bool renew = false, json = false;
-  CLI::App *init = nullptr, *add = nullptr, *revoke = nullptr, *shown = nullptr;
+  CLI::App *init = nullptr, *add = nullptr, *revoke = nullptr, *shown = nullptr,
+           *renew_one = nullptr, *refresh = nullptr, *request = nullptr, *sign = nullptr,
+           *install = nullptr;
 
   void add_to(CLI::App& app) {
     app.require_subcommand(1);
@@ -98,19 +103,35 @@ struct Arguments {
     add->add_flag("--renew", renew, "in place of the one of this name");
     revoke = app.add_subcommand("revoke", "no longer vouch for a key");
     revoke->add_option("NAME", name, "of the key")->required();
+    renew_one = app.add_subcommand("renew", "the next key of a name, as the one that is there");
+    renew_one->add_option("NAME", name, "of the key")->required();
+    refresh = app.add_subcommand("refresh", "sign the list of revoked keys anew");
+    add_elsewhere_to(app);
     shown = app.add_subcommand("show", "names, roles, permissions and expiry");
     shown->add_flag("--json", json, "one JSON document on standard output");
-    for (CLI::App* command : {init, add}) {
+    for (CLI::App* command : {init, add, sign, renew_one})
       command->add_option("--days", days, "that the keys are valid")
           ->check(CLI::Range(0.001, 3650.0))
           ->capture_default_str();
+    for (CLI::App* command : {init, add, sign}) {
       lab.add_to(*command);
       command->add_option("--rig", rig,
                           "the rig where they hold, in lab.domain; otherwise lab.rig; any: in "
                           "every rig and domain");
     }
-    for (CLI::App* command : {add, revoke, shown})
+    for (CLI::App* command : {add, revoke, shown, renew_one, refresh, request, sign, install})
       command->add_option("--store", store, "the keystore; otherwise lab.keys, else ./keys");
+  }
+  void add_elsewhere_to(CLI::App& app) {
+    request = app.add_subcommand("request", "make a key here, and ask an authority elsewhere");
+    request->add_option("NAME", name, "a role, or a role and more: viewer-anna")->required();
+    sign = app.add_subcommand("sign", "vouch for a key that was made elsewhere");
+    sign->add_option("FILE", file, "of `prehend keys request`")->required();
+    sign->add_option("--role", role, "its role, when its name does not say it");
+    install = app.add_subcommand("install", "take what the authority granted");
+    install->add_option("FILE", file, "of `prehend keys sign`")->required();
+    for (CLI::App* command : {request, sign})
+      command->add_option("--output", output, "the file to write; otherwise standard output");
   }
   Duration validity() const { return seconds(days * 86400); }
 };
@@ -146,6 +167,46 @@ int add(const Keystore& store, const Arguments& arguments) {
   return done ? exit_done : complain(done.error(), exit_no);
 }
 
+int write_out(const std::string& file, const std::string& text) {
+  if (file.empty()) {
+    std::cout << text;
+    return exit_done;
+  }
+  const auto done = write_file(file, text);
+  return done ? exit_done : complain(done.error(), exit_broken);
+}
+
+int request(const std::string& store, const Arguments& arguments) {
+  const auto made = request_key(store, arguments.name);
+  return made ? write_out(arguments.output, *made) : complain(made.error(), exit_no);
+}
+
+int install(const std::string& store, const std::string& file) {
+  const auto text = read_file(file);
+  if (!text) return complain(text.error(), exit_broken);
+  auto bundle = Bundle::parse(*text);
+  if (!bundle) return complain(bundle.error(), exit_no);
+  const auto folder = install_keys(store, std::move(*bundle), now());
+  if (!folder) return complain(folder.error(), exit_no);
+  std::cout << "Installed " << folder->string() << ".\n";
+  return exit_done;
+}
+
+int sign(const Keystore& store, const Arguments& arguments) {
+  const auto text = read_file(arguments.file);
+  if (!text) return complain(text.error(), exit_broken);
+  std::optional<dds::Role> role;
+  if (!arguments.role.empty()) {
+    const auto chosen = choose_role(arguments.role, arguments.role);
+    if (!chosen) return complain(chosen.error(), exit_wrong_use);
+    role = *chosen;
+  }
+  const auto scope = choose_scope(arguments);
+  if (!scope) return complain(scope.error(), exit_wrong_use);
+  const auto bundle = store.sign(*text, role, arguments.validity(), now(), *scope);
+  return bundle ? write_out(arguments.output, bundle->text()) : complain(bundle.error(), exit_no);
+}
+
 int revoke(const Keystore& store, const std::string& name) {
   if (const auto done = store.revoke(name, now()); !done) return complain(done.error(), exit_no);
   std::cout << "Copy revoked.pem into the folder of every process on other hosts; services\n"
@@ -161,7 +222,9 @@ int keys_command(const std::vector<std::string>& texts) {
       "key\n"
       "for each role, with the least permissions that it needs, for lab.rig and lab.domain; give\n"
       "each host the folders of the processes that run there and name them in lab.keys\n"
-      "(PREHEND_LAB_KEYS). Exit code of show: 0: all can be used, 1: one is expired, broken or\n"
+      "(PREHEND_LAB_KEYS). Where private keys shall not travel, `request` on the machine, `sign` "
+      "where\nthe authority is, and `install` on the machine. Exit code of show: 0: all can be "
+      "used, 1: one is expired, broken or\n"
       "outdated.",
       "prehend keys"};
   Arguments arguments;
@@ -175,11 +238,17 @@ int keys_command(const std::vector<std::string>& texts) {
     folder = config->path("lab.keys").string();
     if (folder.empty()) folder = "keys";
   }
+  if (*arguments.request) return request(folder, arguments);
+  if (*arguments.install) return install(folder, arguments.file);
   const auto store = Keystore::open(folder);
   if (!store) return complain(store.error(), exit_broken);
   if (*arguments.shown) return show(*store, arguments.json);
   if (*arguments.add) return add(*store, arguments);
-  return revoke(*store, arguments.name);
+  if (*arguments.sign) return sign(*store, arguments);
+  if (*arguments.revoke) return revoke(*store, arguments.name);
+  const auto done = *arguments.refresh ? store->refresh(now())
+                                       : store->renew(arguments.name, arguments.validity(), now());
+  return done ? exit_done : complain(done.error(), exit_no);
 }
 
 }  // namespace prehend::cli

@@ -22,12 +22,17 @@ namespace {
 constexpr Duration order_period = std::chrono::milliseconds(50);
 /// Once all gates that are known have answered, others may still turn up for so long.
 constexpr Duration grace = std::chrono::milliseconds(300);
+constexpr const char* gate_name = "gate";
 
-/// A gate that was heard of in the rig.
+/// Of a gate that was heard of in the rig, or of a mapping.
 struct Answer {
   std::optional<v1::OperatorReply> reply;
   std::optional<v1::GateState> state;
 };
+
+bool is_done(const Answer& answer) {
+  return answer.reply && answer.reply->done();
+}
 
 /// Gives one order in one rig.
 class Giving {
@@ -50,7 +55,12 @@ class Giving {
     shell.status().running();
   }
 
-  const std::map<dds::GuidPrefix, Answer>& answers() const { return answers_; }
+  std::vector<Answer> sorted_answers() const {
+    std::vector<Answer> all;
+    for (const auto& [participant, answer] : answers_) all.push_back(answer);
+    std::stable_partition(all.begin(), all.end(), [](auto& one) { return one.state.has_value(); });
+    return all;
+  }
 
  private:
   Answer& answer(const dds::SampleInfo& info) {
@@ -58,23 +68,31 @@ class Giving {
     return answers_[info.participant];
   }
 
-  static bool done(const Answer& answer) { return answer.reply && answer.reply->done(); }
+  /// All, but for a takeover: the new leader leads one hand, and others do not know it.
+  bool is_given() const {
+    const auto done = [](const auto& entry) { return is_done(entry.second); };
+    if (order_.action == v1::ACTION_TAKE_OVER)
+      return std::any_of(answers_.begin(), answers_.end(), done);
+    return !answers_.empty() && std::all_of(answers_.begin(), answers_.end(), done);
+  }
 
   void tick(Time now) {
-    const bool all = !answers_.empty() && std::all_of(answers_.begin(), answers_.end(),
-                                                      [](auto& a) { return done(a.second); });
+    const bool given = is_given();
     // What a gate says of itself comes right behind its reply.
-    const bool told = std::all_of(answers_.begin(), answers_.end(),
-                                  [](auto& a) { return a.second.state.has_value(); });
-    if ((all && told && now - newest_ > grace) || now - begun_ > seconds(order_.timeout))
+    const bool told = std::all_of(answers_.begin(), answers_.end(), [](auto& entry) {
+      const auto& [reply, state] = entry.second;
+      return state || (reply && reply->service().to_string() != gate_name);
+    });
+    if ((given && told && now - newest_ > grace) || now - begun_ > seconds(order_.timeout))
       return shell_.stop();
     v1::OperatorCommand message;
     message.id(id_.substr(0, 63).c_str());
     message.stamp_ns(to_ns(now));
     message.action(order_.action);
-    message.target("gate");
+    // Mapping chooses between gloves, a gate between those who send commands.
+    if (order_.action != v1::ACTION_TAKE_OVER) message.target(gate_name);
     message.argument(order_.argument.substr(0, 127).c_str());
-    if (!all) orders_.publish(message);
+    if (!given) orders_.publish(message);
   }
 
   service::Shell& shell_;
@@ -88,17 +106,19 @@ class Giving {
 /// A line, and an entry of the document, a gate; true: it did what was asked.
 bool report(const std::string& rig, const Answer& answer, bool json,
             nlohmann::ordered_json& document) {
-  const bool done = answer.reply && answer.reply->done();
+  const bool done = is_done(answer);
+  const std::string service = answer.reply ? answer.reply->service().to_string() : gate_name;
   const std::string hand = answer.state ? answer.state->hand().to_string() : "";
   const std::string message =
       answer.reply ? answer.reply->message().to_string() : "does not answer";
   document.push_back({{"rig", rig},
+                      {"service", service},
                       {"hand", hand},
                       {"done", done},
                       {"message", message},
                       {"stopped", answer.state && answer.state->stopped()},
                       {"leader", answer.state ? answer.state->leader().to_string() : ""}});
-  if (!json) std::cout << fmt::format("{}/{}: {}\n", rig, hand, message);
+  if (!json) std::cout << fmt::format("{}/{}: {}\n", rig, hand.empty() ? service : hand, message);
   return done;
 }
 
@@ -112,13 +132,16 @@ Expected<bool> give_in(const std::string& rig, const Order& order,
   if (!shell) return tl::unexpected(shell.error());
   const Giving giving(**shell, order);
   if (const auto ended = (*shell)->run(); !ended) return tl::unexpected(ended.error());
+  // Gates first. Where somebody has taken over, those who do not know him matter to nobody.
+  const auto all = giving.sorted_answers();
+  const bool taken_over =
+      order.action == v1::ACTION_TAKE_OVER && std::any_of(all.begin(), all.end(), is_done);
   std::size_t done = 0;
-  for (const auto& [participant, answer] : giving.answers())
-    done += report(rig, answer, order.json, document);
-  if (giving.answers().empty() && !order.json)
+  for (const Answer& answer : all)
+    if (!taken_over || is_done(answer)) done += report(rig, answer, order.json, document);
+  if (all.empty() && !order.json)
     std::cout << fmt::format("{}: no gate answers; is a robot there? prehend status\n", rig);
-  // Who takes over leads one hand; the gates of others do not know it.
-  return done > 0 && (done == giving.answers().size() || order.action == v1::ACTION_TAKE_OVER);
+  return done > 0 && (done == all.size() || order.action == v1::ACTION_TAKE_OVER);
 }
 
 }  // namespace

@@ -5,9 +5,19 @@
 #include <optional>
 #include <string>
 
+#include "common/base/error.hpp"
+#include "common/base/time.hpp"
 #include "idl/Operation.h"
 
-namespace prehend::robot {
+namespace prehend::service {
+
+/// Who gave it, for those who read of it: who does so as soon as it has come is not yet known by
+/// its name, writer.
+std::string given_by(const v1::OperatorCommand& order, const std::string& writer);
+
+/// What moves a robot, or lets it move, must be meant now, and by somebody: a recording that is
+/// played must not do so.
+Expected<void> meant_now(const v1::OperatorCommand& order, const std::string& by, Time now);
 
 /// Replies to the last orders: one that comes again is answered as before and not executed again.
 /// Whoever gives an order may so repeat it until it is answered.
@@ -36,4 +46,4 @@ class OrderBook {
   std::deque<std::string> refused_;
 };
 
-}  // namespace prehend::robot
+}  // namespace prehend::service
