@@ -74,38 +74,4 @@ Eigen::VectorXd FingerDistances::distances(const Eigen::VectorXd& dof, const mod
   return least;
 }
 
-std::vector<FingerTouch> FingerDistances::touches(const Eigen::VectorXd& dof,
-                                                  const model::Shape& shape, const Pose& X_BO,
-                                                  double within) const {
-  const std::vector<Pose> X_BL = hand_.link_poses(hand_.joint_angles(dof));
-  const Pose X_OB = X_BO.inverse();
-  std::vector<FingerTouch> nearest;
-  Eigen::VectorXd least =
-      Eigen::VectorXd::Constant(fingers(), std::numeric_limits<double>::infinity());
-  for (const Link& link : links_) {
-    FingerTouch touch{link.finger, link.link, std::numeric_limits<double>::infinity(), {}, {}};
-    for (const Ball& ball : link.balls) {
-      const Vector3d p_O = X_OB * X_BL[static_cast<std::size_t>(link.link)] * ball.p_L;
-      const double distance = signed_distance(shape, p_O) - ball.radius;
-      if (distance >= touch.distance) continue;
-      constexpr double step = 1e-5;  // m
-      Vector3d gradient;
-      for (int k = 0; k < 3; ++k) {
-        const Vector3d by = step * Vector3d::Unit(k);
-        gradient[k] = signed_distance(shape, p_O + by) - signed_distance(shape, p_O - by);
-      }
-      if (!(gradient.norm() > 0)) continue;
-      touch.distance = distance;
-      touch.normal_B = -(X_BO.linear() * gradient.normalized());
-      touch.p_B = X_BO * p_O + ball.radius * touch.normal_B;
-    }
-    least[link.finger] = std::min(least[link.finger], touch.distance);
-    if (std::isfinite(touch.distance)) nearest.push_back(touch);
-  }
-  std::erase_if(nearest, [&](const FingerTouch& touch) {
-    return touch.distance > least[touch.finger] + within;
-  });
-  return nearest;
-}
-
 }  // namespace prehend::mapping

@@ -9,14 +9,6 @@
 
 namespace prehend::mapping {
 
-/// Where a link of a finger is nearest to an object.
-struct FingerTouch {
-  int finger = 0, link = 0;
-  double distance = 0;       // m
-  Eigen::Vector3d p_B;       // of the link's surface
-  Eigen::Vector3d normal_B;  // unit, into the object
-};
-
 /// How far the fingers of a robot hand still are from an object that is known, by geometry alone.
 /// Round parts of a finger count as capsules, boxes by points on their edges and middles, 8 mm
 /// apart, so that a distance is at most 2 mm too large around the catalogue's objects. Keeps a
@@ -33,10 +25,6 @@ class FingerDistances {
   /// finger without collision shapes. X_BO: the object in the hand's base.
   Eigen::VectorXd distances(const Eigen::VectorXd& dof, const model::Shape& shape,
                             const Pose& X_BO) const;
-  /// The links of each finger that are at most `within` (m) farther from the object than the
-  /// nearest of the finger.
-  std::vector<FingerTouch> touches(const Eigen::VectorXd& dof, const model::Shape& shape,
-                                   const Pose& X_BO, double within) const;
 
  private:
   /// A ball in a link: what stands for a small piece of it.

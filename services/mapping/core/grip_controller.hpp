@@ -7,7 +7,6 @@
 #include "common/base/pose.hpp"
 #include "common/base/time.hpp"
 #include "common/model/hand_model.hpp"
-#include "services/mapping/core/force_sharing.hpp"
 
 namespace prehend::mapping {
 
@@ -61,8 +60,6 @@ class GripController {
   /// Lets go of fingers that the operator opens; the others are told their contact and the squeeze.
   Eigen::VectorXd squeeze(const Eigen::VectorXd& mapped);
 
-  /// EXPERIMENT
-  void balance(const ForceSharing& sharing, const std::optional<GrippedObject>& object);
   bool touching() const;
   /// Contact posture of each DoF, rad or m; empty where there is none.
   const std::vector<std::optional<double>>& contacts() const { return contacts_; }
@@ -78,11 +75,6 @@ class GripController {
   GripOptions options_;
   std::vector<std::optional<double>> contacts_;
   std::vector<std::optional<Stop>> stops_;  // fingers that push and do not move
-  std::vector<std::optional<Time>> pushes_;  // since when
-  std::vector<int> finger_of_;
-  RobotState state_;
-  std::vector<bool> balanced_;               // fingers
-  std::optional<Eigen::VectorXd> target_, at_;
   std::optional<Eigen::VectorXd> held_;     // the command at the first touch
 };
 

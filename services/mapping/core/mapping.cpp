@@ -1,7 +1,6 @@
 #include "services/mapping/core/mapping.hpp"
 
 #include <utility>
-#include <cstdlib>
 
 #include "common/model/human_hand.hpp"
 
@@ -46,7 +45,6 @@ Mapping::Mapping(const model::HandModel& hand, const MappingModel& model,
       placement_(hand, options.placement),
       clutch_(hand, options.clutch),
       follow_through_(hand),
-      sharing_(hand),
       grip_(hand, options.grip),
       motion_(hand, options.motion),
       hold_(options.hold) {}
@@ -136,11 +134,6 @@ Expected<Command> Mapping::on_posture(const Posture& posture, Time now) {
   const GraspType grasp =
       grasp_type(mean_closing(hand_, fingers->dof), X_WG, model_.is_precision(*features));
   place(X_WG, seen, elapsed);
-  std::optional<GrippedObject> object;
-  if (const GraspTarget* target = known_object(); target != nullptr && state_)
-    object = GrippedObject{target->object.detection.shape,
-                           state_->X_WB.inverse() * target->object.detection.X_WO};
-  grip_.balance(sharing_, object);
   const Eigen::VectorXd dof = grip_.squeeze(follow_through(fingers->dof, elapsed));
   const bool paused = posture.stamp - last_stamp_ > options_.clutch.max_pause;
   if (interrupted_ || (paused && last_X_WG_ && are_apart(dof, command_.dof)))
@@ -265,38 +258,7 @@ Eigen::VectorXd Mapping::follow_through(const Eigen::VectorXd& dof, Duration ela
 }
 
 /// As far as the hand may go in this time.
-void Mapping::move_toward(const Eigen::VectorXd& wanted, const Pose& X_WB, Duration elapsed) {
-  static const double wait = std::getenv("GF_WAIT") ? std::atof(std::getenv("GF_WAIT")) : 0,
-                      near = std::getenv("GF_WNEAR") ? std::atof(std::getenv("GF_WNEAR")) : 0.005,
-                      patience = std::getenv("GF_WMAX") ? std::atof(std::getenv("GF_WMAX")) : 0.6;
-  Eigen::VectorXd dof = wanted;
-  const GraspTarget* target = known_object();
-  waited_.resize(hand_.fingertips().size());
-  if (wait > 0 && target != nullptr && options_.modes.intelligent && weight() > 0.5) {
-    const Detection& object = target->object.detection;
-    const auto touches = distances_.touches(command_.dof, object.shape,
-                                            command_.X_WB.inverse() * object.X_WO, 0);
-    std::vector<bool> waits(waited_.size(), false);
-    for (const FingerTouch& a : touches) {
-      if (a.distance > wait) continue;
-      bool opposed = false;
-      for (const FingerTouch& b : touches)
-        opposed = opposed || (b.distance < near && a.normal_B.dot(b.normal_B) < -0.3);
-      auto& so_far = waited_[static_cast<std::size_t>(a.finger)];
-      if (!opposed && so_far < patience) {
-        so_far += to_seconds(elapsed);
-        waits[static_cast<std::size_t>(a.finger)] = true;
-      }
-    }
-    for (Eigen::Index i = 0; i < dof.size(); ++i) {
-      const int f = distances_.finger_of(static_cast<std::size_t>(i));
-      const int closing = hand_.dofs()[static_cast<std::size_t>(i)].closing;
-      if (f >= 0 && waits[static_cast<std::size_t>(f)] && closing * (dof[i] - command_.dof[i]) > 0)
-        dof[i] = command_.dof[i];
-    }
-  } else if (target == nullptr) {
-    std::fill(waited_.begin(), waited_.end(), 0.0);
-  }
+void Mapping::move_toward(const Eigen::VectorXd& dof, const Pose& X_WB, Duration elapsed) {
   const double together = options_.modes.intelligent ? weight() : 0;
   command_.dof = motion_.fingers(command_.dof, model_.limited(dof), together, elapsed);
   command_.X_WB = motion_.base(command_.X_WB, X_WB, elapsed);

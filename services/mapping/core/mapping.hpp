@@ -14,7 +14,6 @@
 #include "services/mapping/core/features.hpp"
 #include "services/mapping/core/finger_distances.hpp"
 #include "services/mapping/core/follow_through.hpp"
-#include "services/mapping/core/force_sharing.hpp"
 #include "services/mapping/core/grasp_type.hpp"
 #include "services/mapping/core/grip_controller.hpp"
 #include "services/mapping/core/hold_timer.hpp"
@@ -144,8 +143,6 @@ class Mapping {
   Placement placement_;
   Clutch clutch_;
   FollowThrough follow_through_;
-  ForceSharing sharing_;
-  std::vector<double> waited_;
   GripController grip_;
   MotionLimits motion_;
   HoldTimer hold_;

@@ -6,9 +6,6 @@
 #include <cmath>
 #include <mutex>
 #include <utility>
-#include <cstdio>
-#include <cstdlib>
-#include <map>
 
 #include "common/analysis/contact_wrenches.hpp"
 #include "common/analysis/resistance.hpp"
@@ -28,7 +25,6 @@ MappingOptions mapping_options(const BenchmarkedMode& mode) {
   MappingOptions options;
   options.modes.intelligent = mode.mode == BenchmarkMode::intelligent;
   options.modes.placement = mode.placement;
-  if (const char* reach = std::getenv("GF_REACH")) options.grip.reach = std::atof(reach);
   if (const auto fingers = finger_modes.value(to_string(mode.mode)))
     options.modes.fingers = *fingers;
   return options;
@@ -61,22 +57,6 @@ class Trial {
         }
       }
       world_->step();
-      if (const char* tr = std::getenv("PREHEND_TRACE"); tr && now.time_since_epoch() % std::chrono::milliseconds(std::atoi(tr)) < step) {
-        const auto m = world_->hand_motion();
-        const auto b = world_->body_motion(0);
-        const Pose X = take_.X_WO.inverse() * b.X_WO;
-        std::printf("%5.2f obj %5.1f %5.1f %5.1f turn %5.1f ph %d |", to_seconds(now.time_since_epoch()), 1e3 * X.translation().x(), 1e3 * X.translation().y(), 1e3 * X.translation().z(), 57.3 * Eigen::AngleAxisd(X.linear()).angle(), (int)mapping_.phase());
-        for (std::size_t i = 0; i < parts_.hand.dofs().size(); ++i) {
-          if (parts_.hand.dofs()[i].closing == 0) continue;
-          const auto k = static_cast<Eigen::Index>(i);
-          std::printf(" %5.2f%+5.2f(%+4.2f)", m.dof[k], world_->commanded_dof()[k] - m.dof[k], m.torque[parts_.hand.dofs()[i].joint]);
-        }
-        std::map<std::string, double> f;
-        for (const auto& c : world_->contacts(0)) f[c.link] += c.force;
-        std::printf(" |");
-        for (const auto& [l, v] : f) std::printf(" %s %.1f", l.c_str(), v);
-        std::printf("\n");
-      }
     }
     measure(result);
     grasping::HoldOptions hold;
@@ -190,11 +170,6 @@ Expected<std::vector<TrialResult>> run_grasp_benchmark(
     // Modes of the same take stand together.
     const std::size_t number = index / options.modes.size();
     const BenchmarkedMode& mode = options.modes[index % options.modes.size()];
-    if (std::getenv("PREHEND_PLACED") && !mode.placement) return;
-    if (const char* only = std::getenv("PREHEND_TAKES")) {
-      const std::string list = std::string(",") + only + ",";
-      if (list.find("," + std::to_string(number) + ",") == std::string::npos) return;
-    }
     const RobotGrasp& grasp = parts.grasps[number % parts.grasps.size()];
     // People whose hand does not fit around the object are replaced.
     std::optional<RecordedTake> take;
