@@ -368,7 +368,8 @@ class HandLoader {
   Expected<void> read_gate(const toml::table& root) {
     const auto table = table_of(root, "gate");
     if (!table) return tl::unexpected(table.error());
-    if (auto known = only_keys(*table, {"lower", "upper", "velocity", "acceleration"}, "gate");
+    if (auto known =
+            only_keys(*table, {"lower", "upper", "velocity", "acceleration", "effort"}, "gate");
         !known)
       return known;
     HandGate& gate = hand.gate_;
@@ -377,7 +378,8 @@ class HandLoader {
              {"lower", &gate.lower},
              {"upper", &gate.upper},
              {"velocity", &gate.velocity},
-             {"acceleration", &gate.acceleration}}) {
+             {"acceleration", &gate.acceleration},
+             {"effort", &gate.effort}}) {
       if (!table->contains(key)) continue;
       const auto read = numbers(table->get(key), hand.dofs_.size(), std::string("gate.") + key);
       if (!read) return tl::unexpected(read.error());
@@ -387,9 +389,9 @@ class HandLoader {
   }
 
   Expected<void> check_gate() const {
-    for (const auto* values : {&hand.gate_.velocity, &hand.gate_.acceleration})
+    for (const auto* values : {&hand.gate_.velocity, &hand.gate_.acceleration, &hand.gate_.effort})
       if (*values && !((*values)->array() > 0).all())
-        return fail("velocity and acceleration must be positive", "gate");
+        return fail("velocity, acceleration and effort must be positive", "gate");
     for (std::size_t k = 0; k < hand.dofs_.size(); ++k) {
       const auto i = static_cast<Eigen::Index>(k);
       const HandDof& dof = hand.dofs_[k];

@@ -15,8 +15,8 @@ namespace {
 
 const Time start = from_ns(1'700'000'000'000'000'000);
 
-v1::HandCommand message_for(const model::HandModel& hand) {
-  v1::HandCommand message;
+v2::HandCommand message_for(const model::HandModel& hand) {
+  v2::HandCommand message;
   message.hand("hand");
   message.model(hand.name().c_str());
   message.dof(convert::to_message(hand.postures().at("open")));
@@ -29,7 +29,7 @@ const model::HandModel& hand_of(const benchmark::State& state) {
 }
 
 void conversion(benchmark::State& state) {
-  const v1::HandCommand message = message_for(hand_of(state));
+  const v2::HandCommand message = message_for(hand_of(state));
   for (auto _ : state) {
     benchmark::DoNotOptimize(convert::from_message(message.dof()));
     benchmark::DoNotOptimize(convert::from_message(message.X_WB()));

@@ -106,7 +106,7 @@ int floor_relay(const Place& place) {
   auto participant = join(place, "floor-relay", "mapping");
   auto writer = *participant.writer(dds::robot_command);
   auto reader = *participant.reader(dds::hand_posture);
-  v1::HandCommand command;
+  v2::HandCommand command;
   command.hand("hand");
   command.dof(std::vector<double>(4));
   Relay<v1::HandPosture> relay([&](const v1::HandPosture& posture) {
@@ -181,7 +181,7 @@ Figures measure_floor(double rate, std::size_t wanted, const std::string& self, 
   service::LatencyWindow window;
   std::atomic<std::size_t> seen = 0;
   const std::size_t warm_up = static_cast<std::size_t>(rate);
-  Relay<v1::HandCommand> relay([&](const v1::HandCommand& command) {
+  Relay<v2::HandCommand> relay([&](const v2::HandCommand& command) {
     const Duration latency = now() - from_ns(command.origin_ns());
     const std::scoped_lock lock(mutex);
     if (++seen > warm_up) window.add(latency);

@@ -50,12 +50,12 @@ TEST_F(Safety, NobodyIsLedByWhatIsOldFromTheBeginning) {
 TEST_F(Safety, DoubledAndSwappedCommandsAreIgnored) {
   start_hand();
   double y = 0, back = 0;  // furthest way against the stream
-  v1::HandCommand kept = command(beginning);
+  v2::HandCommand kept = command(beginning);
   EXPECT_TRUE(eventually(30, [&] {
     y += 0.004;
     const auto older = command(beginning - Vector3d(0, 5, 0)),
                newer = command(beginning + Vector3d(0, y, 0));
-    for (const v1::HandCommand& message : {newer, older, newer, kept}) {
+    for (const v2::HandCommand& message : {newer, older, newer, kept}) {
       commands_.write(message);
       std::this_thread::sleep_for(milliseconds(5));
     }

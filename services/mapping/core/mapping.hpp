@@ -35,6 +35,7 @@ struct Command {
   Time stamp;                  // of the posture; of the tick when holding
   std::optional<Time> origin;  // of the glove frame; none when holding
   Eigen::VectorXd dof;         // rad, or m of what slides
+  Eigen::VectorXd effort;      // N m or N, that the DoFs may use; empty: all they have
   Pose X_WB = Pose::Identity();
   Mode mode = Mode::hold;
   double weight = 0;   // of the intelligent answer

@@ -260,6 +260,7 @@ class Service::Topics {
     message_.stamp_ns(to_ns(command.stamp));
     message_.origin_ns(command.origin ? to_ns(*command.origin) : 0);
     message_.dof(convert::to_message(command.dof));
+    message_.effort(convert::to_message(command.effort));
     message_.X_WB(convert::to_message(command.X_WB));
     message_.mode(to_message(command.mode));
     message_.weight(command.weight);
@@ -279,9 +280,9 @@ class Service::Topics {
   service::OrderBook orders_;
   MappingModes modes_;
   std::string hand_name_;
-  service::Shell::Output<v1::HandCommand> output_;
+  service::Shell::Output<v2::HandCommand> output_;
   service::Shell::Output<v1::OperatorReply> replies_;
-  v1::HandCommand message_;  // reused, so that a command costs no allocation
+  v2::HandCommand message_;  // reused, so that a command costs no allocation
   std::uint64_t sequence_number_ = 0;
   Time last_posture_;  // that was answered
   std::string last_reject_, missing_;

@@ -195,6 +195,48 @@ TEST(World, HoldingStillKeepsTheGripAndStopsWhatMoves) {
   EXPECT_LT((moving->hand_motion().dof - then.dof).norm(), 5e-3);
 }
 
+TEST(World, DrivesUseNoMoreEffortThanTheyMay) {
+  auto world = gripped(talc);
+  const VectorXd most = barrett().max_effort();
+  const auto pushes_at_most = [&](World& one, const VectorXd& effort) {
+    for (int i = 0; i < 100; ++i) {
+      one.step();
+      const HandMotion motion = one.hand_motion();
+      for (std::size_t j = 0; j < barrett().joints().size(); ++j) {
+        const model::HandJoint& joint = barrett().joints()[j];
+        const double share = effort[joint.dof] / most[joint.dof];
+        EXPECT_LE(std::abs(motion.torque[static_cast<Eigen::Index>(j)]),
+                  share * joint.max_torque * (1 + 1e-9))
+            << joint.name;
+      }
+      if (testing::Test::HasFailure()) return;
+    }
+  };
+  double before = 0, after = 0;
+  for (const analysis::Contact& contact : world->contacts(0)) before += contact.force;
+  VectorXd effort = 0.1 * most;
+  effort[0] = most[0];
+  ASSERT_TRUE(world->limit_effort(effort));
+  pushes_at_most(*world, effort);
+  for (const analysis::Contact& contact : world->contacts(0)) after += contact.force;
+  EXPECT_GT(after, 0);
+  EXPECT_LT(after, 0.5 * before);
+  pushes_at_most(*world->clone(), effort);
+  ASSERT_TRUE(world->command(world->commanded_base(), world->commanded_dof()));
+  world->hold_still();
+  pushes_at_most(*world, effort);  // until it is said anew
+  EXPECT_FALSE(world->limit_effort(VectorXd::Ones(3)));
+  EXPECT_FALSE(world->limit_effort(-most));
+  EXPECT_FALSE(
+      world->limit_effort(VectorXd::Constant(4, std::numeric_limits<double>::quiet_NaN())));
+  pushes_at_most(*world, effort);
+  ASSERT_TRUE(world->limit_effort({}));
+  run(*world, 0.3);
+  after = 0;
+  for (const analysis::Contact& contact : world->contacts(0)) after += contact.force;
+  EXPECT_GT(after, 0.5 * before);
+}
+
 TEST(World, RefusesNonsense) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   EXPECT_FALSE(World::create(barrett(), Pose::Identity(), VectorXd::Zero(3)));
