@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "common/model/hand_effort.hpp"
+
 namespace prehend::gate {
 namespace {
 
@@ -30,9 +32,7 @@ Limits limits_of(const model::HandModel& hand) {
     const double speed = own.velocity ? (*own.velocity)[i] : margin * dof.max_velocity;
     limits.joint.push_back({speed, own.acceleration ? (*own.acceleration)[i] : speed / start_up});
   }
-  const Eigen::VectorXd most = hand.max_effort();
-  limits.effort = own.effort.value_or(most);
-  limits.below_drives = (limits.effort.array() < most.array()).any();
+  limits.effort = model::max_effort(hand);
   return limits;
 }
 

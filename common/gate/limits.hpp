@@ -15,12 +15,11 @@ struct MotionLimit {
 /// What no command that leaves the gate passes. Defaults of the base stand above what mapping asks
 /// for (1 m/s, 3 rad/s), so that the gate cuts nothing of a sound stream.
 struct Limits {
-  Eigen::VectorXd lower, upper;    // of the DoFs, rad or m
-  std::vector<MotionLimit> joint;  // of the DoFs
-  Eigen::VectorXd effort;          // of the DoFs, N m or N
-  bool below_drives = false;       // some drives have more effort than that
-  MotionLimit base{1.2, 300};      // of the base's place
-  MotionLimit turn{3.6, 900};      // of its orientation
+  Eigen::VectorXd lower, upper;                                // of the DoFs, rad or m
+  std::vector<MotionLimit> joint;                              // of the DoFs
+  Eigen::VectorXd effort;                                      // of the DoFs, N m or N
+  MotionLimit base{1.2, 300};                                  // of the base's place
+  MotionLimit turn{3.6, 900};                                  // of its orientation
   Eigen::Vector3d box_lower = Eigen::Vector3d::Constant(-10);  // m, of the base in W
   Eigen::Vector3d box_upper = Eigen::Vector3d::Constant(10);
 };

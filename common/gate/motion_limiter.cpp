@@ -119,8 +119,6 @@ void MotionLimiter::bound(Passed& passed) const {
   const Eigen::VectorXd within = place.dof.cwiseMax(limits_.lower).cwiseMin(limits_.upper);
   if ((within - place.dof).cwiseAbs().maxCoeff() > rounding) cut(Cut::joint_range);
   place.dof = within;
-  // Who asks for all that the drives have is not cut, but gets no more than the limit.
-  if (place.effort.size() == 0 && limits_.below_drives) place.effort = limits_.effort;
   if (place.effort.size() > 0 && (place.effort.array() > limits_.effort.array()).any()) {
     place.effort = place.effort.cwiseMin(limits_.effort);
     cut(Cut::effort);

@@ -8,6 +8,7 @@
 
 #include "common/grasping/bullet.hpp"
 #include "common/grasping/closest.hpp"
+#include "common/model/hand_effort.hpp"
 
 namespace prehend::grasping {
 namespace {
@@ -45,7 +46,7 @@ bool LinkPairFilter::ignores(int a, int b) const {
 
 HandBody::HandBody(const model::HandModel& hand, const std::vector<analysis::Material>& materials,
                    btMultiBodyDynamicsWorld& world, double time_step)
-    : hand_(hand), world_(world), time_step_(time_step), max_effort_(hand.max_effort()) {
+    : hand_(hand), world_(world), time_step_(time_step), max_effort_(model::max_effort(hand)) {
   world_.getPairCache()->setOverlapFilterCallback(&filter_);
   build_links();
   world_.addMultiBody(multibody_.get());

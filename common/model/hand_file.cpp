@@ -368,8 +368,7 @@ class HandLoader {
   Expected<void> read_gate(const toml::table& root) {
     const auto table = table_of(root, "gate");
     if (!table) return tl::unexpected(table.error());
-    if (auto known =
-            only_keys(*table, {"lower", "upper", "velocity", "acceleration", "effort"}, "gate");
+    if (auto known = only_keys(*table, {"lower", "upper", "velocity", "acceleration"}, "gate");
         !known)
       return known;
     HandGate& gate = hand.gate_;
@@ -378,8 +377,7 @@ class HandLoader {
              {"lower", &gate.lower},
              {"upper", &gate.upper},
              {"velocity", &gate.velocity},
-             {"acceleration", &gate.acceleration},
-             {"effort", &gate.effort}}) {
+             {"acceleration", &gate.acceleration}}) {
       if (!table->contains(key)) continue;
       const auto read = numbers(table->get(key), hand.dofs_.size(), std::string("gate.") + key);
       if (!read) return tl::unexpected(read.error());
@@ -389,9 +387,9 @@ class HandLoader {
   }
 
   Expected<void> check_gate() const {
-    for (const auto* values : {&hand.gate_.velocity, &hand.gate_.acceleration, &hand.gate_.effort})
+    for (const auto* values : {&hand.gate_.velocity, &hand.gate_.acceleration})
       if (*values && !((*values)->array() > 0).all())
-        return fail("velocity, acceleration and effort must be positive", "gate");
+        return fail("velocity and acceleration must be positive", "gate");
     for (std::size_t k = 0; k < hand.dofs_.size(); ++k) {
       const auto i = static_cast<Eigen::Index>(k);
       const HandDof& dof = hand.dofs_[k];

@@ -1,7 +1,6 @@
 #include "common/model/hand_model.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 namespace prehend::model {
 
@@ -28,13 +27,6 @@ Eigen::VectorXd HandModel::clamp(const Eigen::VectorXd& dof) const {
     clamped[i] = std::clamp(clamped[i], limits.lower, limits.upper);
   }
   return clamped;
-}
-
-Eigen::VectorXd HandModel::max_effort() const {
-  Eigen::VectorXd effort = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(dofs_.size()));
-  for (const HandJoint& joint : joints_)
-    effort[joint.dof] += std::abs(joint.multiplier) * joint.max_torque;
-  return effort;
 }
 
 std::vector<Pose> HandModel::link_poses(const Eigen::VectorXd& joint_angles) const {

@@ -84,7 +84,7 @@ struct HandFingertip {
 
 /// What the gate lets through, as far as hand.toml says so: values of all DoFs, in their units.
 struct HandGate {
-  std::optional<Eigen::VectorXd> lower, upper, velocity, acceleration, effort;
+  std::optional<Eigen::VectorXd> lower, upper, velocity, acceleration;
 };
 
 /// The folder of a hand: what has a slash is a path, anything else a name in models/hands.
@@ -126,9 +126,6 @@ class HandModel {
   /// Joint angles of given dof values. Sizes: dofs() -> joints().
   Eigen::VectorXd joint_angles(const Eigen::VectorXd& dof) const;
   Eigen::VectorXd clamp(const Eigen::VectorXd& dof) const;
-  /// What the drives of each DoF have, all its joints together: N m of the joint that leads it, or
-  /// N.
-  Eigen::VectorXd max_effort() const;
   /// X_BL of every link at the given joint angles.
   std::vector<Pose> link_poses(const Eigen::VectorXd& joint_angles) const;
   /// p_BT of every fingertip at the given dof values.

@@ -6,6 +6,7 @@
 
 #include <limits>
 
+#include "common/model/hand_effort.hpp"
 #include "tests/unit/gate/fixtures.hpp"
 
 namespace prehend::gate {
@@ -69,7 +70,7 @@ TEST(Gate, RefusesWhatCannotBeMeant) {
 
 TEST(Gate, CutsEffortsToThoseOfTheDrives) {
   auto gate = made(barrett());
-  const Eigen::VectorXd most = barrett().max_effort();
+  const Eigen::VectorXd most = model::max_effort(barrett());
   Command sent = command(barrett(), 1, 0);
   auto passed = gate.admit(sent, at(0));
   ASSERT_TRUE(passed);
@@ -88,21 +89,6 @@ TEST(Gate, CutsEffortsToThoseOfTheDrives) {
   EXPECT_TRUE(passed->has(Cut::effort));
   EXPECT_EQ(passed->place.effort[2], most[2]);
   EXPECT_EQ(passed->place.effort[1], sent.place.effort[1]);
-}
-
-// [gate] effort of hand.toml: who asks for nothing of its own must not get more than that either.
-TEST(Gate, KeepsEffortsBelowThoseOfTheDrivesWhereTheHandSaysSo) {
-  Limits limits = limits_of(barrett());
-  EXPECT_FALSE(limits.below_drives);
-  limits.effort *= 0.25;
-  limits.below_drives = true;
-  auto gate = CommandGate::create(barrett(), {.hand = "hand"}, limits).value();
-  auto passed = gate.admit(command(barrett(), 1, 0), at(0));
-  ASSERT_TRUE(passed);
-  EXPECT_EQ(passed->place.effort, limits.effort);
-  EXPECT_FALSE(passed->has(Cut::effort)) << "asked for nothing";
-  gate.stop("anna", "", at(5));
-  EXPECT_EQ(gate.go(open_at(barrett(), {0, 0, 0.5}), at(10)).place.effort, limits.effort);
 }
 
 TEST(Gate, RefusesWhatIsOldAndWhatIsFromTheFuture) {

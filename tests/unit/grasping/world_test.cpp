@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "common/grasping/hold_test.hpp"
+#include "common/model/hand_effort.hpp"
 #include "tests/support/hands.hpp"
 
 namespace {
@@ -197,7 +198,7 @@ TEST(World, HoldingStillKeepsTheGripAndStopsWhatMoves) {
 
 TEST(World, DrivesUseNoMoreEffortThanTheyMay) {
   auto world = gripped(talc);
-  const VectorXd most = barrett().max_effort();
+  const VectorXd most = model::max_effort(barrett());
   const auto pushes_at_most = [&](World& one, const VectorXd& effort) {
     for (int i = 0; i < 100; ++i) {
       one.step();

@@ -113,16 +113,6 @@ TEST(HandFile, ReadsSlidingJointsCouplingsAndClutches) {
   EXPECT_EQ(named(hand->links(), "finger").finger, 1);
 }
 
-TEST(HandFile, KnowsTheEffortOfADoFAndThatOfItsGate) {
-  const auto hand = model::HandModel::parse(
-      urdf, replaced(toml, "[torque]", "[gate]\neffort = [9, 0.5]\n[torque]"));
-  ASSERT_TRUE(hand) << hand.error().message();
-  // The slide's 2 N, and 2 N m of what turns by 10 rad/m.
-  EXPECT_EQ(hand->max_effort(), Eigen::Vector2d(22, 0.7));
-  ASSERT_TRUE(hand->gate().effort);
-  EXPECT_EQ(*hand->gate().effort, Eigen::Vector2d(9, 0.5));
-}
-
 TEST(HandFile, SlidesAndTurnsAsCoupled) {
   const auto hand = model::HandModel::parse(urdf, toml);
   ASSERT_TRUE(hand) << hand.error().message();
@@ -205,8 +195,6 @@ TEST(HandFile, RefusesWhatIsNoHandAndSaysWhere) {
            {false, "orientation = [1, 0", "orientation = [0, 0", "grasp_frame"},
            {false, "[torque]", "[reach]\nopening = 0.0\n[torque]", "reach.opening"},
            {false, "[torque]", "[torques]", "torques"},
-           {false, "[torque]", "[gate]\neffort = [1.0, 0.0]\n[torque]", "gate"},
-           {false, "[torque]", "[gate]\neffort = [1.0]\n[torque]", "gate.effort"},
            {false, "open = [0.025, 0.0]", "open = [0.025]", "postures.open"},
            {false, "open = [0.025, 0.0]", "open = [0.03, 0.0]", "thumb"},
            {false, "open = [0.025, 0.0]", "shut = [0.025, 0.0]", "open"}}) {
