@@ -26,8 +26,7 @@ bool GripController::pushing(std::size_t dof, const RobotState& state,
   return false;
 }
 
-void GripController::observe(const RobotState& state, const Eigen::VectorXd& commanded,
-                             const Eigen::VectorXd& distances) {
+void GripController::observe(const RobotState& state, const Eigen::VectorXd& commanded) {
   for (std::size_t i = 0; i < contacts_.size(); ++i) {
     const int closing = hand_.dofs()[i].closing;
     if (closing == 0) continue;
@@ -38,8 +37,7 @@ void GripController::observe(const RobotState& state, const Eigen::VectorXd& com
     if (commanded.size() > 0 && closing * (commanded[k] - q) < options_.arrived * unit)
       contacts_[i].reset();
     std::optional<Stop>& stop = stops_[i];
-    const bool elsewhere = distances.size() > 0 && distances[k] > options_.reach;
-    if (elsewhere || !pushing(i, state, commanded)) {
+    if (!pushing(i, state, commanded)) {
       stop.reset();
       continue;
     }

@@ -34,9 +34,6 @@ struct GripOptions {
   double still = 0.02;
   /// Nothing is in the way of a finger that is no further than this angle behind its command, rad.
   double arrived = 0.02;
-  /// What stops a finger farther than this distance from the object that is reached for is
-  /// something else: the table, or another finger. m.
-  double reach = 0.02;
   /// A finger is stopped once it has pushed and stood still for this time.
   Duration settle = std::chrono::milliseconds(100);
 };
@@ -44,18 +41,14 @@ struct GripOptions {
 /// Remembers where each closing finger was stopped first, and squeezes by the same angle in every
 /// mode: a contact posture reproduced exactly would grip with no force, and a drive pressed to its
 /// limit has no stiffness left, so that a thin object slips from between the fingers. What does not
-/// close (spread) stays as it is while anything is touched. While a hand reaches for an object, a
-/// finger far from it that something stops has met something else, and goes where it is told.
-/// Keeps a reference to the hand.
+/// close (spread) stays as it is while anything is touched. Keeps a reference to the hand.
 class GripController {
  public:
   GripController(const model::HandModel& hand, const GripOptions& options);
 
   /// commanded: what the hand was last told; empty when nothing yet (then only torque counts).
-  /// The state's sizes must be those of the hand. distances: of each DoF's finger from the object
-  /// that is reached for, m; empty: none is known, or it is gripped already.
-  void observe(const RobotState& state, const Eigen::VectorXd& commanded,
-               const Eigen::VectorXd& distances = {});
+  /// The state's sizes must be those of the hand.
+  void observe(const RobotState& state, const Eigen::VectorXd& commanded);
 
   /// Lets go of fingers that the operator opens; the others are told their contact and the squeeze.
   Eigen::VectorXd squeeze(const Eigen::VectorXd& mapped);

@@ -66,25 +66,10 @@ Expected<void> Mapping::on_state(const RobotState& state) {
   // One that was started anew is somewhere else: what it was told before does not count.
   const bool returns = state_ && (std::chrono::abs(state.stamp - state_->stamp) > max_state_pause ||
                                   clutch_.is_jump(state_->X_WB, state.X_WB));
-  grip_.observe(state, command_.dof, finger_distances(state));
+  grip_.observe(state, command_.dof);
   state_ = state;
   if (command_.dof.size() > 0 && (returns || !obeyed_)) take_place_of_robot();
   return {};
-}
-
-/// How far the finger of each DoF is from the object that is reached for. Empty without one, and
-/// for one that is gripped: it moves with the hand, unseen.
-Eigen::VectorXd Mapping::finger_distances(const RobotState& state) const {
-  const GraspTarget* target = known_object();
-  if (target == nullptr || phase() == Phase::gripping) return {};
-  const Detection& object = target->object.detection;
-  const Eigen::VectorXd of_fingers =
-      distances_.distances(state.dof, object.shape, state.X_WB.inverse() * object.X_WO);
-  Eigen::VectorXd of_dofs = Eigen::VectorXd::Zero(state.dof.size());  // a DoF of several fingers
-  for (Eigen::Index i = 0; i < of_dofs.size(); ++i)
-    if (const int finger = distances_.finger_of(static_cast<std::size_t>(i)); finger >= 0)
-      of_dofs[i] = of_fingers[finger];
-  return of_dofs;
 }
 
 void Mapping::on_gate(bool obeys, std::optional<bool> placed) {

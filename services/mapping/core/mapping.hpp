@@ -35,7 +35,6 @@ struct Command {
   Time stamp;                  // of the posture; of the tick when holding
   std::optional<Time> origin;  // of the glove frame; none when holding
   Eigen::VectorXd dof;         // rad, or m of what slides
-  Eigen::VectorXd effort;      // N m or N, that the DoFs may use; empty: all they have
   Pose X_WB = Pose::Identity();
   Mode mode = Mode::hold;
   double weight = 0;   // of the intelligent answer
@@ -116,7 +115,6 @@ class Mapping {
   bool start(const Pose& X_WG, Time stamp, Time now);                      // 3
   Pose clutch(const Pose& X_WG, Duration elapsed);                         // 3
   bool are_apart(const Eigen::VectorXd& a, const Eigen::VectorXd& b) const;
-  Eigen::VectorXd finger_distances(const RobotState& state) const;
   bool robot_is_elsewhere() const;
   void take_place_of_robot();
   std::optional<GraspTarget> select_target(const Pose& X_WG, Time now);  // 4

@@ -260,7 +260,6 @@ class Service::Topics {
     message_.stamp_ns(to_ns(command.stamp));
     message_.origin_ns(command.origin ? to_ns(*command.origin) : 0);
     message_.dof(convert::to_message(command.dof));
-    message_.effort(convert::to_message(command.effort));
     message_.X_WB(convert::to_message(command.X_WB));
     message_.mode(to_message(command.mode));
     message_.weight(command.weight);

@@ -92,26 +92,6 @@ TEST(GripController, GoesOnClosingWhenTheObjectSlipsAway) {
   EXPECT_DOUBLE_EQ(grip.squeeze(Eigen::Vector4d(0, 1.2, 1.2, 1.2))[1], 1.2);
 }
 
-// A grip that began while the hand still reaches would freeze the placement and the fingers.
-TEST(GripController, DoesNotTakeTheTableForTheObject) {
-  GripController grip(barrett(), {});
-  const auto push = [&](int from, const Eigen::Vector4d& distances) {
-    for (int ms = from; ms <= from + 150; ms += 10)
-      grip.observe(at_rest(stopped, ms), stopped.array() + 0.1, distances);
-  };
-  push(0, Eigen::Vector4d(0, 0.05, 0.03, 0.021));
-  EXPECT_FALSE(grip.touching());
-  EXPECT_DOUBLE_EQ(grip.squeeze(stopped)[1], 0.8) << "it does not press on what is there";
-  push(200, Eigen::Vector4d(0, 0.05, 0.015, -0.002));  // seen a little beside its place
-  EXPECT_FALSE(grip.contacts()[1]);
-  EXPECT_TRUE(grip.contacts()[2]);
-  EXPECT_TRUE(grip.contacts()[3]);
-  push(400, Eigen::Vector4d::Constant(0.2));
-  EXPECT_TRUE(grip.contacts()[2]) << "what is gripped stays gripped";
-  push(600, {});
-  EXPECT_TRUE(grip.contacts()[1]) << "without a known object, whatever stops a finger counts";
-}
-
 TEST(GripController, KeepsTheSpreadWhileItTouches) {
   GripController grip(barrett(), {});
   for (int ms = 0; ms <= 150; ms += 10) grip.observe(at_rest(stopped, ms), stopped.array() + 0.1);

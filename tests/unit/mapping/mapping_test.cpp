@@ -355,25 +355,6 @@ TEST_F(MappingTest, AGripKeepsObjectAndPlacementWithoutACamera) {
   }
 }
 
-// The table in the way of a finger is no grip: the hand goes on to the object.
-TEST_F(MappingTest, WhatStopsAFingerFarFromTheObjectIsNotTheObject) {
-  const Pose X_WO = standing(talc);
-  const Pose X_WG = side_grasp(talc, X_WO) * make_pose(Eigen::Vector3d(0, 0, -0.12));
-  ASSERT_TRUE(mapping_.on_state(state_at(base_at(X_WG), open_, 0)));
-  Expected<Command> last = fail("");
-  for (int ms = 0; ms < 1500; ms += 10) {
-    ASSERT_TRUE(mapping_.on_detection(detection(talc, X_WO, ms)));
-    if (ms > 500) {
-      Eigen::VectorXd stopped = last->dof;
-      stopped.tail<3>().array() -= 0.1;
-      ASSERT_TRUE(mapping_.on_state(state_at(last->X_WB, stopped, ms)));
-    }
-    last = mapping_.on_posture(posture(X_WG, ms, 0.2), at(ms));
-    ASSERT_NE(mapping_.phase(), Phase::gripping) << ms;
-  }
-  EXPECT_EQ(last->object, "object 1");
-}
-
 TEST_F(MappingTest, HoldsWhenPosturesStop) {
   const Pose X_WG = make_pose(Eigen::Vector3d(0, 0, 0.3));
   ASSERT_TRUE(mapping_.on_state(state_at(base_at(X_WG), open_, 0)));
