@@ -4,6 +4,7 @@
 
 #include <csignal>
 #include <cstdlib>
+#include <span>
 
 #include "common/base/paths.hpp"
 
@@ -73,8 +74,11 @@ std::optional<Error> Lab::casualty(std::string_view may_end) {
 }
 
 void Lab::stop() {
-  for (Member& member : members_) member.process.signal(SIGTERM);
-  for (Member& member : members_) member.process.stop(seconds(3));
+  // Who hears all the others was started before them: a recorder takes what they still say.
+  const std::span others = std::span(members_).subspan(members_.empty() ? 0 : 1);
+  for (Member& member : others) member.process.signal(SIGTERM);
+  for (Member& member : others) member.process.stop(seconds(3));
+  if (!members_.empty()) members_.front().process.stop(seconds(3));
   members_.clear();
 }
 

@@ -42,7 +42,8 @@ class Lab {
   std::optional<Process::Exit> ended(std::string_view name);
   /// The first process found dead, with the last lines it said. `may_end` may end with success.
   std::optional<Error> casualty(std::string_view may_end = {});
-  /// Asks all to stop and kills those that do not within three seconds.
+  /// Asks all to stop and kills those that do not within three seconds. The one that was started
+  /// first is asked when the others have ended.
   void stop();
 
  private:

@@ -1,12 +1,15 @@
 // The latched stop, by `prehend stop` and `prehend release`, in a lab of real processes: nothing
 // moves the hand until the release, whatever happens to mapping, and then nothing moves it faster
 // than it may.
+#include <fmt/format.h>
+
 #include <csignal>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <set>
 
 #include "common/base/file_text.hpp"
+#include "common/service/status_publisher.hpp"
 #include "tests/integration/safety_rig.hpp"
 #include "tests/integration/terminal.hpp"
 
@@ -373,6 +376,60 @@ TEST_F(Stop, TheLeadIsTakenOverByName) {
   const std::string message = nobody["gates"][0]["message"];
   EXPECT_NE(message.find("does not send robot/command"), std::string::npos) << message;
   EXPECT_NE(message.find(first), std::string::npos) << message;
+}
+
+/// A recording that is played twice, by operators who do not know of each other.
+class Replayers : public Stop {
+ protected:
+  service::Process play(const std::string& topic) {
+    return start_program(
+        "prehend-replay",
+        with_lab({PREHEND_SOURCE "/deploy/samples/intelligent-grasp.mcap", "--quiet", "--stamps",
+                  "now", "--rate", "0.5", "--topics", topic}));
+  }
+  static std::string name_of(const service::Process& player) {
+    return fmt::format("replayer@{}/{}", service::host_name(), player.pid());
+  }
+};
+
+TEST_F(Replayers, OneOfTwoLeadsTheHandAndTheOtherIsRefusedAndNamed) {
+  simulation_.emplace(start("simulation", patient));
+  const auto first = play("robot/command");
+  ASSERT_TRUE(wait(20, [&] { return gate_.leader().to_string() == name_of(first); }))
+      << gate_.leader().to_string();
+  const auto second = play("robot/command");
+  EXPECT_TRUE(wait(20, [&] { return gate_.refused().to_string() == name_of(second); }))
+      << gate_.refused().to_string();
+  EXPECT_EQ(gate_.leader().to_string(), name_of(first));
+  EXPECT_TRUE(wait(20, [&] { return says(name_of(second) + " is refused"); }))
+      << status_.message().to_string();
+  ordered({"takeover", "replayer"});
+  EXPECT_TRUE(wait(20, [&] {
+    return gate_.leader().to_string() == name_of(second) &&
+           gate_.refused().to_string() == name_of(first);
+  })) << gate_.leader().to_string();
+}
+
+TEST_F(Replayers, MappingFollowsOneOfTwoAndNamesTheOther) {
+  simulation_.emplace(start("simulation", patient));
+  mapping_.emplace(start("mapping", patient));
+  const auto first = play("hand/posture");
+  ASSERT_TRUE(wait(20, [&] { return gate_.leader().to_string().starts_with("mapping@"); }));
+  const auto second = play("hand/posture");
+  auto statuses = reader(dds::service_status);
+  const auto words = [](const service::Process& refused, const service::Process& leads) {
+    return fmt::format("hand/posture of {} is refused, for {} leads", name_of(refused),
+                       name_of(leads));
+  };
+  // Where the machine lets the first one wait for 0.3 s, the second one leads.
+  const std::set<std::string> either{words(second, first), words(first, second)};
+  std::string said;
+  EXPECT_TRUE(hear<v1::ServiceStatus>(statuses, 20, [&](const v1::ServiceStatus& status) {
+    if (status.name().to_string() == "mapping") said = status.message().to_string();
+    return either.contains(said);
+  })) << said;
+  const v1::HandState then = state_;
+  EXPECT_TRUE(wait(20, [&] { return state_.origin_ns() > then.origin_ns(); })) << "it goes on";
 }
 
 }  // namespace

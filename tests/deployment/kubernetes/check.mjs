@@ -41,12 +41,24 @@ function locked(container, where) {
   assert.ok(container.resources.limits.memory, `${where} may take all memory`);
 }
 
-function promises(overlay, o) {
+/** A stop of the hand outlives its pod: who moves one keeps it in a claim, which comes with the overlay. */
+function keepsItsStop(pod, claims, where) {
+  for (const container of pod.containers.filter((one) => one.command.includes("prehend-simulation"))) {
+    const folder = container.command.map((word) => /^safety\.state=(.+)/.exec(word)?.[1]).find(Boolean);
+    const mount = container.volumeMounts.find((one) => one.mountPath === folder && !one.readOnly);
+    const claim = pod.volumes.find((one) => one.name === mount?.name)?.persistentVolumeClaim?.claimName;
+    assert.ok(claims.includes(claim), `${where} keeps no stop`);
+    assert.equal(pod.securityContext.fsGroup, container.securityContext.runAsGroup ?? pod.securityContext.runAsGroup, where);
+  }
+}
+
+function promises(overlay, o, claims) {
   const pod = o.spec?.template?.spec;
   if (!pod) return;
   const where = `${overlay}: ${o.kind} ${o.metadata.name}`;
   assert.equal(pod.securityContext.runAsNonRoot, true, where);
   assert.equal(pod.automountServiceAccountToken, false, where);
+  keepsItsStop(pod, claims, where);
   for (const container of pod.initContainers ?? []) locked(container, where);
   for (const container of pod.containers) {
     locked(container, where);
@@ -109,9 +121,10 @@ let count = 0;
 for (const overlay of readdirSync(root)) {
   if (!existsSync(`${root}/${overlay}/kustomization.yaml`)) continue;
   const list = objects(root, overlay);
+  const claims = list.filter((o) => o.kind === "PersistentVolumeClaim").map((o) => o.metadata.name);
   for (const o of list) {
     await check(o);
-    promises(overlay, o);
+    promises(overlay, o, claims);
   }
   shut(overlay, list);
   assert.deepEqual(refusals(list), [], overlay);

@@ -28,12 +28,14 @@ export class Lab {
   /** Volumes as folders of this machine: by name, where they lie. */
   volumes(pod) {
     return Object.fromEntries((pod.spec.volumes ?? []).map((volume) => {
-      const folder = `${this.folder}/${pod.name}-${volume.name}`;
-      rmSync(folder, { recursive: true, force: true }); // a pod that comes anew has nothing of the last one
-      mkdirSync(folder);
+      const claim = volume.persistentVolumeClaim?.claimName;
+      const folder = `${this.folder}/${claim ? `claim-${claim}` : `${pod.name}-${volume.name}`}`;
+      // A pod that comes anew has nothing of the last one but what lies in claims.
+      if (!claim) rmSync(folder, { recursive: true, force: true });
+      mkdirSync(folder, { recursive: true });
       chmodSync(folder, 0o777);
       if (volume.secret) this.secret(volume.secret, folder);
-      if (volume.persistentVolumeClaim)
+      if (claim === "recordings")
         copyFileSync(`${root}/../samples/intelligent-grasp.mcap`, `${folder}/lab.mcap`);
       assert.ok(volume.emptyDir || volume.secret || volume.persistentVolumeClaim, `volume ${volume.name}`);
       return [volume.name, folder];
@@ -197,6 +199,25 @@ export class Lab {
       }
     const all = this.pods.flatMap((pod) => pod.spec.containers);
     console.log(`${this.overlay}: ${all.length} containers in ${this.pods.length} pods are as their manifests say`);
+  }
+
+  /** The pod of the hand is lost with its node: the stop that was ordered holds until its release. */
+  async stopOutlivesItsPod(network) {
+    const pod = this.pods.find((one) => one.name === "simulation"), [container] = pod.spec.containers;
+    const prehend = (...words) => {
+      const asked = ends("exec", container.id, "prehend", ...words);
+      assert.equal(asked.status, 0, `${words.join(" ")}: ${asked.stdout}${asked.stderr}`);
+      return asked.stdout;
+    };
+    const stopped = () => JSON.parse(prehend("status", "--once", "--json")).hands.map((one) => one.stopped);
+    prehend("stop", "--reason", "a node is about to be lost");
+    this.remove(pod, true);
+    this.place(pod, network);
+    for (const probe of ["startupProbe", "readinessProbe"]) await this.probe(pod, container, probe);
+    assert.deepEqual(stopped(), [true], `${this.overlay}: the stop was lost with its pod`);
+    prehend("release", "--reason", "another node has it");
+    assert.deepEqual(stopped(), [false], this.overlay);
+    console.log(`${this.overlay}: a stop outlives the pod of the hand`);
   }
 
   /** Who has no label of the lab sees nobody, with the same settings and the same image. */

@@ -15,7 +15,10 @@ async function together(labs, addresses, subnet) {
     for (const lab of labs) for (const pod of lab.pods) lab.shut(pod);
     for (const lab of labs) for (const pod of lab.pods) lab.start(pod);
     for (const lab of labs) await lab.prove();
-    if (!subnet) for (const lab of labs) lab.strangerIsShutOut(network);
+    if (!subnet) for (const lab of labs) {
+      await lab.stopOutlivesItsPod(network);
+      lab.strangerIsShutOut(network);
+    }
   } finally {
     clean();
     docker("network", "rm", network);
