@@ -12,6 +12,10 @@ std::filesystem::path share_directory();
 /// $XDG_STATE_HOME or in ~/.local/state. Empty: there is none.
 std::filesystem::path state_directory();
 
+/// Folder for models that the user added: prehend in $XDG_DATA_HOME or in ~/.local/share. Empty:
+/// there is none.
+std::filesystem::path data_directory();
+
 /// Folder of the running program, where the other programs of the lab lie too.
 std::filesystem::path program_directory();
 

@@ -1,5 +1,6 @@
 #include "common/dds/dds_log.hpp"
 
+#include <atomic>
 #include <chrono>
 #include <fastdds/dds/log/Log.hpp>
 #include <map>
@@ -8,6 +9,7 @@
 #include <utility>
 
 #include "common/base/log.hpp"
+#include "common/dds/fastdds.hpp"
 
 namespace prehend::dds {
 
@@ -26,11 +28,15 @@ CaptureState& capture() {
   return *instance;
 }
 
+std::atomic<bool> no_room = false;  // for handshakes
+
 class Consumer : public eprosima::fastdds::dds::LogConsumer {
  public:
   void Consume(const Log::Entry& entry) override {
     if (entry.kind == Log::Info) return;
     const std::string_view category = entry.context.category ? entry.context.category : "";
+    no_room = no_room || (category == "SECURITY" &&
+                          entry.message.starts_with("WriterHistory cannot add the CacheChange_t"));
     {
       const std::scoped_lock lock(capture().mutex);
       if (capture().category == category) {
@@ -56,6 +62,11 @@ class Consumer : public eprosima::fastdds::dds::LogConsumer {
 };
 
 }  // namespace
+
+bool handshakes_are_used_up() {
+  // Fast DDS 2.9 forgets such peers when their lease ends.
+  return PREHEND_FAST_DDS > 2 && no_room;
+}
 
 void DdsLog::install() {
   Log::ClearConsumers();

@@ -23,4 +23,9 @@ class DdsLog {
   };
 };
 
+/// Fast DDS 3.1.2 keeps the last message of a handshake with each peer that left before its end,
+/// for good, and has room for a hundred: then it shakes hands with nobody new. True once it has
+/// said so. Who joins anew has room again.
+bool handshakes_are_used_up();
+
 }  // namespace prehend::dds

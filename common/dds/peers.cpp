@@ -14,7 +14,9 @@ namespace {
 // Peers that are there answer the first announcement within this time.
 constexpr milliseconds quiet{400};
 // A handshake takes some 100 ms, and a lost message of it is sent again after 500 ms.
-constexpr milliseconds patience{1500}, longer_patience{3000};
+// Fast DDS 3.1 goes on with it for as long as it takes, so nobody need give up sooner there.
+constexpr milliseconds longer_patience{3000},
+    patience = PREHEND_FAST_DDS == 2 ? milliseconds(1500) : longer_patience;
 constexpr std::size_t max_peers = 1024, max_reasons = 32;
 // So many that only announce themselves and never shake hands are no lab that starts: nobody waits
 // for them.

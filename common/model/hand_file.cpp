@@ -1,6 +1,4 @@
 // Reads hand.toml and joins it with what hand.urdf said to a HandModel.
-#include <toml++/toml.h>
-
 #include <algorithm>
 #include <cmath>
 #include <initializer_list>
@@ -9,6 +7,7 @@
 #include "common/base/paths.hpp"
 #include "common/model/hand_model.hpp"
 #include "common/model/hand_urdf.hpp"
+#include "common/model/toml_values.hpp"
 
 namespace prehend::model {
 namespace {
@@ -16,87 +15,12 @@ namespace {
 using Eigen::Vector3d;
 using Eigen::VectorXd;
 
-constexpr std::size_t max_entries = 32;
 constexpr double prismatic_squeeze =
     0.005;                            // m, for the full effort unless hand.toml says otherwise
 constexpr double max_coupling = 1e4;  // rad/m of a gear rack of 0.1 mm
+constexpr const char* hand_page = "see models/hands/README.md";
 constexpr const char* parts = "a hand is hand.urdf and hand.toml";
 constexpr double tolerance = 1e-3;  // rad or m, of limits and postures written by hand
-
-Error located(Error error, const std::string& file) {
-  error.where = file + (error.where.empty() ? "" : ": " + error.where);
-  return error;
-}
-
-/// A misspelt key must not pass as an absent one.
-Expected<void> only_keys(const toml::table& table, std::initializer_list<std::string_view> allowed,
-                         const std::string& where) {
-  for (const auto& [key, node] : table)
-    if (std::find(allowed.begin(), allowed.end(), key.str()) == allowed.end())
-      return fail("unknown key \"" + std::string(key.str()) + "\"", where,
-                  "see models/hands/README.md");
-  return {};
-}
-
-Expected<double> number(const toml::node& node, const std::string& where) {
-  const auto value = node.is_number() ? node.value<double>() : std::nullopt;
-  if (!value || !std::isfinite(*value)) return fail("needs a finite number", where);
-  return *value;
-}
-
-/// The number of a key, or `otherwise` where the key is absent.
-Expected<double> number_or(const toml::table& table, std::string_view key, double otherwise,
-                           const std::string& where) {
-  const toml::node* node = table.get(key);
-  return node ? number(*node, where + "." + std::string(key)) : otherwise;
-}
-
-Expected<std::string> text_of(const toml::table& table, std::string_view key,
-                              const std::string& where) {
-  const auto value = table[key].value<std::string>();
-  if (!value || value->empty()) return fail("needs a text \"" + std::string(key) + "\"", where);
-  return *value;
-}
-
-/// Numbers of a TOML array, exactly `count` of them and finite.
-Expected<VectorXd> numbers(const toml::node* node, std::size_t count, const std::string& where) {
-  const toml::array* array = node ? node->as_array() : nullptr;
-  if (!array || array->size() != count)
-    return fail("needs " + std::to_string(count) + " numbers", where);
-  VectorXd values(static_cast<Eigen::Index>(count));
-  for (std::size_t i = 0; i < count; ++i) {
-    const auto value = number(*array->get(i), where);
-    if (!value) return tl::unexpected(value.error());
-    values[static_cast<Eigen::Index>(i)] = *value;
-  }
-  return values;
-}
-
-/// The entries of [[key]], 1 to 32 tables.
-Expected<std::vector<const toml::table*>> entries(const toml::table& root, const std::string& key) {
-  const toml::array* array = root[key].as_array();
-  if (!array || array->empty() || array->size() > max_entries ||
-      !array->is_homogeneous(toml::node_type::table))
-    return fail("needs 1 to 32 [[" + key + "]] entries");
-  std::vector<const toml::table*> tables;
-  for (const toml::node& node : *array) tables.push_back(node.as_table());
-  return tables;
-}
-
-/// The table of a key, empty where the key is absent.
-Expected<toml::table> table_of(const toml::table& root, const std::string& key) {
-  const toml::node* node = root.get(key);
-  if (!node) return toml::table();
-  if (!node->is_table()) return fail("must be a table [" + key + "]", key);
-  return *node->as_table();
-}
-
-template <class Items>
-int find_named(const Items& items, std::string_view name) {
-  const auto found =
-      std::find_if(items.begin(), items.end(), [&](const auto& item) { return item.name == name; });
-  return found == items.end() ? -1 : static_cast<int>(found - items.begin());
-}
 
 }  // namespace
 
@@ -113,7 +37,7 @@ class HandLoader {
     if (auto known = only_keys(root,
                                {"name", "grasp_frame", "reach", "dof", "fingertip", "torque",
                                 "breakaway", "materials", "postures", "gate"},
-                               {});
+                               {}, hand_page);
         !known)
       return known;
     const auto name = text_of(root, "name", {});
@@ -150,8 +74,8 @@ class HandLoader {
     const std::string where = "[[dof]] " + dof.name;
     if (find_named(hand.dofs_, dof.name) >= 0) return fail("there are two of this name", where);
     if (auto known = only_keys(
-            table, {"name", "joint", "lower", "upper", "max_velocity", "closing", "squeeze"},
-            where);
+            table, {"name", "joint", "lower", "upper", "max_velocity", "closing", "squeeze"}, where,
+            hand_page);
         !known)
       return tl::unexpected(known.error());
 
@@ -289,7 +213,8 @@ class HandLoader {
       const std::string where = "[[fingertip]] " + tip.name;
       if (find_named(hand.fingertips_, tip.name) >= 0)
         return fail("there are two of this name", where);
-      if (auto known = only_keys(*table, {"name", "link", "position", "human"}, where); !known)
+      if (auto known = only_keys(*table, {"name", "link", "position", "human"}, where, hand_page);
+          !known)
         return known;
       const auto link = text_of(*table, "link", where);
       if (!link) return tl::unexpected(link.error());
@@ -330,17 +255,8 @@ class HandLoader {
   }
 
   Expected<void> read_grasp_frame(const toml::table& root) {
-    const auto table = table_of(root, "grasp_frame");
-    if (!table) return tl::unexpected(table.error());
-    if (auto known = only_keys(*table, {"position", "orientation"}, "grasp_frame"); !known)
-      return known;
-    const auto p = numbers(table->get("position"), 3, "grasp_frame.position");
-    if (!p) return tl::unexpected(p.error());
-    const auto q = numbers(table->get("orientation"), 4, "grasp_frame.orientation");
-    if (!q) return tl::unexpected(q.error());
-    const auto X_BG =
-        checked_pose(Vector3d(*p), Eigen::Quaterniond((*q)[0], (*q)[1], (*q)[2], (*q)[3]));
-    if (!X_BG) return tl::unexpected(located(X_BG.error(), "grasp_frame"));
+    const auto X_BG = pose_in(root, "grasp_frame", hand_page);
+    if (!X_BG) return tl::unexpected(X_BG.error());
     hand.X_BG_ = *X_BG;
     return {};
   }
@@ -348,7 +264,8 @@ class HandLoader {
   Expected<void> read_reach(const toml::table& root) {
     const auto table = table_of(root, "reach");
     if (!table) return tl::unexpected(table.error());
-    if (auto known = only_keys(*table, {"opening", "engage", "clearance", "half_width"}, "reach");
+    if (auto known =
+            only_keys(*table, {"opening", "engage", "clearance", "half_width"}, "reach", hand_page);
         !known)
       return known;
     Reach& reach = hand.reach_;
@@ -368,7 +285,8 @@ class HandLoader {
   Expected<void> read_gate(const toml::table& root) {
     const auto table = table_of(root, "gate");
     if (!table) return tl::unexpected(table.error());
-    if (auto known = only_keys(*table, {"lower", "upper", "velocity", "acceleration"}, "gate");
+    if (auto known =
+            only_keys(*table, {"lower", "upper", "velocity", "acceleration"}, "gate", hand_page);
         !known)
       return known;
     HandGate& gate = hand.gate_;
@@ -427,16 +345,10 @@ class HandLoader {
 Expected<HandModel> HandModel::parse(std::string_view urdf, std::string_view toml) {
   auto tree = read_hand_urdf(std::string(urdf));
   if (!tree) return tl::unexpected(located(tree.error(), "hand.urdf"));
-  toml::table root;
-  try {
-    root = toml::parse(toml);
-  } catch (const toml::parse_error& error) {
-    return fail(std::string(error.description()),
-                "hand.toml: line " + std::to_string(error.source().begin.line),
-                "hand.toml is TOML");
-  }
+  const auto root = parse_toml(toml, "hand.toml");
+  if (!root) return tl::unexpected(root.error());
   HandLoader loader(std::move(*tree));
-  if (auto done = loader.load(root); !done)
+  if (auto done = loader.load(*root); !done)
     return tl::unexpected(located(done.error(), "hand.toml"));
   return std::move(loader.hand);
 }

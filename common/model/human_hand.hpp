@@ -25,12 +25,6 @@ inline constexpr int human_dof_count = 20;
 /// abduction, MCP, PIP, DIP (thumb: CMC rotation, CMC flexion, MCP, IP).
 using HumanPosture = Eigen::Matrix<double, human_dof_count, 1>;
 
-/// A straight piece of a finger as a capsule, in frame H.
-struct Capsule {
-  Eigen::Vector3d a, b;  // ends of the axis, m
-  double radius = 0;     // m
-};
-
 /// Kinematics of a right human hand of a given size (20 DoF).
 /// Frame H: on the back of the hand, above the middle finger's metacarpal; x towards the fingers,
 /// z out of the back of the hand, y towards the thumb.
@@ -49,7 +43,7 @@ class HumanHand {
   /// Frame of the last segment of every finger; its origin is the fingertip (pad side of the tip),
   /// x along the segment.
   std::array<Pose, finger_count> fingertip_poses(const HumanPosture& posture) const;
-  /// The segments of all fingers.
+  /// The segments of all fingers, in H.
   std::vector<Capsule> segments(const HumanPosture& posture) const;
   /// Joint angles forced into the limits of a hand.
   HumanPosture clamp(const HumanPosture& posture) const;

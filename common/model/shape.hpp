@@ -18,6 +18,12 @@ struct Shape {
   bool operator==(const Shape&) const = default;
 };
 
+/// All points nearer than `radius` to a straight line.
+struct Capsule {
+  Eigen::Vector3d a = Eigen::Vector3d::Zero(), b = Eigen::Vector3d::Zero();  // its ends, m
+  double radius = 0;                                                         // m
+};
+
 std::string_view to_string(ShapeKind kind);
 std::optional<ShapeKind> shape_from_string(std::string_view name);
 

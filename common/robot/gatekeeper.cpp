@@ -129,7 +129,9 @@ void Gatekeeper::tick(Time now) {
   watch_consent(now);
   watch_lead(now);
   if (audit_ && !audit_->flush(now)) shell_.status().drop("audit not written");
-  if (gate_.stopped() && opens_)
+  // The gate lets it go from where it rests: a base that brakes harder than it may accelerate would
+  // be ahead of that, and come back.
+  if (gate_.stopped() && opens_ && robot_.rests())
     if (const auto here = robot_.where())
       robot_.go(gate_.go({open_.dof, here->X_WB}, now).place, now);
   if (shell_.lockstep()) return;

@@ -29,6 +29,8 @@ struct Robot {
   std::function<std::optional<gate::Place>()> where;
   /// Stays where it is, at once; a grip keeps its squeeze.
   std::function<void()> hold;
+  /// Has its base come to rest after that? Until then it is told to go nowhere.
+  std::function<bool()> rests = [] { return true; };
   /// Goes there, though nobody commands it: to open while it is stopped.
   std::function<void(const gate::Place& place, Time now)> go;
 };

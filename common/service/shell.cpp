@@ -15,6 +15,7 @@
 #include "common/base/log_format.hpp"
 #include "common/base/paths.hpp"
 #include "common/base/random.hpp"
+#include "common/dds/dds_log.hpp"
 #include "common/dds/security.hpp"
 #include "common/dds/topics.hpp"
 #include "common/service/lockstep_loop.hpp"
@@ -91,6 +92,7 @@ struct Shell::State {
   Rejoin rejoin;
   std::function<bool()> moves_hand;
   bool list_is_old = false;  // as has been said
+  bool shut = false;         // likewise: nobody else can join
 
   std::vector<std::unique_ptr<fdds::DataReaderListener>> listeners;
   std::unique_ptr<ClockSync> clock_sync;  // live only
@@ -110,22 +112,33 @@ struct Shell::State {
 
   Duration clock_step() const { return clock_sync ? clock_sync->clock_step() : Duration::zero(); }
 
-  /// Fast DDS reads the list of revoked keys only when it joins. True: join anew.
-  bool list_has_changed(Time now) {
+  Duration short_while() const {
+    return seconds(Random(::getpid()).uniform(0, 1) * to_seconds(Rejoin::max_delay));
+  }
+
+  /// Fast DDS reads the list of revoked keys only when it joins; and then it has room for
+  /// handshakes again. True: join anew.
+  bool must_join_anew(Time now) {
     if (!participant->keys()) return false;
     say_how_old_the_list_is(now);
     const bool busy = moves_hand && moves_hand();
+    if (!shut && dds::handshakes_are_used_up()) {
+      shut = true;
+      log::error("Fast DDS has no room for handshakes left: nobody else can join{}",
+                 may_restart() ? "; joining anew when the hand rests" : " until a restart");
+      if (may_restart()) rejoin.ask(now, short_while());
+    }
     if (const auto list = dds::newer_list(*participant->keys()); list && *list != revoked) {
       revoked = *list;
       if (!may_restart())
         log::warning("the list of revoked keys has changed; it counts here after a restart");
       else if (busy)
         log::warning("the list of revoked keys has changed; it counts here when the hand rests");
-      if (may_restart())
-        rejoin.ask(now, seconds(Random(::getpid()).uniform(0, 1) * to_seconds(Rejoin::max_delay)));
+      if (may_restart()) rejoin.ask(now, short_while());
     }
     if (!rejoin.is_due(now, busy)) return false;
-    log::info("the list of revoked keys has changed: joining anew");
+    log::info("{}: joining anew",
+              shut ? "nobody else could join" : "the list of revoked keys has changed");
     return true;
   }
 
@@ -327,7 +340,7 @@ Time Shell::beat(Time now) {
   State& state = *state_;
   const bool due = now >= state.status_publisher->next();
   const Time next = state.status_publisher->beat(now, state.status, state.clock_step());
-  if (due && state.list_has_changed(now)) state.again = state.stopping = true;
+  if (due && state.must_join_anew(now)) state.again = state.stopping = true;
   return std::min(next, state.supervisor.beat(now));
 }
 

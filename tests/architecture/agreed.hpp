@@ -34,6 +34,8 @@ inline constexpr std::string_view agreed_file = "tests/architecture/agreed.hpp";
 inline constexpr std::array common_edges{
     Edge{"common/analysis", "common/base"},
     Edge{"common/analysis", "common/model"},
+    Edge{"common/arm", "common/base"},
+    Edge{"common/arm", "common/model"},
     Edge{"common/audit", "common/base"},
     Edge{"common/clock", "common/base"},
     Edge{"common/clock", "idl"},

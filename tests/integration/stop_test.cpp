@@ -214,6 +214,36 @@ TEST_F(Stop, OpensTheHandWhereThatIsAsked) {
   EXPECT_LT((base() - beginning).norm(), 1e-3);
 }
 
+// An arm that accelerates more slowly than it brakes. It opens where the base has come to rest.
+TEST_F(Stop, OpensWithoutTakingTheMovingBaseBack) {
+  start_hand({"safety.on_stop=open", "gate.base_acceleration=2"});
+  auto orders = writer(dds::operator_command);
+  meet(orders);
+  const auto away = [&] {
+    auto message = command(beginning + Vector3d(3, 0, 0));
+    message.dof({0, 1, 1, 1});
+    return message;
+  };
+  base_speed_ = 0;
+  ASSERT_TRUE(
+      send(commands_, 20, away, [&] { return base_speed_ > 0.9 && state_.dof()[1] > 0.3; }));
+  v1::OperatorCommand stop;
+  stop.id("stop");
+  stop.stamp_ns(now_ns());
+  stop.action(v1::ACTION_STOP);
+  stop.target("gate");
+  orders.write(stop);
+  const Vector3d then = base();
+  double furthest = 0;
+  EXPECT_TRUE(send(commands_, 20, away, [&] {
+    furthest = std::max(furthest, (base() - then).norm());
+    return state_.dof()[1] < 0.02 && state_.dof()[2] < 0.02 && state_.dof()[3] < 0.02;
+  }));
+  EXPECT_GT(furthest, 0.01) << "it was moving";
+  EXPECT_NEAR((base() - then).norm(), furthest, 1e-3) << "the base went back";
+  expect_still(50);
+}
+
 TEST_F(Stop, IsThereFromTheStartWhereThatIsAsked) {
   simulation_.emplace(start("simulation", {"safety.start_stopped=true"}));
   meet(commands_);

@@ -22,7 +22,11 @@ const std::vector<Tool>& tools() {
       {"teach", "prehend-teach", "show postures to learn a mapping from"},
       {"train", "prehend-train", "train a mapping model for a robot hand"},
       {"study", "prehend-study", "repeat the thesis's experiments and the grasp benchmark"},
+      {"benchmark", "prehend-benchmark", "judge any mapping by the benchmark's takes"},
+      {"demonstration", "prehend-demonstration", "train and evaluate the recognition of grasps"},
+      {"tasks", "prehend-tasks", "tasks that were shown: list, show, check"},
       {"hand", "prehend-hand", "is this URDF a usable hand; make it one"},
+      {"arm", "prehend-arm", "is this URDF a usable arm; make it one; inverse kinematics"},
       {"grasp", "prehend-grasp", "plan grasps, export them, quality of given contacts"},
   };
   return table;

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "common/learning/network_message.hpp"
 #include "common/proto/mapping_model.pb.h"
 #include "common/proto/sealed_file.hpp"
 
@@ -28,20 +29,6 @@ Expected<learning::Scaling> read(const messages::ScalingRange& from) {
                                    *scaling_kind);
 }
 
-Expected<learning::Network> read_network(const messages::MappingNetwork& from) {
-  std::vector<learning::Layer> layers;
-  for (const messages::NetworkLayer& layer : from.layers()) {
-    const auto rows = static_cast<Eigen::Index>(layer.outputs());
-    if (rows == 0 || layer.weights_size() % rows != 0)
-      return fail("a layer's weights do not fill its rows");
-    using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-    layers.emplace_back(
-        Eigen::Map<const RowMajor>(layer.weights().data(), rows, layer.weights_size() / rows));
-  }
-  return learning::Network::create(
-      std::move(layers), from.shortcut() ? learning::Wiring::shortcut : learning::Wiring::layered);
-}
-
 Expected<MappingNetwork> read(const messages::MappingNetwork& from) {
   auto shape = model::ShapeKind::unknown;
   if (!from.shape().empty()) {
@@ -50,7 +37,8 @@ Expected<MappingNetwork> read(const messages::MappingNetwork& from) {
       return fail(fmt::format("unknown shape «{}»", from.shape()));
     shape = *known;
   }
-  auto network = read_network(from);
+  auto network = learning::read_network(
+      from.layers(), from.shortcut() ? learning::Wiring::shortcut : learning::Wiring::layered);
   if (!network) return tl::unexpected(network.error());
   auto input = read(from.input());
   if (!input) return tl::unexpected(input.error());
@@ -147,12 +135,7 @@ Expected<void> save_mapping_model(const std::filesystem::path& file, const Mappi
     if (network.shape != model::ShapeKind::unknown)
       to.set_shape(std::string(to_string(network.shape)));
     to.set_shortcut(network.network.wiring() == learning::Wiring::shortcut);
-    for (const learning::Layer& layer : network.network.layers()) {
-      messages::NetworkLayer& written = *to.add_layers();
-      written.set_outputs(static_cast<unsigned>(layer.rows()));
-      for (Eigen::Index row = 0; row < layer.rows(); ++row)
-        for (Eigen::Index col = 0; col < layer.cols(); ++col) written.add_weights(layer(row, col));
-    }
+    learning::write(network.network, *to.mutable_layers());
     write(network.input, *to.mutable_input());
     write(network.output, *to.mutable_output());
     to.mutable_errors()->set_training(network.errors.training);

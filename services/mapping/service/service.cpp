@@ -15,7 +15,7 @@
 #include "services/mapping/core/mapping_model.hpp"
 #include "services/mapping/core/mapping_modes.hpp"
 #include "services/mapping/files/mapping_model_file.hpp"
-#include "services/mapping/service/posture_message.hpp"
+#include "services/mapping/service/messages.hpp"
 
 namespace prehend::mapping {
 
@@ -50,26 +50,6 @@ v1::GraspType to_message(GraspType type) {
       break;
   }
   return v1::GRASP_NONE;
-}
-
-Expected<Detection> from_message(const v1::ObjectDetection& message) {
-  auto X_WO = convert::from_message(message.X_WO());
-  if (!X_WO) return fail("pose of a detection not usable");
-  return Detection{message.track(),
-                   message.name().to_string(),
-                   {convert::from_message(message.shape()), convert::from_message(message.size())},
-                   *X_WO,
-                   message.probability(),
-                   from_ns(message.stamp_ns()),
-                   Eigen::Matrix4d::Map(message.covariance().data())};
-}
-
-Expected<RobotState> from_message(const v1::HandState& message) {
-  auto X_WB = convert::from_message(message.X_WB());
-  if (!X_WB) return fail("pose of the robot not usable");
-  return RobotState{from_ns(message.stamp_ns()), convert::from_message(message.dof()),
-                    convert::from_message(message.velocity()),
-                    convert::from_message(message.torque()), *X_WB};
 }
 
 /// What the mapping is told: to the operator, «direct» leaves the placement alone as well.
@@ -156,14 +136,14 @@ class Service::Topics {
       return;
     }
     if (seen_.size() < max_tracks) seen_[message.track()] = shell_.now();
-    const auto taken = from_message(message).and_then(
+    const auto taken = detection_from_message(message).and_then(
         [&](const Detection& detection) { return mapping_.on_detection(detection); });
     if (!taken) shell_.status().drop(taken.error().what);
   }
 
   void on_state(const v1::HandState& message, const dds::SampleInfo& info) {
     if (info.gone || message.hand() != hand_name_) return;
-    const auto taken = from_message(message).and_then(
+    const auto taken = state_from_message(message).and_then(
         [&](const RobotState& state) { return mapping_.on_state(state); });
     if (!taken) shell_.status().drop(taken.error().what);
   }

@@ -74,6 +74,7 @@ Expected<void> Service::start() {
   };
   robot.where = [this] { return where(); };
   robot.hold = [this] { simulation_->hold(); };
+  robot.rests = [this] { return !simulation_->is_braking(); };
   robot.go = [this](const gate::Place& place, Time now) { go(place, now); };
   auto gate = robot::Gatekeeper::create(shell_, hand_, hand_name_, std::move(robot));
   if (!gate) return tl::unexpected(gate.error());
@@ -96,9 +97,8 @@ std::optional<gate::Place> Service::where() const {
   return gate::Place{simulation_->world().commanded_dof(), simulation_->world().commanded_base()};
 }
 
-/// As a command that answers no glove frame. The base comes to rest first.
+/// As a command that answers no glove frame.
 void Service::go(const gate::Place& place, Time now) {
-  if (simulation_->is_braking()) return;
   Command command = simulation_->command().value_or(Command{});
   command.stamp = now;
   command.origin = {};

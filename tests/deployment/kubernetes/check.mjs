@@ -2,6 +2,7 @@
 // validators (what is missing, what has a wrong value) and as a literal of the API's TypeScript type,
 // whose compiler also refuses fields that the API does not know. Then what we promise of every pod.
 // That the check can fail is checked too: a misspelt field must be refused.
+import { execFileSync } from "node:child_process";
 import { readdirSync, existsSync } from "node:fs";
 import assert from "node:assert/strict";
 import ts from "typescript";
@@ -117,6 +118,25 @@ function sites() {
   }
 }
 
+/** Every shard of the study has its pod, and a file that outlives it. */
+function shards() {
+  const list = objects(root, "study"), find = (kind) => list.find((o) => o.kind === kind);
+  const job = find("Job").spec, { SHARDS, OPTIONS } = find("ConfigMap").data;
+  assert.equal(job.completionMode, "Indexed");
+  assert.equal(`${job.completions}`, SHARDS, "another number of shards than of pods");
+  const [container] = job.template.spec.containers;
+  const run = (index) => execFileSync("sh", ["-c", `prehend() { echo "$@"; }; ${container.command[2].replace("exec ", "")}`],
+    { encoding: "utf8", env: { JOB_COMPLETION_INDEX: `${index}`, SHARDS, OPTIONS } }).trim();
+  const told = Array.from({ length: job.completions }, (_, index) => run(index));
+  told.forEach((words, index) => assert.ok(words.includes(`--shard ${index + 1}/${SHARDS} `), words));
+  assert.ok(told[0].endsWith(OPTIONS), told[0]);
+  const out = told[0].split(" ")[told[0].split(" ").indexOf("--out") + 1];
+  const kept = container.volumeMounts.find((mount) => mount.mountPath === out).name;
+  const claim = job.template.spec.volumes.find((one) => one.name === kept).persistentVolumeClaim.claimName;
+  const claimed = list.find((o) => o.kind === "PersistentVolumeClaim" && o.metadata.name === claim);
+  assert.deepEqual(claimed.spec.accessModes, ["ReadWriteMany"]);
+}
+
 let count = 0;
 for (const overlay of readdirSync(root)) {
   if (!existsSync(`${root}/${overlay}/kustomization.yaml`)) continue;
@@ -142,5 +162,6 @@ for (const overlay of readdirSync(root)) {
   assert.throws(() => shut(overlay, open), "pods without a policy pass");
 }
 sites();
+shards();
 assert.ok(count > 10, `only ${count} objects were found`);
 console.log(`${count} objects are as the API wants them`);

@@ -2,7 +2,7 @@
 // all modes and stay within the errors that are drawn, and the results do not depend on how the
 // work is divided. Everything is deterministic, so equality is exact; tolerances are those of the
 // errors' definitions.
-#include "services/mapping/tools/study/grasp_benchmark.hpp"
+#include "services/mapping/tools/benchmark/grasp_benchmark.hpp"
 
 #include <gtest/gtest.h>
 
@@ -38,7 +38,7 @@ Expected<std::vector<TrialResult>> run(const GraspBenchmarkOptions& options,
       loaded(load_mapping_model(PREHEND_TRAINED "/barrett.mapping", barrett()));
   static const auto catalogue =
       loaded(model::Catalogue::load(PREHEND_SOURCE "/common/models/objects/catalogue.toml"));
-  return run_grasp_benchmark({barrett(), model, grasps(), catalogue}, options, for_each, {});
+  return run_grasp_benchmark({barrett(), model, grasps(), catalogue}, options, for_each);
 }
 
 void in_order(std::size_t count, const std::function<void(std::size_t)>& work) {
@@ -87,7 +87,7 @@ TEST(RecordedTake, ReachesWithinTheErrorsThatAreDrawn) {
 
 TEST(GraspBenchmark, GivesAllModesTheSameTakesHoweverTheWorkIsDivided) {
   GraspBenchmarkOptions options;
-  options.trials = 2;
+  options.takes = first_takes(2);
   const auto results = run(options, in_order);
   ASSERT_TRUE(results) << results.error().message();
   ASSERT_EQ(results->size(), 4u);
@@ -117,7 +117,7 @@ TEST(GraspBenchmark, SaysWhenThereIsNothingToRepeat) {
   const std::vector<RobotGrasp> none;
   const auto model = loaded(load_mapping_model(PREHEND_TRAINED "/barrett.mapping", barrett()));
   const model::Catalogue catalogue;
-  const auto results = run_grasp_benchmark({barrett(), model, none, catalogue}, {}, in_order, {});
+  const auto results = run_grasp_benchmark({barrett(), model, none, catalogue}, {}, in_order);
   ASSERT_FALSE(results);
   EXPECT_EQ(results.error().where, "barrett");
 }

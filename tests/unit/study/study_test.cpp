@@ -126,7 +126,38 @@ TEST(Study, LeavesRealFingersOutWhereThereAreNone) {
   EXPECT_TRUE(Json::parse(answer.out).at("findings").empty());
 }
 
+// The machines that share a benchmark come to what one of them would, byte for byte, also when one
+// was broken off.
+TEST(Study, IsTheSameInShards) {
+  const auto folder = scratch();
+  const std::string asked =
+      "--only benchmark --hands barrett --modes direct --trials 3 --threads 2";
+  const auto shards = (folder / "shards").string();
+  const Answer one = run(asked + " --out " + (folder / "one").string());
+  ASSERT_EQ(one.code, 0);
+  ASSERT_EQ(run(asked + " --shard 2/2 --out " + shards).code, 0);
+  EXPECT_EQ(run("--progress " + shards).code, 1);
+  // A file of another seed is not gone on with.
+  EXPECT_EQ(run(asked + " --seed 2 --shard 2/2 --out " + shards).code, 3);
+  ASSERT_EQ(run(asked + " --shard 1/2 --out " + shards).code, 0);
+  const Answer progress = run("--json --progress " + shards);
+  EXPECT_EQ(progress.code, 0);
+  EXPECT_EQ(Json::parse(progress.out).at("shards").at(0).at("takes"), 4);
+  const std::string files = shards + "/shard-1-of-2.shard " + shards + "/shard-2-of-2.shard";
+  const Answer merged = run("--merge " + files + " --out " + (folder / "merged").string());
+  ASSERT_EQ(merged.code, 0);
+  EXPECT_EQ(merged.out, one.out);
+  for (const char* file : {"benchmark.csv", "report.html"})
+    EXPECT_EQ(text_of(folder / "merged" / file), text_of(folder / "one" / file)) << file;
+  std::filesystem::remove_all(folder);
+}
+
 TEST(Study, RefusesWrongUse) {
+  EXPECT_EQ(run("--shard 1/2 --out x").code, 2);
+  EXPECT_EQ(run("--only benchmark --shard 1/2").code, 2);
+  EXPECT_EQ(run("--only benchmark --shard 3/2 --out x").code, 2);
+  EXPECT_EQ(run("--merge /nowhere/a.shard").code, 3);
+
   EXPECT_EQ(run("--only 7.1").code, 2);
   EXPECT_EQ(run("--threads many").code, 2);
   EXPECT_EQ(run("--quick --only 6.2 --out /proc/nowhere").code, 3);

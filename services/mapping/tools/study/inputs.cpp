@@ -15,17 +15,17 @@ namespace {
 using learning::ScalingKind;
 using model::ShapeKind;
 
-constexpr double none = std::numeric_limits<double>::quiet_NaN();
-constexpr std::array tests{"new take", "left out"};
+constexpr double no_number = std::numeric_limits<double>::quiet_NaN();
+constexpr std::array tested_on{"new take", "left out"};
 
-std::string column(std::string_view variant, std::string_view test) {
+std::string variant_column(std::string_view variant, std::string_view test) {
   return fmt::format("{}: {}", variant, test);
 }
 
 std::vector<std::string> columns_of(std::span<const std::string> variants) {
   std::vector<std::string> columns;
   for (const std::string& variant : variants)
-    for (const char* test : tests) columns.push_back(column(variant, test));
+    for (const char* test : tested_on) columns.push_back(variant_column(variant, test));
   return columns;
 }
 
@@ -54,17 +54,18 @@ Eigen::Vector2d errors(const Parts& parts, const Repetition& repetition, const s
     sum += now;
     count.array() += 1;
   }
-  return (count.array() > 0).select(sum.array() / count.array(), none);
+  return (count.array() > 0).select(sum.array() / count.array(), no_number);
 }
 
-Chart chart_of(const Table& table, std::span<const std::string> variants) {
+Chart chart_of_variants(const Table& table, std::span<const std::string> variants) {
   Chart chart{"", "mean error of a grasp, rad²", {}, false, true, {}};
   chart.names.assign(variants.begin(), variants.end());
-  for (const char* test : tests) {
+  for (const char* test : tested_on) {
     ChartSeries series{test, {}};
     for (std::size_t i = 0; i < variants.size(); ++i)
       series.points.push_back(
-          {static_cast<double>(i), statistics::geometric_mean(table[column(variants[i], test)])});
+          {static_cast<double>(i),
+           statistics::geometric_mean(table[variant_column(variants[i], test)])});
     chart.series.push_back(std::move(series));
   }
   return chart;
@@ -74,16 +75,16 @@ Chart chart_of(const Table& table, std::span<const std::string> variants) {
 Finding no_worse(const Table& table, std::span<const std::string> variants, std::string figure,
                  std::string claim, const std::string& judged, const std::string& best) {
   Finding finding{std::move(figure), std::move(claim), "", Reproduction::undecided, ""};
-  for (const char* test : tests) {
+  for (const char* test : tested_on) {
     finding.measured += fmt::format("{}{}: ", finding.measured.empty() ? "" : "; ", test);
     for (std::size_t i = 0; i < variants.size(); ++i)
-      finding.measured +=
-          fmt::format("{}{} {}", i > 0 ? ", " : "", variants[i],
-                      to_text(statistics::geometric_mean(table[column(variants[i], test)])));
+      finding.measured += fmt::format(
+          "{}{} {}", i > 0 ? ", " : "", variants[i],
+          to_text(statistics::geometric_mean(table[variant_column(variants[i], test)])));
   }
   finding.measured += " rad²";
-  const statistics::Interval ratio =
-      statistics::paired_ratio(table[column(judged, tests[0])], table[column(best, tests[0])]);
+  const statistics::Interval ratio = statistics::paired_ratio(
+      table[variant_column(judged, tested_on[0])], table[variant_column(best, tested_on[0])]);
   finding.verdict =
       above_one({1.05 / ratio.mean, 1.05 / ratio.high, 1.05 / ratio.low, ratio.count}, 1);
   finding.reason = fmt::format(
@@ -105,7 +106,7 @@ constexpr std::array scaling_variants{
 const std::vector<std::string> size_names{"nothing", "one number", "all dimensions",
                                           "as the hand meets it"};
 
-Eigen::VectorXd told(std::size_t variant, const RobotGrasp& grasp) {
+Eigen::VectorXd told_size(std::size_t variant, const RobotGrasp& grasp) {
   constexpr std::array inputs{SizeInput::characteristic, SizeInput::dimensions, SizeInput::seen};
   if (variant == 0) return Eigen::VectorXd(0);
   return size_numbers(inputs[variant - 1], grasp.shape, grasp.X_OG);
@@ -138,7 +139,7 @@ Experiment scalings() {
                                      "One range for the whole matrix loses nothing against a range "
                                      "for each feature",
                                      scaling_names[1], scaling_names[0]);
-            return Outcome{{meant}, chart_of(table, scaling_names)};
+            return Outcome{{meant}, chart_of_variants(table, scaling_names)};
           }};
 }
 
@@ -158,7 +159,7 @@ Experiment size_inputs() {
               options.scaling = ScalingKind::each_feature;
               row.segment<2>(static_cast<Eigen::Index>(2 * i)) =
                   errors(parts, repetition, "dlr", ShapeKind::box, options,
-                         [i](const RobotGrasp& grasp) { return told(i, grasp); });
+                         [i](const RobotGrasp& grasp) { return told_size(i, grasp); });
             }
             return row;
           },
@@ -166,7 +167,7 @@ Experiment size_inputs() {
             Finding one = no_worse(table, size_names, "5.19",
                                    "One neuron for the size is enough: all dimensions do no better",
                                    size_names[1], size_names[2]);
-            return Outcome{{one}, chart_of(table, size_names)};
+            return Outcome{{one}, chart_of_variants(table, size_names)};
           }};
 }
 

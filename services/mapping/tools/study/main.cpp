@@ -6,7 +6,6 @@
 #include <array>
 #include <chrono>
 #include <iostream>
-#include <mutex>
 #include <nlohmann/json.hpp>
 #include <set>
 
@@ -14,6 +13,7 @@
 #include "common/base/progress.hpp"
 #include "common/base/workers.hpp"
 #include "common/tool/program.hpp"
+#include "services/mapping/tools/benchmark/summary_json.hpp"
 #include "services/mapping/tools/study/report.hpp"
 
 namespace {
@@ -31,47 +31,20 @@ Json to_json(const Finding& finding) {
           {"reason", finding.reason}};
 }
 
-Json to_json(const statistics::Interval& interval) {
-  return {interval.low, interval.high};
-}
-
-Json to_json(const ModeSummary& one) {
-  Json made{{"hand", one.hand},
-            {"mode", to_string(one.mode.mode)},
-            {"placement", one.mode.placement},
-            {"trials", one.held.count},
-            {"held_rate", one.held.mean},
-            {"held_ci95", to_json(one.held)},
-            {"demonstrated_trials", one.held_of_demonstrated.count},
-            {"demonstrated_held_rate", nullptr},
-            {"demonstrated_held_ci95", to_json(one.held_of_demonstrated)},
-            {"above_direct", nullptr},
-            {"above_direct_ci95", nullptr},
-            {"joint_error", one.joint_error.mean},
-            {"fingertip_error_m", one.fingertip_error.mean},
-            {"epsilon", one.epsilon.mean},
-            {"penetration_m", one.penetration.mean}};
-  if (one.held_of_demonstrated.count > 0)
-    made["demonstrated_held_rate"] = one.held_of_demonstrated.mean;
-  if (one.above_direct.count > 1) {
-    made["above_direct"] = one.above_direct.mean;
-    made["above_direct_ci95"] = to_json(one.above_direct);
-  }
-  return made;
-}
-
 constexpr const char* benchmark_name = "benchmark";
 
 std::set<std::string> mode_words() {
   std::set<std::string> words;
-  for (const auto& row : benchmark_modes) words.emplace(row.name);
+  for (const auto& row : benchmark_modes)
+    if (row.value != BenchmarkMode::external) words.emplace(row.name);
   return words;
 }
 
 struct Arguments {
   StudyOptions options;
   std::vector<std::string> only, modes;
-  std::string out, recordings;
+  std::string out, recordings, shard, progress;
+  std::vector<std::string> merge;
   unsigned threads = 0;
   bool json = false;
 
@@ -127,6 +100,19 @@ void add_benchmark(CLI::App& app, Arguments& arguments) {
       "grasp benchmark: hands at rest get ready only when they close, not while they reach");
 }
 
+void add_shards(CLI::App& app, Arguments& arguments) {
+  auto* shard = app.add_option("--shard", arguments.shard,
+                               "I/N: only this part of the grasp benchmark, into a file in --out;\n"
+                               "one that was broken off goes on where its file ends");
+  auto* merge = app.add_option("--merge", arguments.merge,
+                               "files of all shards: what one run would have given")
+                    ->excludes(shard);
+  app.add_option("--progress", arguments.progress,
+                 "a folder of shards: how far each is. Exit code 0: all are done, 1: not yet")
+      ->excludes(shard)
+      ->excludes(merge);
+}
+
 struct Outcome {
   std::vector<Studied> studied;
   std::vector<TrialResult> trials;
@@ -151,18 +137,17 @@ Expected<Parts> load_asked(const Arguments& arguments, std::vector<Experiment>& 
   return parts;
 }
 
+grasping::ForEach shared_by_threads(const Arguments& arguments) {
+  return [&arguments](std::size_t count, const auto& work) {
+    share_work(count, arguments.threads, work, [](std::size_t) {});
+  };
+}
+
 Expected<std::vector<TrialResult>> grasp(const Parts& parts, const Arguments& arguments) {
   prehend::Progress progress("grasping");
-  std::mutex mutex;
-  return benchmark(
-      parts, arguments.options,
-      [&](std::size_t count, const auto& work) {
-        share_work(count, arguments.threads, work, [](std::size_t) {});
-      },
-      [&](double share) {
-        const std::lock_guard lock(mutex);
-        progress.show(static_cast<std::size_t>(100 * share), 100);
-      });
+  return run_benchmark(
+      benchmark_of(parts, arguments.options), shared_by_threads(arguments),
+      [&](double share) { progress.show(static_cast<std::size_t>(100 * share), 100); });
 }
 
 Expected<Outcome> repeat(const Arguments& arguments) {
@@ -187,6 +172,72 @@ Expected<Outcome> repeat(const Arguments& arguments) {
     if (auto ok = write_report(arguments.out, made.studied, made.trials, arguments.options); !ok)
       return tl::unexpected(ok.error());
   made.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  return made;
+}
+
+int run_shard(const Arguments& arguments) {
+  if (arguments.only != std::vector<std::string>{benchmark_name})
+    return tool::complain({"is of the benchmark alone", "--shard", "give --only benchmark"},
+                          exit_wrong_use);
+  if (arguments.out.empty())
+    return tool::complain({"needs a folder for its file", "--shard", "give --out"}, exit_wrong_use);
+  const auto number = parse_shard(arguments.shard);
+  if (!number) return tool::complain(number.error());
+  const auto parts = load_parts(arguments.options.hands, true);
+  if (!parts) return tool::complain(parts.error(), exit_broken);
+  const auto file = shard_file(arguments.out, *number);
+  prehend::Progress progress("grasping");
+  const auto shard = mapping::run_shard(
+      benchmark_of(*parts, arguments.options), *number, file, shared_by_threads(arguments),
+      [&](double share) { progress.show(static_cast<std::size_t>(100 * share), 100); });
+  if (!shard) return tool::complain(shard.error(), exit_broken);
+  if (arguments.json)
+    std::cout << Json{{"shard", to_string(*number)},
+                      {"done", shard->done.size()},
+                      {"takes", shard->pieces},
+                      {"file", file.string()}}
+                     .dump(2)
+              << '\n';
+  log::info("shard {}: {} takes, {}", to_string(*number), shard->done.size(), file.string());
+  return exit_done;
+}
+
+int show_progress(const Arguments& arguments) {
+  const auto shards = shard_progress(arguments.progress);
+  if (!shards) return tool::complain(shards.error(), exit_broken);
+  std::size_t complete = 0;
+  Json document = Json::array();
+  for (const ShardProgress& one : *shards) {
+    complete += one.is_complete();
+    document.push_back({{"shard", to_string(one.number)}, {"done", one.done}, {"takes", nullptr}});
+    if (one.begun) document.back()["takes"] = one.pieces;
+    if (!arguments.json)
+      std::cout << fmt::format("{:>9}  {}\n", to_string(one.number),
+                               one.begun ? fmt::format("{} of {} takes", one.done, one.pieces)
+                                         : std::string("not begun"));
+  }
+  if (arguments.json)
+    std::cout << Json{{"shards", document}, {"complete", complete == shards->size()}}.dump(2)
+              << '\n';
+  else
+    std::cout << fmt::format("{} of {} shards are done\n", complete, shards->size());
+  return complete == shards->size() ? exit_done : exit_no;
+}
+
+/// What the shards came to. The report says of the benchmark what the shards do.
+Expected<Outcome> merge(Arguments& arguments) {
+  auto merged = merge_shards(
+      std::vector<std::filesystem::path>(arguments.merge.begin(), arguments.merge.end()));
+  if (!merged) return tl::unexpected(merged.error());
+  for (const auto& [name, value] : merged->settings) {
+    if (name == "seed") arguments.options.seed = std::strtoull(value.c_str(), nullptr, 10);
+    if (name == "quick") arguments.options.quick = value == "yes";
+  }
+  Outcome made{{}, std::move(merged->trials), {}, 0};
+  made.summaries = summarise(made.trials);
+  if (!arguments.out.empty())
+    if (auto ok = write_report(arguments.out, {}, made.trials, arguments.options); !ok)
+      return tl::unexpected(ok.error());
   return made;
 }
 
@@ -217,12 +268,15 @@ int main(int argc, char** argv) {
       "or cannot be written."};
   add_study(app, arguments);
   add_benchmark(app, arguments);
+  add_shards(app, arguments);
   if (const auto code = tool::parse(app, argc, argv)) return *code;
   for (const auto& [mode, name, help] : benchmark_modes)
     if (std::find(arguments.modes.begin(), arguments.modes.end(), name) != arguments.modes.end())
       arguments.options.modes.push_back(mode);
 
-  const auto outcome = repeat(arguments);
+  if (!arguments.progress.empty()) return show_progress(arguments);
+  if (!arguments.shard.empty()) return run_shard(arguments);
+  const auto outcome = arguments.merge.empty() ? repeat(arguments) : merge(arguments);
   if (!outcome) return tool::complain(outcome.error(), exit_broken);
   if (arguments.json) {
     std::cout << to_json(*outcome, arguments.options).dump(2) << '\n';

@@ -1,7 +1,6 @@
 #include "services/mapping/tools/study/report.hpp"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <fstream>
 #include <system_error>
@@ -156,14 +155,7 @@ std::string to_markdown(const std::vector<Studied>& studied,
                           finding.measured, to_string(finding.verdict), finding.reason);
   if (summaries.empty()) return text;
   if (!studied.empty()) text += "\n";
-  const auto rows = to_rows(summaries);
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    text += fmt::format("| {} |\n", fmt::join(rows[i], " | "));
-    if (i > 0) continue;
-    for (std::size_t k = 0; k < rows[0].size(); ++k) text += "|---";
-    text += "|\n";
-  }
-  return text;
+  return text + to_table(summaries);
 }
 
 }  // namespace prehend::mapping

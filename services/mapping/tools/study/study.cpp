@@ -31,44 +31,29 @@ std::vector<Studied> study(const Parts& parts, const std::vector<Experiment>& ex
   return studied;
 }
 
-Expected<std::vector<TrialResult>> benchmark(const Parts& parts, const StudyOptions& options,
-                                             const grasping::ForEach& for_each,
-                                             const std::function<void(double)>& progress) {
-  std::vector<BenchmarkedMode> modes{
+BenchmarkRequest benchmark_of(const Parts& parts, const StudyOptions& options) {
+  BenchmarkRequest request;
+  request.modes = {
       {BenchmarkMode::direct}, {BenchmarkMode::intelligent}, {BenchmarkMode::intelligent, true}};
   if (!options.modes.empty()) {
-    modes.clear();
-    for (const auto mode : options.modes) modes.insert(modes.end(), {{mode}, {mode, true}});
+    request.modes.clear();
+    for (const auto mode : options.modes)
+      request.modes.insert(request.modes.end(), {{mode}, {mode, true}});
   } else if (!options.quick) {
-    modes.push_back({BenchmarkMode::direct, true});
+    request.modes.push_back({BenchmarkMode::direct, true});
     for (const auto mode :
          {BenchmarkMode::cartesian, BenchmarkMode::combined, BenchmarkMode::retargeting})
-      modes.insert(modes.end(), {{mode}, {mode, true}});
+      request.modes.insert(request.modes.end(), {{mode}, {mode, true}});
   }
-
-  std::vector<TrialResult> all;
-  double done = 0;
-  const double pieces = static_cast<double>(options.hands.size() * modes.size());
   for (const std::string& name : options.hands) {
     const StudiedHand& studied = parts.hand(name);
-    const BenchmarkedHand hand{studied.hand, *studied.model, studied.grasps, parts.catalogue};
-    for (const BenchmarkedMode& mode : modes) {
-      GraspBenchmarkOptions asked;
-      asked.modes = {mode};
-      asked.trials = options.trials > 0 ? options.trials : options.quick ? 24 : 270;
-      asked.seed += options.seed;
-      asked.take = options.take;
-      auto trials = run_grasp_benchmark(hand, asked, for_each,
-                                        [&](double share) { progress((done + share) / pieces); });
-      progress(++done / pieces);
-      if (trials)
-        all.insert(all.end(), trials->begin(), trials->end());
-      else if (mode.mode == BenchmarkMode::direct || mode.mode == BenchmarkMode::intelligent)
-        return trials;
-      // Other modes are not for every hand.
-    }
+    request.hands.push_back({studied.hand, *studied.model, studied.grasps, parts.catalogue});
   }
-  return all;
+  request.takes = options.trials > 0 ? options.trials : options.quick ? 24 : 270;
+  request.seed = options.seed;
+  request.quick = options.quick;
+  request.take = options.take;
+  return request;
 }
 
 std::vector<std::string> hands_of(const std::vector<Experiment>& experiments) {

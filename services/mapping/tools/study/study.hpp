@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "common/grasping/planner.hpp"
+#include "services/mapping/tools/benchmark/sharded_benchmark.hpp"
 #include "services/mapping/tools/study/experiment.hpp"
-#include "services/mapping/tools/study/grasp_benchmark.hpp"
 
 namespace prehend::mapping {
 
@@ -32,12 +32,10 @@ struct Studied {
 std::vector<Studied> study(const Parts& parts, const std::vector<Experiment>& experiments,
                            const StudyOptions& options, const grasping::ForEach& for_each);
 
-/// The grasp benchmark: quick, direct mapping without and intelligent mapping with
-/// and without placement in 24 takes each; full, every mode that the hand allows, with and without,
-/// in 270 takes.
-Expected<std::vector<TrialResult>> benchmark(const Parts& parts, const StudyOptions& options,
-                                             const grasping::ForEach& for_each,
-                                             const std::function<void(double)>& progress);
+/// The grasp benchmark that is asked for: quick, direct mapping without and intelligent mapping
+/// with and without placement in 24 takes each; full, every mode that the hand allows, with and
+/// without, in 270 takes. The parts must outlive it.
+BenchmarkRequest benchmark_of(const Parts& parts, const StudyOptions& options);
 
 /// The hands that these need.
 std::vector<std::string> hands_of(const std::vector<Experiment>& experiments);

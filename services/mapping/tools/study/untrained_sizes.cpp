@@ -13,12 +13,12 @@ namespace prehend::mapping {
 
 namespace {
 
-constexpr double none = std::numeric_limits<double>::quiet_NaN();
+constexpr double not_tried = std::numeric_limits<double>::quiet_NaN();
 constexpr std::array places{"between", "outside"};
 /// Without the object: direct and intelligent mapping; and intelligent mapping trained with it.
-constexpr std::array answerers{"direct", "intelligent", "intelligent, trained with it"};
+constexpr std::array size_answerers{"direct", "intelligent", "intelligent, trained with it"};
 
-std::string column(std::string_view hand, std::string_view place, std::string_view answerer) {
+std::string place_column(std::string_view hand, std::string_view place, std::string_view answerer) {
   return fmt::format("{} {}: {}", hand, place, answerer);
 }
 
@@ -35,8 +35,8 @@ bool lies_between(const std::vector<RobotGrasp>& others, const model::Shape& sha
 }
 
 Eigen::VectorXd untrained_size_row(const Parts& parts, const Repetition& repetition) {
-  Eigen::VectorXd numbers =
-      Eigen::VectorXd::Constant(thesis_hands.size() * places.size() * answerers.size(), none);
+  Eigen::VectorXd numbers = Eigen::VectorXd::Constant(
+      thesis_hands.size() * places.size() * size_answerers.size(), not_tried);
   const std::size_t h = repetition.index % thesis_hands.size();
   const StudiedHand& hand = parts.hand(thesis_hands[h]);
   std::set<std::string> names;
@@ -73,7 +73,7 @@ Eigen::VectorXd untrained_size_row(const Parts& parts, const Repetition& repetit
   const Comparison with = compare(*hand.model, tested, shape.kind, true);
   if (without.pairs == 0) return numbers;
   const std::size_t place = lies_between(others, shape) ? 0 : 1;
-  const auto first = static_cast<Eigen::Index>((h * places.size() + place) * answerers.size());
+  const auto first = static_cast<Eigen::Index>((h * places.size() + place) * size_answerers.size());
   numbers.segment<3>(first) << without.direct, without.intelligent, with.intelligent;
   return numbers;
 }
@@ -81,7 +81,7 @@ Eigen::VectorXd untrained_size_row(const Parts& parts, const Repetition& repetit
 Outcome judge_untrained_size(const Table& table) {
   Outcome outcome;
   outcome.chart = {"", "error of a grasp, rad²", {}, false, true, {}};
-  for (const char* answerer : answerers) outcome.chart.series.push_back({answerer, {}});
+  for (const char* answerer : size_answerers) outcome.chart.series.push_back({answerer, {}});
   for (const char* place : places) {
     Finding finding{"sizes",
                     fmt::format("A size {} the trained ones: knowing it errs less than not knowing "
@@ -90,9 +90,9 @@ Outcome judge_untrained_size(const Table& table) {
                     "", Reproduction::undecided, ""};
     std::vector<Reproduction> verdicts;
     for (const char* hand : thesis_hands) {
-      std::array<std::vector<double>, answerers.size()> errors;
-      for (std::size_t a = 0; a < answerers.size(); ++a) {
-        errors[a] = table[column(hand, place, answerers[a])];
+      std::array<std::vector<double>, size_answerers.size()> errors;
+      for (std::size_t a = 0; a < size_answerers.size(); ++a) {
+        errors[a] = table[place_column(hand, place, size_answerers[a])];
         outcome.chart.series[a].points.push_back({static_cast<double>(outcome.chart.names.size()),
                                                   statistics::geometric_mean(errors[a])});
       }
@@ -131,8 +131,8 @@ Experiment untrained_sizes() {
   experiment.trained = true;
   for (const char* hand : thesis_hands)
     for (const char* place : places)
-      for (const char* answerer : answerers)
-        experiment.columns.push_back(column(hand, place, answerer));
+      for (const char* answerer : size_answerers)
+        experiment.columns.push_back(place_column(hand, place, answerer));
   return experiment;
 }
 

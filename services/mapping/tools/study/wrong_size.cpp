@@ -16,9 +16,9 @@ struct WrongSize {
   int hidden;  // the choice of [Thesis, 5.2.2] for the hand
 };
 
-constexpr std::array told{"right size", "told the smallest"};
+constexpr std::array told_sizes{"right size", "told the smallest"};
 
-std::string column(GraspType type, std::string_view size) {
+std::string size_column(GraspType type, std::string_view size) {
   return fmt::format("{}: {}", to_string(type), size);
 }
 
@@ -32,7 +32,7 @@ double fingertip_error(const model::HandModel& hand, const Eigen::VectorXd& dof,
 }
 
 Eigen::VectorXd row(const WrongSize& what, const Parts& parts, const Repetition& repetition) {
-  Eigen::VectorXd errors = Eigen::VectorXd::Constant(grasp_types.size() * told.size(),
+  Eigen::VectorXd errors = Eigen::VectorXd::Constant(grasp_types.size() * told_sizes.size(),
                                                      std::numeric_limits<double>::quiet_NaN());
   const StudiedHand& hand = parts.hand(what.hand);
   for (std::size_t t = 0; t < grasp_types.size(); ++t) {
@@ -51,10 +51,10 @@ Eigen::VectorXd row(const WrongSize& what, const Parts& parts, const Repetition&
       if (size(i) > size(largest)) largest = i;
       if (size(i) < size(smallest)) smallest = i;
     }
-    for (std::size_t k = 0; k < told.size(); ++k) {
+    for (std::size_t k = 0; k < told_sizes.size(); ++k) {
       const auto asked =
           with_size(shown->again[largest], thesis_size(*task.trained[k == 0 ? largest : smallest]));
-      errors[static_cast<Eigen::Index>(t * told.size() + k)] =
+      errors[static_cast<Eigen::Index>(t * told_sizes.size() + k)] =
           fingertip_error(hand.hand, made->answer(asked.inputs.col(0)), asked.outputs.col(0));
     }
   }
@@ -62,7 +62,7 @@ Eigen::VectorXd row(const WrongSize& what, const Parts& parts, const Repetition&
 }
 
 Outcome judge(const WrongSize& what, const std::string& claim, const Table& table) {
-  const auto right = over_types(table, told[0]), wrong = over_types(table, told[1]);
+  const auto right = over_types(table, told_sizes[0]), wrong = over_types(table, told_sizes[1]);
   const statistics::Interval ratio = statistics::paired_ratio(wrong, right);
   const Finding finding{
       what.figure, claim,
@@ -74,11 +74,12 @@ Outcome judge(const WrongSize& what, const std::string& claim, const Table& tabl
                   ratio.count)};
   Chart chart{"", "fingertips off by, mm", {}, false, false, {}};
   for (const GraspType type : grasp_types) chart.names.emplace_back(to_string(type));
-  for (const char* size : told) {
+  for (const char* size : told_sizes) {
     ChartSeries series{size, {}};
     for (std::size_t t = 0; t < grasp_types.size(); ++t)
-      series.points.push_back({static_cast<double>(t),
-                               statistics::geometric_mean(table[column(grasp_types[t], size)])});
+      series.points.push_back(
+          {static_cast<double>(t),
+           statistics::geometric_mean(table[size_column(grasp_types[t], size)])});
     chart.series.push_back(std::move(series));
   }
   return {{finding}, chart};
@@ -87,7 +88,7 @@ Outcome judge(const WrongSize& what, const std::string& claim, const Table& tabl
 Experiment wrong_size(const WrongSize& what, std::string title, const std::string& claim) {
   std::vector<std::string> columns;
   for (const GraspType type : grasp_types)
-    for (const char* size : told) columns.push_back(column(type, size));
+    for (const char* size : told_sizes) columns.push_back(size_column(type, size));
   return {
       what.figure,
       std::move(title),

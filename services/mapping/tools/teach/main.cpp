@@ -12,7 +12,7 @@
 #include "common/dds/topics.hpp"
 #include "common/service/arguments.hpp"
 #include "common/service/shell.hpp"
-#include "services/mapping/service/posture_message.hpp"
+#include "services/mapping/service/messages.hpp"
 #include "services/mapping/tools/teach/teach_recording.hpp"
 #include "services/mapping/tools/training/teach.hpp"
 

@@ -7,7 +7,7 @@
 #include "common/dds/raw.hpp"
 #include "common/dds/topics.hpp"
 #include "common/recording/mcap/reader.hpp"
-#include "services/mapping/service/posture_message.hpp"
+#include "services/mapping/service/messages.hpp"
 
 namespace prehend::mapping {
 

@@ -271,8 +271,8 @@ std::vector<RobotGrasp> close_on_catalogue(const model::HandModel& hand, const S
   return grasps;
 }
 
-Expected<void> save_robot_grasps(const std::filesystem::path& file, const model::HandModel& hand,
-                                 const std::vector<RobotGrasp>& grasps) {
+std::string encode_robot_grasps(const model::HandModel& hand,
+                                const std::vector<RobotGrasp>& grasps) {
   messages::RobotGrasps message;
   message.set_hand(hand.name());
   for (const model::HandDof& dof : hand.dofs()) message.add_dof_names(dof.name);
@@ -292,29 +292,41 @@ Expected<void> save_robot_grasps(const std::filesystem::path& file, const model:
     to.mutable_place()->Add(grasp.p_GR.begin(), grasp.p_GR.end());
     to.set_held(grasp.held);
   }
-  return proto::write_sealed(file, kind, message.SerializeAsString());
+  return message.SerializeAsString();
 }
 
-Expected<std::vector<RobotGrasp>> load_robot_grasps(const std::filesystem::path& file,
-                                                    const model::HandModel& hand) {
-  const std::string hint = "make them again: prehend train --hand " + hand.name();
-  const auto bytes = proto::read_sealed(file, kind);
-  if (!bytes) return fail(bytes.error().what, file.string(), hint);
+Expected<std::vector<RobotGrasp>> decode_robot_grasps(const std::string& bytes,
+                                                      const model::HandModel& hand) {
   messages::RobotGrasps message;
-  if (!message.ParseFromString(*bytes)) return fail("holds no grasps", file.string(), hint);
+  if (!message.ParseFromString(bytes)) return fail("holds no grasps");
   bool same = message.dof_names_size() == static_cast<int>(hand.dofs().size());
   for (int i = 0; same && i < message.dof_names_size(); ++i)
     same = message.dof_names(i) == hand.dofs()[static_cast<std::size_t>(i)].name;
   if (message.hand() != hand.name() || !same)
-    return fail(
-        fmt::format("holds grasps of the hand «{}», not of this «{}»", message.hand(), hand.name()),
-        file.string(), hint);
+    return fail(fmt::format("holds grasps of the hand «{}», not of this «{}»", message.hand(),
+                            hand.name()));
   std::vector<RobotGrasp> grasps;
   for (const messages::RobotGrasp& from : message.grasps()) {
     auto grasp = read(from, hand);
-    if (!grasp) return fail(grasp.error().what, file.string(), hint);
+    if (!grasp) return tl::unexpected(grasp.error());
     grasps.push_back(std::move(*grasp));
   }
+  return grasps;
+}
+
+Expected<void> save_robot_grasps(const std::filesystem::path& file, const model::HandModel& hand,
+                                 const std::vector<RobotGrasp>& grasps) {
+  return proto::write_sealed(file, kind, encode_robot_grasps(hand, grasps));
+}
+
+Expected<std::vector<RobotGrasp>> load_robot_grasps(const std::filesystem::path& file,
+                                                    const model::HandModel& hand) {
+  auto grasps = proto::read_sealed(file, kind).and_then([&](const std::string& bytes) {
+    return decode_robot_grasps(bytes, hand);
+  });
+  if (!grasps)
+    return fail(grasps.error().what, file.string(),
+                "make them again: prehend train --hand " + hand.name());
   return grasps;
 }
 

@@ -66,6 +66,11 @@ std::vector<RobotGrasp> close_on_catalogue(const model::HandModel& hand, const S
                                            const grasping::ForEach& for_each,
                                            const std::function<void(const Error&)>& report);
 
+/// As bytes within a file. Decoding refuses what was made for another hand.
+std::string encode_robot_grasps(const model::HandModel& hand,
+                                const std::vector<RobotGrasp>& grasps);
+Expected<std::vector<RobotGrasp>> decode_robot_grasps(const std::string& bytes,
+                                                      const model::HandModel& hand);
 /// As a sealed file of kind «robot-grasps», so that nobody needs to close the hand again. Loading
 /// refuses what is damaged or was made for another hand.
 Expected<void> save_robot_grasps(const std::filesystem::path& file, const model::HandModel& hand,

@@ -9,5 +9,7 @@ int main(int argc, char** argv) {
   add_export(program);
   add_picture(program);
   add_table(program);
+  add_taxonomy(program);
+  add_classify(program);
   return program.run(argc, argv);
 }

@@ -9,5 +9,7 @@ void add_plan(tool::Program& program);
 void add_export(tool::Program& program);
 void add_picture(tool::Program& program);
 void add_table(tool::Program& program);
+void add_taxonomy(tool::Program& program);
+void add_classify(tool::Program& program);
 
 }  // namespace prehend::simulation

@@ -10,6 +10,7 @@
 #include "common/grasping/candidates.hpp"
 #include "services/simulation/tools/hand/commands.hpp"
 #include "services/simulation/tools/hand/fit.hpp"
+#include "services/simulation/tools/hand_import/finding_report.hpp"
 #include "services/simulation/tools/hand_import/make_hand.hpp"
 #include "services/simulation/tools/planning/planning_task.hpp"
 

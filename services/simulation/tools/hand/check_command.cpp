@@ -4,9 +4,9 @@
 #include <iostream>
 #include <memory>
 
-#include "common/base/file_text.hpp"
 #include "common/base/log.hpp"
 #include "services/simulation/tools/hand/commands.hpp"
+#include "services/simulation/tools/hand_import/finding_report.hpp"
 #include "services/simulation/tools/hand_import/make_hand.hpp"
 
 namespace prehend::simulation {
@@ -47,31 +47,6 @@ int run_check(const std::string& file, bool json) {
 }
 
 }  // namespace
-
-Expected<Robot> read_robot_file(const std::filesystem::path& file) {
-  const auto text = read_file(file);
-  if (!text) return tl::unexpected(text.error());
-  auto robot = read_robot(*text);
-  if (!robot)
-    robot.error().where =
-        file.string() + (robot.error().where.empty() ? "" : ": " + robot.error().where);
-  return robot;
-}
-
-nlohmann::ordered_json to_json(const UrdfFinding& finding) {
-  return {{"severity", finding.severity == Severity::error ? "error" : "warning"},
-          {"code", finding.code},
-          {"element", finding.element},
-          {"line", finding.line},
-          {"what", finding.what},
-          {"mend", finding.repair}};
-}
-
-void print(const UrdfFinding& finding) {
-  const std::string place = finding.line > 0 ? fmt::format("line {}, ", finding.line) : "";
-  fmt::print("{}: {}{}: {} [{}]\n  {}\n", finding.severity == Severity::error ? "error" : "warning",
-             place, finding.element, finding.what, finding.code, finding.repair);
-}
 
 void add_check(tool::Program& program) {
   auto file = std::make_shared<std::string>();

@@ -1,22 +1,11 @@
 #pragma once
 
-#include <filesystem>
-#include <nlohmann/json.hpp>
-
 #include "common/tool/program.hpp"
-#include "services/simulation/tools/hand_import/finding.hpp"
-#include "services/simulation/tools/hand_import/robot.hpp"
 
 namespace prehend::simulation {
 
 /// Each adds its subcommand, which answers with the exit code.
 void add_check(tool::Program& program);
 void add_add(tool::Program& program);
-
-/// The file's bytes as a robot. Errors name the file.
-Expected<Robot> read_robot_file(const std::filesystem::path& file);
-
-nlohmann::ordered_json to_json(const UrdfFinding& finding);
-void print(const UrdfFinding& finding);  // on standard output, two lines
 
 }  // namespace prehend::simulation

@@ -16,15 +16,13 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double max_link = 0.6;      // m: a finger's link or a palm is shorter
-constexpr double heaviest_link = 20;  // kg
-constexpr double deep = 0.003;        // m, overlap of links at rest
+constexpr double deep = 0.003;  // m, overlap of links at rest
 constexpr std::size_t max_links = 256;
 
 class Checker {
  public:
-  Checker(const Robot& robot, const MeshReader& meshes)
-      : robot_(robot), meshes_(meshes), tree_(robot), findings_(robot.findings) {}
+  Checker(const Robot& robot, const MeshReader& meshes, const RobotKind& kind)
+      : robot_(robot), meshes_(meshes), kind_(kind), tree_(robot), findings_(robot.findings) {}
 
   std::vector<UrdfFinding> run() {
     for (const RobotLink& link : robot_.links) check_link(link);
@@ -88,7 +86,7 @@ class Checker {
   }
 
   void check_size(const Vector3d& half, const Pose& X_LS, const std::string& name, int line) {
-    if (half.maxCoeff() > 0.5 * max_link || X_LS.translation().norm() > max_link)
+    if (half.maxCoeff() > 0.5 * kind_.max_link || X_LS.translation().norm() > kind_.max_link)
       error("units", name, line,
             fmt::format("a shape of {:.3g} m, {:.3g} m from its link", 2 * half.maxCoeff(),
                         X_LS.translation().norm()),
@@ -102,7 +100,7 @@ class Checker {
             "give its mass in kg, or leave <inertial> out to have it estimated");
       return;
     }
-    if (mass > heaviest_link)
+    if (mass > kind_.max_mass)
       error("units", name, line, fmt::format("weighs {:.3g} kg", mass),
             "masses are in kg; this looks like grams");
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(inertial.inertia_I,
@@ -114,7 +112,7 @@ class Checker {
               fmt::format("no body has the principal moments {:.3g}, {:.3g}, {:.3g} kg m²",
                           moments[0], moments[1], moments[2]),
               "`add` puts those of its shapes in their place");
-    } else if (std::sqrt(moments[2] / mass) > max_link) {
+    } else if (std::sqrt(moments[2] / mass) > kind_.max_link) {
       warning("impossible-inertia", name, line,
               fmt::format("moments of {:.3g} kg m² need a body of {:.2g} m", moments[2],
                           2 * std::sqrt(moments[2] / mass)),
@@ -134,7 +132,7 @@ class Checker {
       if (!link.empty() && !robot_.find_link(link))
         error("missing-link", name, joint.line, fmt::format("there is no link {}", link),
               "spell it as its <link>");
-    if (joint.X_PJ.translation().norm() > max_link)
+    if (joint.X_PJ.translation().norm() > kind_.max_link)
       error("units", name, joint.line,
             fmt::format("stands {:.3g} m from its parent", joint.X_PJ.translation().norm()),
             "URDF is in metres; these look like millimetres");
@@ -155,7 +153,7 @@ class Checker {
       error("no-limits", name, joint.line,
             fmt::format("may move from {} to {}", limit.lower, limit.upper),
             "lower < upper; make it fixed if it does not move");
-    if (joint.slides() && limit.upper - limit.lower > max_link)
+    if (joint.slides() && limit.upper - limit.lower > kind_.max_link)
       error("units", name, joint.line, fmt::format("slides {:.3g} m", limit.upper - limit.lower),
             "URDF is in metres; these look like millimetres");
     if (!joint.slides() && limit.upper - limit.lower > 13)
@@ -300,14 +298,16 @@ class Checker {
 
   const Robot& robot_;
   const MeshReader& meshes_;
+  const RobotKind kind_;
   Tree tree_;
   std::vector<UrdfFinding> findings_;
 };
 
 }  // namespace
 
-std::vector<UrdfFinding> check(const Robot& robot, const MeshReader& meshes) {
-  return Checker(robot, meshes).run();
+std::vector<UrdfFinding> check(const Robot& robot, const MeshReader& meshes,
+                               const RobotKind& kind) {
+  return Checker(robot, meshes, kind).run();
 }
 
 bool is_usable(const std::vector<UrdfFinding>& findings) {

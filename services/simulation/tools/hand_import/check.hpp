@@ -7,9 +7,10 @@
 
 namespace prehend::simulation {
 
-/// All that is missing or suspicious in a robot that shall be a hand, errors first. Without an
-/// error `prehend hand add` can make a hand of it.
-std::vector<UrdfFinding> check(const Robot& robot, const MeshReader& meshes);
+/// All that is missing or suspicious in a robot of this kind, errors first. Without an error
+/// `prehend hand add` can make a hand of it.
+std::vector<UrdfFinding> check(const Robot& robot, const MeshReader& meshes,
+                               const RobotKind& kind = hand_kind);
 
 bool is_usable(const std::vector<UrdfFinding>& findings);
 

@@ -20,7 +20,6 @@ constexpr double density = 1500;    // kg/m³, of links: plastic, metal and air
 constexpr double min_mass = 0.005;  // kg
 constexpr double turning_effort = 1, turning_velocity = 2;     // N m, rad/s
 constexpr double sliding_effort = 20, sliding_velocity = 0.1;  // N, m/s
-constexpr double bone_radius = 0.008;                          // m
 // What motors of hands can do, at the fingertip or of a slide: many files give 0.01 or 1000 N m.
 constexpr double weakest_tip = 4, strongest_tip = 10;       // N
 constexpr double weakest_slide = 10, strongest_slide = 80;  // N
@@ -86,7 +85,8 @@ std::string described(const model::Shape& shape) {
 
 class Mender {
  public:
-  Mender(const Robot& source, const MeshReader& meshes) : source_(source), meshes_(meshes) {}
+  Mender(const Robot& source, const MeshReader& meshes, const RobotKind& kind)
+      : source_(source), meshes_(meshes), kind_(kind) {}
 
   Expected<Mended> run() {
     mended_.robot.name = source_.name;
@@ -97,6 +97,7 @@ class Mender {
       give_mass(link);
     }
     for (RobotJoint& joint : mended_.robot.joints) give_limits(joint);
+    if (!kind_.weak) return std::move(mended_);
     const Tree tree(mended_.robot);
     const auto X_BL = tree.poses(tree.roots()[0], rest_values(mended_.robot));
     for (RobotJoint& joint : mended_.robot.joints) bound_effort(joint, tree, X_BL);
@@ -207,7 +208,7 @@ class Mender {
     for (const Vector3d& end : ends) {
       if (end.norm() < 2e-3) continue;
       Solid bar;
-      bar.shape = {model::ShapeKind::cylinder, {bone_radius, bone_radius, end.norm()}};
+      bar.shape = {model::ShapeKind::cylinder, {kind_.bone_radius, kind_.bone_radius, end.norm()}};
       bar.X_LS = make_pose(0.5 * end, Eigen::Quaterniond::FromTwoVectors(Vector3d::UnitZ(), end));
       link.collision.push_back(bar);
     }
@@ -286,13 +287,14 @@ class Mender {
 
   const Robot& source_;
   const MeshReader& meshes_;
+  const RobotKind kind_;
   Mended mended_;
 };
 
 }  // namespace
 
-Expected<Mended> repair(const Robot& robot, const MeshReader& meshes) {
-  return Mender(robot, meshes).run();
+Expected<Mended> repair(const Robot& robot, const MeshReader& meshes, const RobotKind& kind) {
+  return Mender(robot, meshes, kind).run();
 }
 
 }  // namespace prehend::simulation

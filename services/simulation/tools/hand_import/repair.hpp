@@ -14,8 +14,10 @@ struct Mended {
   std::vector<std::string> changes;
 };
 
-/// Joins fixed links to their parents, replaces meshes by primitives, and fills in what is missing:
-/// limits, masses, inertia, collision shapes. The robot has passed check() without an error.
-Expected<Mended> repair(const Robot& robot, const MeshReader& meshes);
+/// kind: what it shall be. Joins fixed links to their parents, replaces meshes by primitives, and
+/// fills in what is missing: limits, masses, inertia, collision shapes. The robot has passed
+/// check() without an error.
+Expected<Mended> repair(const Robot& robot, const MeshReader& meshes,
+                        const RobotKind& kind = hand_kind);
 
 }  // namespace prehend::simulation

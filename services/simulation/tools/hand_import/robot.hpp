@@ -68,6 +68,16 @@ struct Robot {
   const RobotJoint* find_joint(const std::string& joint) const;
 };
 
+/// What a robot shall be, as far as sizes tell right from wrong.
+struct RobotKind {
+  double max_link = 0.6;       // m: its links and their shapes are shorter
+  double max_mass = 20;        // kg, of a link
+  double bone_radius = 0.008;  // m, of the bar that a link without a shape gets
+  bool weak = true;            // its motors are as weak as those of fingers
+};
+inline constexpr RobotKind hand_kind{};
+inline constexpr RobotKind arm_kind{2.0, 300, 0.04, false};
+
 /// Reads any bytes; fails only on what is no XML with a <robot> in it.
 Expected<Robot> read_robot(const std::string& text);
 

@@ -1,0 +1,17 @@
+#pragma once
+
+#include <vector>
+
+#include "common/model/arm_model.hpp"
+#include "common/model/hand_model.hpp"
+
+namespace prehend::arm {
+
+/// X_FB of a hand on a flange, where nobody says otherwise: its grasp frame lies on the flange's
+/// axis with the same axes, and what of its base reaches farthest back touches the flange.
+Pose mounted(const model::HandModel& hand);
+
+/// Capsules around the open hand, in the frame of the arm's last link, for Surroundings::carried.
+std::vector<model::Capsule> carried(const model::ArmModel& arm, const model::HandModel& hand);
+
+}  // namespace prehend::arm

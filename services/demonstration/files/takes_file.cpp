@@ -1,0 +1,233 @@
+#include "services/demonstration/files/takes_file.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <map>
+#include <optional>
+#include <set>
+#include <tuple>
+
+#include "common/base/csv_rows.hpp"
+#include "common/base/file_text.hpp"
+#include "common/base/printable.hpp"
+
+namespace prehend::demonstration {
+
+namespace {
+
+constexpr std::array fingers{"index", "middle", "ring", "little"};
+constexpr std::array keys{"user", "object", "trial", "t_ms"};
+constexpr std::string_view byte_order_mark = "\xef\xbb\xbf";
+constexpr double farthest = 0.5;   // m, between fingertips of a hand
+constexpr double fastest = 50;     // m/s
+constexpr double longest = 86400;  // s
+constexpr std::size_t max_name = 64;
+
+std::string_view trimmed(std::string_view text) {
+  constexpr std::string_view around = " \t\"";
+  const auto begin = text.find_first_not_of(around);
+  if (begin == std::string_view::npos) return {};
+  return text.substr(begin, text.find_last_not_of(around) - begin + 1);
+}
+
+/// NaN where there is no number, or none within ±limit.
+double number(std::string_view cell, double limit) {
+  cell = trimmed(cell);
+  if (cell.starts_with('+')) cell.remove_prefix(1);
+  double value = unknown_number;
+  const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
+  const bool read = error == std::errc() && end == cell.data() + cell.size();
+  return read && std::abs(value) <= limit ? value : unknown_number;
+}
+
+/// The same names as in the file's first line, without what may stand around them.
+std::string with_plain_names(std::string_view text) {
+  if (text.starts_with(byte_order_mark)) text.remove_prefix(byte_order_mark.size());
+  const std::size_t end = std::min(text.find('\n'), text.size());
+  std::string made;
+  for (const char c : text.substr(0, end))
+    if (c != ' ' && c != '\t' && c != '"') made += c;
+  return made.append(text.substr(end));
+}
+
+/// What tells one take from another.
+using Key = std::tuple<std::string, std::string, std::string, std::string, std::string, int>;
+
+class Reader {
+ public:
+  Reader(std::string_view text, std::string name, std::string task)
+      : rows_(text), name_(std::move(name)), task_(std::move(task)) {}
+
+  Expected<Takes> read() {
+    if (auto ok = check_columns(); !ok) return tl::unexpected(ok.error());
+    made_.files = 1;
+    while (auto row = rows_.next()) {
+      ++made_.rows;
+      if (auto why = add(*row)) leave_out(*why);
+    }
+    for (Take& take : made_.takes)
+      std::stable_sort(take.samples.begin(), take.samples.end(),
+                       [](const HandSample& a, const HandSample& b) { return a.t < b.t; });
+    if (made_.takes.empty())
+      return fail(made_.rows == 0 ? "has no rows" : "has no row that can be used", name_,
+                  first_.empty() ? "it needs a row a sample below the names" : first_);
+    if (made_.bad_rows > 0 || made_.unknown_numbers > 0)
+      made_.complaints.push_back(
+          {fmt::format("{} of {} rows left out, {} unknown numbers filled in", made_.bad_rows,
+                       made_.rows, made_.unknown_numbers),
+           name_, first_ + ": mend or delete it"});
+    return std::move(made_);
+  }
+
+ private:
+  Expected<void> check_columns() {
+    if (rows_.empty()) return fail("is empty", name_, "the first line names the columns");
+    std::string missing;
+    const auto need = [&](const std::string& column) {
+      if (!rows_.has(column)) missing += (missing.empty() ? "" : ", ") + column;
+    };
+    for (const char* key : keys) need(key);
+    for (const char* finger : fingers)
+      for (const char* axis : {"x", "y", "z"}) need(fmt::format("thumb_{}_{}_cm", finger, axis));
+    if (missing.empty()) return {};
+    return fail("lacks the column(s) " + missing, name_, "the first line names the columns");
+  }
+
+  std::string_view cell(CsvRow& row, std::string_view column) {
+    return rows_.has(column) ? row.text(column) : std::string_view{};
+  }
+
+  std::string name_of(CsvRow& row, std::string_view column) {
+    return printable(trimmed(cell(row, column)).substr(0, max_name));
+  }
+
+  /// A number that should be there; counts where it is not.
+  double measured(CsvRow& row, std::string_view column, double limit) {
+    const double value = number(cell(row, column), limit);
+    if (std::isnan(value)) {
+      ++unknown_;
+      if (first_unknown_.empty()) first_unknown_ = column;
+    }
+    return value;
+  }
+
+  /// Why the row cannot be used, or nothing.
+  std::optional<std::string> add(CsvRow& row) {
+    const std::string user = name_of(row, "user"), object = name_of(row, "object");
+    const double trial = number(cell(row, "trial"), 1e9),
+                 t = number(cell(row, "t_ms"), 1000 * longest);
+    if (user.empty()) return "no user";
+    if (object.empty()) return "no object";
+    if (std::isnan(trial)) return "trial is no number";
+    if (std::isnan(t)) return "t_ms is no number";
+    unknown_ = 0;
+    first_unknown_.clear();
+    HandSample sample{.t = t / 1000};
+    bool fingers_told = false;
+    for (std::size_t f = 0; f < fingers.size(); ++f) {
+      const auto read = [&](char axis) {
+        return measured(row, fmt::format("thumb_{}_{}_cm", fingers[f], axis), 100 * farthest) / 100;
+      };
+      // The table's axes are x up, y forward, z left; W has x forward, y left, z up.
+      const double up = read('x'), forward = read('y'), left = read('z');
+      sample.p_thumb_tip_W[f] = {forward, left, up};
+      fingers_told |= sample.p_thumb_tip_W[f].allFinite();
+    }
+    if (!fingers_told) return "no finger has three numbers in cm";
+    if (rows_.has("hand_speed_m_s")) sample.hand_speed = measured(row, "hand_speed_m_s", fastest);
+    if (rows_.has("wrist_speed_m_s"))
+      sample.wrist_speed = measured(row, "wrist_speed_m_s", fastest);
+    if (unknown_ > 0) note(first_unknown_ + " is no number within reason");
+    made_.unknown_numbers += unknown_;
+    std::string task = name_of(row, "task");
+    if (task.empty()) task = task_;
+    place(Key{task, user, object, name_of(row, "side"), name_of(row, "action"),
+              static_cast<int>(trial)},
+          sample);
+    return std::nullopt;
+  }
+
+  void place(const Key& key, const HandSample& sample) {
+    const auto [found, is_new] = place_.emplace(key, made_.takes.size());
+    if (is_new) {
+      const auto& [task, user, object, side, action, trial] = key;
+      made_.takes.push_back({user, task, object, side, action, trial, {}});
+    }
+    made_.takes[found->second].samples.push_back(sample);
+  }
+
+  void note(const std::string& what) {
+    if (first_.empty()) first_ = fmt::format("row {}: {}", made_.rows, what);
+  }
+
+  void leave_out(const std::string& why) {
+    ++made_.bad_rows;
+    note(why);
+  }
+
+  CsvRows rows_;
+  std::string name_, task_, first_, first_unknown_;
+  std::size_t unknown_ = 0;
+  std::map<Key, std::size_t> place_;
+  Takes made_;
+};
+
+/// «1» of task1.csv.
+std::string task_of(const std::filesystem::path& file) {
+  return printable(file.stem().string().substr(4));
+}
+
+Expected<std::vector<std::filesystem::path>> files_of(const std::filesystem::path& folder) {
+  std::error_code error;
+  std::vector<std::filesystem::path> files;
+  std::filesystem::directory_iterator entry(folder, error), end;
+  while (!error && entry != end) {
+    const std::string name = entry->path().filename().string();
+    if (name.starts_with("task") && name.ends_with(".csv")) files.push_back(entry->path());
+    entry.increment(error);
+  }
+  if (error) return fail(error.message(), folder.string(), "is the path right?");
+  if (files.empty())
+    return fail("has no file task*.csv", folder.string(), "name the folder with the takes");
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+}  // namespace
+
+Expected<Takes> parse_takes(std::string_view text, const std::string& name,
+                            const std::string& task) {
+  const std::string plain = with_plain_names(text);
+  return Reader(plain, name, task).read();
+}
+
+Expected<Takes> load_takes(const std::filesystem::path& folder) {
+  const auto files = files_of(folder);
+  if (!files) return tl::unexpected(files.error());
+  Takes all;
+  for (const auto& file : *files) {
+    ++all.files;
+    const auto text = read_file(file);
+    auto takes =
+        text ? parse_takes(*text, file.string(), task_of(file)) : tl::unexpected(text.error());
+    if (!takes) {
+      ++all.bad_files;
+      all.complaints.push_back(takes.error());
+      continue;
+    }
+    all.rows += takes->rows;
+    all.bad_rows += takes->bad_rows;
+    all.unknown_numbers += takes->unknown_numbers;
+    std::move(takes->takes.begin(), takes->takes.end(), std::back_inserter(all.takes));
+    std::move(takes->complaints.begin(), takes->complaints.end(),
+              std::back_inserter(all.complaints));
+  }
+  if (all.takes.empty()) return tl::unexpected(all.complaints.front());
+  return all;
+}
+
+}  // namespace prehend::demonstration

@@ -1,0 +1,9 @@
+#include "services/demonstration/tools/demonstration/commands.hpp"
+
+int main(int argc, char** argv) {
+  using namespace prehend::demonstration;
+  prehend::tool::Program program("demonstration", "Which grasp does a hand show?");
+  add_train(program);
+  add_evaluate(program);
+  return program.run(argc, argv);
+}

@@ -1,0 +1,129 @@
+#include "services/demonstration/tools/evaluation/trial.hpp"
+
+#include <algorithm>
+#include <set>
+
+#include "common/base/workers.hpp"
+
+namespace prehend::demonstration {
+
+namespace {
+
+/// One training, and whom it judges.
+struct Job {
+  std::size_t task = 0;  // index of the result
+  std::vector<const Take*> training, judged;
+  std::map<Method, std::vector<Judged>> methods;
+  std::optional<Error> trouble;
+};
+
+std::size_t index_of(const std::vector<std::string>& names, const std::string& name) {
+  return static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());
+}
+
+/// classes: those of the recogniser and maybe others, which are not answered.
+Judged judged_by(const Recogniser& recogniser, const Take& take,
+                 const std::vector<std::string>& classes) {
+  std::vector<Eigen::Index> place;
+  for (const std::string& name : recogniser.classes())
+    place.push_back(static_cast<Eigen::Index>(index_of(classes, name)));
+  Judged made{take.user,
+              index_of(classes, take.label),
+              Distribution::Zero(static_cast<Eigen::Index>(classes.size())),
+              {}};
+  RecogniserStream stream(recogniser);
+  for (const HandSample& sample : take.samples) {
+    Eigen::Index best = 0;
+    stream.add(sample).maxCoeff(&best);
+    made.stream.push_back(static_cast<std::size_t>(place[static_cast<std::size_t>(best)]));
+  }
+  for (std::size_t c = 0; c < place.size(); ++c)
+    made.answer[place[c]] = stream.latest()[static_cast<Eigen::Index>(c)];
+  return made;
+}
+
+void judge_all(const std::vector<Recogniser>& recognisers, const std::vector<const Take*>& takes,
+               const std::vector<std::string>& classes,
+               std::map<Method, std::vector<Judged>>& methods) {
+  for (const Recogniser& recogniser : recognisers)
+    for (const Take* take : takes)
+      methods[recogniser.method()].push_back(judged_by(recogniser, *take, classes));
+}
+
+void run(Job& job, const std::vector<std::string>& classes, const TrainerOptions& options) {
+  const auto recognisers =
+      train_recognisers(job.training, {methods.begin(), methods.end()}, options);
+  if (!recognisers) {
+    job.trouble = recognisers.error();
+    return;
+  }
+  judge_all(*recognisers, job.judged, classes, job.methods);
+}
+
+std::vector<std::string> classes_of(const std::vector<const Take*>& takes,
+                                    const std::vector<std::string>& more) {
+  std::set<std::string> names(more.begin(), more.end());
+  for (const Take* take : takes) names.insert(take->label);
+  return {names.begin(), names.end()};
+}
+
+std::vector<Job> folds_by_person(std::size_t task, const std::vector<const Take*>& takes) {
+  std::map<std::string, std::vector<const Take*>> people;
+  for (const Take* take : takes) people[take->user].push_back(take);
+  std::vector<Job> jobs;
+  for (const auto& [user, own] : people) {
+    Job job{task, {}, own, {}, {}};
+    for (const Take* take : takes)
+      if (take->user != user) job.training.push_back(take);
+    jobs.push_back(std::move(job));
+  }
+  return jobs;
+}
+
+}  // namespace
+
+std::map<std::string, std::vector<const Take*>> by_task(const std::vector<Take>& takes) {
+  std::map<std::string, std::vector<const Take*>> tasks;
+  for (const Take& take : takes) tasks[take.task].push_back(&take);
+  return tasks;
+}
+
+std::vector<TaskResult> judge(const std::vector<Take>& takes, const std::vector<Take>* training,
+                              const TrainerOptions& options, unsigned threads,
+                              const std::function<void(std::size_t, std::size_t)>& progress) {
+  const auto trained = training ? by_task(*training) : decltype(by_task(takes)){};
+  std::vector<TaskResult> results;
+  std::vector<Job> jobs;
+  for (const auto& [task, own] : by_task(takes)) {
+    const auto found = trained.find(task);
+    const auto shown = found == trained.end() ? std::vector<const Take*>{} : found->second;
+    results.push_back({task, classes_of(own, classes_of(shown, {})), {}, {}});
+    auto made = training ? std::vector<Job>{{results.size() - 1, shown, own, {}, {}}}
+                         : folds_by_person(results.size() - 1, own);
+    std::move(made.begin(), made.end(), std::back_inserter(jobs));
+  }
+  share_work(
+      jobs.size(), threads,
+      [&](std::size_t i) { run(jobs[i], results[jobs[i].task].classes, options); },
+      [&](std::size_t done) { progress(done, jobs.size()); });
+  for (Job& job : jobs) {
+    TaskResult& result = results[job.task];
+    if (job.trouble) result.trouble = job.trouble;
+    for (auto& [method, judged] : job.methods)
+      std::move(judged.begin(), judged.end(), std::back_inserter(result.methods[method]));
+  }
+  return results;
+}
+
+TaskResult judge_with(const std::string& task, const std::vector<const Take*>& takes,
+                      const std::vector<Recogniser>& recognisers) {
+  TaskResult result{task, {}, {}, {}};
+  std::vector<std::string> known;
+  for (const Recogniser& recogniser : recognisers)
+    known.insert(known.end(), recogniser.classes().begin(), recogniser.classes().end());
+  result.classes = classes_of(takes, known);
+  judge_all(recognisers, takes, result.classes, result.methods);
+  return result;
+}
+
+}  // namespace prehend::demonstration

@@ -1,0 +1,12 @@
+#pragma once
+
+#include "common/tool/program.hpp"
+
+namespace prehend::demonstration {
+
+/// Each adds its subcommand, which answers with the exit code.
+void add_list(tool::Program& program);
+void add_show(tool::Program& program);
+void add_check(tool::Program& program);
+
+}  // namespace prehend::demonstration

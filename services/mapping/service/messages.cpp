@@ -1,0 +1,39 @@
+#include "services/mapping/service/messages.hpp"
+
+#include "common/convert/convert.hpp"
+
+namespace prehend::mapping {
+
+Expected<Posture> posture_from_message(const v1::HandPosture& message) {
+  auto X_WH = convert::from_message(message.X_WH());
+  if (!X_WH) return fail("pose of the hand not usable");
+  Posture posture{
+      from_ns(message.stamp_ns()), from_ns(message.origin_ns()), *X_WH, message.hand_scale(), {}};
+  for (std::size_t f = 0; f < posture.fingertips.size(); ++f) {
+    const v1::Fingertip& tip = message.fingertips()[f];
+    posture.fingertips[f] = {tip.valid(), convert::from_message(tip.p_HF())};
+  }
+  return posture;
+}
+
+Expected<Detection> detection_from_message(const v1::ObjectDetection& message) {
+  auto X_WO = convert::from_message(message.X_WO());
+  if (!X_WO) return fail("pose of a detection not usable");
+  return Detection{message.track(),
+                   message.name().to_string(),
+                   {convert::from_message(message.shape()), convert::from_message(message.size())},
+                   *X_WO,
+                   message.probability(),
+                   from_ns(message.stamp_ns()),
+                   Eigen::Matrix4d::Map(message.covariance().data())};
+}
+
+Expected<RobotState> state_from_message(const v1::HandState& message) {
+  auto X_WB = convert::from_message(message.X_WB());
+  if (!X_WB) return fail("pose of the robot not usable");
+  return RobotState{from_ns(message.stamp_ns()), convert::from_message(message.dof()),
+                    convert::from_message(message.velocity()),
+                    convert::from_message(message.torque()), *X_WB};
+}
+
+}  // namespace prehend::mapping

@@ -1,0 +1,103 @@
+// `prehend benchmark`: somebody else's mapping, judged as a process of its own by takes that are
+// the same for all. Our own mapping serves as the other one, since of it is known what it must come
+// to: in lockstep the same as without topics, to the last bit.
+#include <algorithm>
+#include <fstream>
+#include <sstream>
+
+#include "tests/integration/rig.hpp"
+
+namespace prehend::integration {
+namespace {
+
+class Benchmark : public Rig {
+ protected:
+  Answer benchmark(Strings more, double limit_s = 120) {
+    Strings arguments{"benchmark", "--hand", "barrett", "--domain", std::to_string(domain_)};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return run("prehend", arguments, limit_s);
+  }
+  /// What came of each take (from its number on), without who answered.
+  std::vector<std::string> results(const std::string& folder) {
+    std::ifstream csv(folder_ / folder / "benchmark.csv");
+    std::vector<std::string> rows;
+    std::string line;
+    std::getline(csv, line);
+    while (std::getline(csv, line)) {
+      std::istringstream cells(line);
+      std::string cell;
+      for (int i = 0; i < 3; ++i) std::getline(cells, cell, ',');
+      std::getline(cells, cell);
+      rows.push_back(cell);
+    }
+    return rows;
+  }
+  std::string in(const std::string& name) { return (folder_ / name).string(); }
+  static std::string own(const std::string& more) {
+    return program("prehend-mapping") + " --set mapping.hand=barrett" + more;
+  }
+};
+
+TEST_F(Benchmark, JudgesAnotherProcessInLockstepAsItsOwnMapping) {
+  const Answer mine =
+      benchmark({"--trials", "2", "--mapping", "intelligent+placement", "--out", in("mine")});
+  ASSERT_EQ(mine.exit_code, 0) << mine.log;
+  const Answer other = benchmark({"--trials", "2", "--mapping", "external", "--lockstep", "--run",
+                                  own(""), "--out", in("other")});
+  ASSERT_EQ(other.exit_code, 0) << other.log;
+  ASSERT_EQ(results("mine").size(), 2u);
+  EXPECT_EQ(results("other"), results("mine"));
+  EXPECT_NE(other.output.find("| external |"), std::string::npos) << other.output;
+  // Another mode is judged otherwise: the table is not that of whoever sits in this program.
+  const Answer direct = benchmark({"--trials", "2", "--mapping", "external", "--lockstep", "--run",
+                                   own(" --set mapping.intelligent=false"), "--out", in("direct")});
+  ASSERT_EQ(direct.exit_code, 0) << direct.log;
+  EXPECT_NE(results("direct"), results("mine"));
+}
+
+TEST_F(Benchmark, JudgesByTakesFromFilesAsByThoseItMakes) {
+  ASSERT_EQ(benchmark({"--trials", "2", "--seed", "5", "--export", in("takes")}).exit_code, 0);
+  const Answer made = benchmark(
+      {"--trials", "2", "--seed", "5", "--mapping", "direct,intelligent", "--out", in("made")});
+  ASSERT_EQ(made.exit_code, 0) << made.log;
+  const Answer read =
+      benchmark({"--takes", in("takes"), "--mapping", "direct,intelligent", "--out", in("read")});
+  ASSERT_EQ(read.exit_code, 0) << read.log;
+  EXPECT_EQ(read.output, made.output);
+  EXPECT_EQ(results("read"), results("made"));
+  // They are recordings as others are, made for a hand.
+  EXPECT_EQ(run("prehend", {"recording", "verify", in("takes/take-0000.mcap")}, 20).exit_code, 0);
+  const Answer foreign = run("prehend", {"benchmark", "--hand", "dlr", "--takes", in("takes")}, 20);
+  EXPECT_EQ(foreign.exit_code, 3);
+  EXPECT_NE(foreign.log.find("holds grasps of the hand «barrett», not of this «dlr»"),
+            std::string::npos)
+      << foreign.log;
+}
+
+// Nearly the same as in lockstep: commands come when they come.
+TEST_F(Benchmark, JudgesLiveWhoIsThere) {
+  // Of the first takes the fourth is held, however little commands come late.
+  ASSERT_EQ(benchmark({"--trials", "4", "--export", in("takes")}).exit_code, 0);
+  for (const char* other : {"take-0000.mcap", "take-0001.mcap", "take-0002.mcap"})
+    ASSERT_TRUE(std::filesystem::remove(folder_ / "takes" / other));
+  const auto mapping = start("mapping", {"mapping.hand=barrett"});
+  const Answer live = run("prehend",
+                          with_lab({"benchmark", "--hand", "barrett", "--takes", in("takes"),
+                                    "--mapping", "external", "--json"}),
+                          60);
+  ASSERT_EQ(live.exit_code, 0) << live.log;
+  EXPECT_NE(live.output.find("\"trials\": 1"), std::string::npos) << live.output;
+  EXPECT_NE(live.output.find("\"held_rate\": 1"), std::string::npos) << live.output;
+}
+
+TEST_F(Benchmark, SaysWhyNobodyCanBeJudged) {
+  const Answer ends = benchmark({"--trials", "1", "--run", "echo no licence; exit 7"});
+  EXPECT_EQ(ends.exit_code, 3);
+  EXPECT_NE(ends.log.find("no licence"), std::string::npos) << ends.log;
+  EXPECT_NE(ends.log.find("ended with code 7"), std::string::npos) << ends.log;
+  EXPECT_EQ(benchmark({"--mapping", "telepathy"}).exit_code, 2);
+  EXPECT_EQ(benchmark({"--takes", in("nowhere")}).exit_code, 3);
+}
+
+}  // namespace
+}  // namespace prehend::integration

@@ -1,0 +1,166 @@
+#include "services/demonstration/files/takes_file.hpp"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "tests/support/takes/made_takes.hpp"
+
+namespace prehend::demonstration {
+namespace {
+
+using testing::Test;
+
+const std::vector<Take>& few() {
+  static const auto takes = test::made_takes({.people = 2, .trials = 1, .samples = 3});
+  return takes;
+}
+
+std::vector<std::vector<std::string>> cells_of(const std::string& csv) {
+  std::vector<std::vector<std::string>> rows(1, {""});
+  for (const char c : csv) {
+    if (c == '\n')
+      rows.push_back({""});
+    else if (c == ',')
+      rows.back().emplace_back();
+    else
+      rows.back().back() += c;
+  }
+  rows.pop_back();
+  return rows;
+}
+
+std::string csv_of(const std::vector<std::vector<std::string>>& rows,
+                   const std::string& end = "\n") {
+  std::string text;
+  for (const auto& row : rows) text += fmt::format("{}{}", fmt::join(row, ","), end);
+  return text;
+}
+
+void expect_same(const std::vector<Take>& read, double tolerance = 1e-5) {
+  ASSERT_EQ(read.size(), few().size());
+  for (std::size_t i = 0; i < read.size(); ++i) {
+    EXPECT_EQ(read[i].user, few()[i].user);
+    EXPECT_EQ(read[i].label, few()[i].label);
+    EXPECT_EQ(read[i].task, "1");
+    ASSERT_EQ(read[i].samples.size(), few()[i].samples.size());
+    for (std::size_t k = 0; k < read[i].samples.size(); ++k)
+      for (std::size_t f = 0; f < 4; ++f)
+        EXPECT_LT(
+            (read[i].samples[k].p_thumb_tip_W[f] - few()[i].samples[k].p_thumb_tip_W[f]).norm(),
+            2 * tolerance);
+  }
+}
+
+TEST(TakesFile, ReadsWhatWasWritten) {
+  const auto takes = parse_takes(test::to_csv(few()), "task1.csv", "1");
+  ASSERT_TRUE(takes) << takes.error().message();
+  expect_same(takes->takes);
+  EXPECT_TRUE(takes->complaints.empty());
+  EXPECT_NEAR(takes->takes[0].samples[1].hand_speed, few()[0].samples[1].hand_speed, 1e-4);
+  EXPECT_EQ(takes->rows, 18U);
+}
+
+TEST(TakesFile, OrderOfColumnsLineEndsMarksAndQuotesDoNotMatter) {
+  auto rows = cells_of(test::to_csv(few()));
+  for (auto& row : rows) {
+    std::reverse(row.begin(), row.end());
+    row.push_back(row.empty() ? "" : "more");  // a column that nobody asked for
+  }
+  for (const std::string& text :
+       {csv_of(rows, "\r\n"), "\xef\xbb\xbf" + csv_of(rows), csv_of(rows, "\n\n")}) {
+    const auto takes = parse_takes(text, "task1.csv", "1");
+    ASSERT_TRUE(takes) << takes.error().message();
+    expect_same(takes->takes);
+  }
+  for (std::string& cell : rows[0]) cell = " \"" + cell + "\"";
+  for (std::size_t i = 1; i < rows.size(); ++i)
+    for (std::string& cell : rows[i]) cell = " \"" + cell + "\" ";
+  const auto quoted = parse_takes(csv_of(rows), "task1.csv", "1");
+  ASSERT_TRUE(quoted) << quoted.error().message();
+  expect_same(quoted->takes);
+}
+
+TEST(TakesFile, OptionalColumnsMayBeMissing) {
+  auto rows = cells_of(test::to_csv(few()));
+  for (auto& row : rows) {
+    row.erase(row.begin() + 7, row.begin() + 9);  // speeds
+    row.erase(row.begin() + 3, row.begin() + 5);  // side, action
+    row.erase(row.begin() + 1);                   // task
+  }
+  const auto takes = parse_takes(csv_of(rows), "task1.csv", "1");
+  ASSERT_TRUE(takes) << takes.error().message();
+  expect_same(takes->takes);
+  EXPECT_TRUE(takes->complaints.empty());
+  EXPECT_TRUE(std::isnan(takes->takes[0].samples[0].hand_speed));
+}
+
+TEST(TakesFile, ANeededColumnIsNamed) {
+  auto rows = cells_of(test::to_csv(few()));
+  rows[0][10] = "thumb_index_height_cm";
+  const auto takes = parse_takes(csv_of(rows), "here/task1.csv", "1");
+  ASSERT_FALSE(takes);
+  EXPECT_EQ(takes.error().where, "here/task1.csv");
+  EXPECT_NE(takes.error().what.find("thumb_index_y_cm"), std::string::npos)
+      << takes.error().message();
+  EXPECT_FALSE(takes.error().hint.empty());
+}
+
+TEST(TakesFile, BadRowsAreCountedAndTheOthersStay) {
+  auto rows = cells_of(test::to_csv(few()));
+  rows[2][6] = "soon";                                                              // no time
+  rows[3][0] = "";                                                                  // nobody
+  rows[5].resize(4);                                                                // cut
+  rows[7][9] = "NaN", rows[8][10] = "inf", rows[9][7] = "-", rows[10][11] = "1e9";  // unknown
+  const auto takes = parse_takes(csv_of(rows), "task1.csv", "1");
+  ASSERT_TRUE(takes) << takes.error().message();
+  EXPECT_EQ(takes->bad_rows, 3U);
+  EXPECT_EQ(takes->unknown_numbers, 4U);
+  EXPECT_EQ(takes->takes.size(), few().size()) << "no take is lost";
+  ASSERT_EQ(takes->complaints.size(), 1U) << "one line a file";
+  const std::string told = takes->complaints[0].message();
+  EXPECT_NE(told.find("3 of 18 rows left out"), std::string::npos) << told;
+  EXPECT_NE(told.find("row 2: t_ms is no number"), std::string::npos) << told;
+  EXPECT_EQ(told.find('\n'), std::string::npos);
+}
+
+TEST(TakesFile, SamplesAreInOrderOfTime) {
+  auto rows = cells_of(test::to_csv(few()));
+  std::swap(rows[1], rows[3]);
+  const auto takes = parse_takes(csv_of(rows), "task1.csv", "1");
+  ASSERT_TRUE(takes);
+  expect_same(takes->takes);
+}
+
+TEST(TakesFile, EmptyBinaryAndNoRows) {
+  for (const std::string& text : {std::string(), std::string("\n\n"), std::string(1000, '\0'),
+                                  std::string("\xff\xfe,,\x01"), test::to_csv({})}) {
+    const auto takes = parse_takes(text, "task1.csv", "1");
+    ASSERT_FALSE(takes);
+    EXPECT_FALSE(takes.error().hint.empty());
+    EXPECT_EQ(takes.error().message().find('\n'), std::string::npos);
+  }
+}
+
+TEST(TakesFile, OneBadFileDoesNotCostTheOthers) {
+  const auto folder =
+      std::filesystem::path(testing::TempDir()) / ("takes" + std::to_string(getpid()));
+  std::filesystem::create_directories(folder / "task9.csv");  // a folder in place of a file
+  std::ofstream(folder / "task1.csv") << test::to_csv(few());
+  std::ofstream(folder / "task2.csv") << "nothing of use";
+  std::ofstream(folder / "notes.txt") << "not asked for";
+  const auto takes = load_takes(folder);
+  std::filesystem::remove_all(folder);
+  ASSERT_TRUE(takes) << takes.error().message();
+  expect_same(takes->takes);
+  EXPECT_EQ(takes->files, 3U);
+  EXPECT_EQ(takes->bad_files, 2U);
+  EXPECT_EQ(takes->complaints.size(), 2U);
+  EXPECT_FALSE(load_takes(folder)) << "it is gone";
+}
+
+}  // namespace
+}  // namespace prehend::demonstration

@@ -1,0 +1,149 @@
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "common/base/random.hpp"
+#include "services/demonstration/core/tasks/learn_task.hpp"
+#include "services/demonstration/files/task_file.hpp"
+
+namespace prehend::demonstration {
+namespace {
+
+Pose at(double x, double y, double z = 0.05) {
+  return make_pose({x, y, z});
+}
+
+/// A cup is put 12 cm beside a plate that stands elsewhere each time; then a spoon into the cup.
+ShownTask lay_the_table(Random& random) {
+  const Pose plate = at(random.uniform(0.3, 0.6), random.uniform(-0.3, 0.3));
+  const Pose cup = at(random.uniform(0, 0.2), random.uniform(-0.3, 0.3));
+  const Pose spoon = at(random.uniform(0, 0.2), random.uniform(-0.3, 0.3));
+  const Pose tray = at(0.8, 0.4);
+  const auto noisy = [&](const Pose& X) {
+    return make_pose(X.translation() + random.normal3(0.002), Eigen::Matrix3d(X.linear()));
+  };
+  const Pose cup_put = plate * make_pose({0, 0.12, 0});
+  ShownTask made(2);
+  made[0] = {"cup",
+             "medium wrap",
+             cup * make_pose({0, 0, 0.02}),
+             cup,
+             noisy(cup_put),
+             0.25,
+             0.1,
+             {{"plate", plate}, {"spoon", spoon}, {"tray", tray}}};
+  // Into the cup where it stands, not where it was meant to stand.
+  const Pose spoon_put = made[0].X_WO_after * make_pose({0, 0, 0.06});
+  made[1] = {"spoon",
+             "thumb-2 finger",
+             spoon,
+             spoon,
+             noisy(spoon_put),
+             0.3,
+             1.2,
+             {{"plate", plate}, {"cup", made[0].X_WO_after}, {"tray", tray}}};
+  return made;
+}
+
+TEST(LearnTask, TakesTheReferenceToWhichPlacesAgreeBest) {
+  Random random(1);
+  for (int round = 0; round < 20; ++round) {
+    std::vector<ShownTask> shown;
+    for (int i = 0; i < 4; ++i) shown.push_back(lay_the_table(random));
+    const auto task = learn_task("lay the table", shown);
+    ASSERT_TRUE(task) << task.error().message();
+    ASSERT_EQ(task->steps.size(), 2U);
+    const Step& cup = task->steps[0];
+    EXPECT_EQ(cup.reference, "plate");
+    EXPECT_LT((cup.X_RO.translation() - Eigen::Vector3d(0, 0.12, 0)).norm(), 0.006);
+    EXPECT_LT(cup.spread, 0.008);
+    EXPECT_NEAR(cup.via_height, 0.2, 0.01);
+    EXPECT_TRUE(cup.upright);
+    EXPECT_EQ(cup.grasp, "medium wrap");
+    EXPECT_LT((cup.X_OG.translation() - Eigen::Vector3d(0, 0, 0.02)).norm(), 1e-9);
+    EXPECT_TRUE(cup.after.empty());
+    const Step& spoon = task->steps[1];
+    EXPECT_EQ(spoon.reference, "cup");
+    EXPECT_FALSE(spoon.upright);
+    EXPECT_EQ(spoon.after, std::vector<std::size_t>{0}) << "the cup must be there first";
+  }
+}
+
+TEST(LearnTask, OfOneDemonstrationTheNearestObjectElseTheTable) {
+  ShownTask shown(1);
+  shown[0] = {"cup",      "",  at(0, 0), at(0, 0),
+              at(0.4, 0), 0.2, 0,        {{"plate", at(0.4, 0.12)}, {"tray", at(0.4, 0.3)}}};
+  EXPECT_EQ(learn_task("t", {shown})->steps[0].reference, "plate");
+  shown[0].X_WR["plate"] = at(0.4, 0.16);
+  EXPECT_EQ(learn_task("t", {shown})->steps[0].reference, the_table);
+}
+
+TEST(LearnTask, WhatIsPutAtTheSamePlaceOfTheTableIsRelativeToIt) {
+  Random random(2);
+  std::vector<ShownTask> shown;
+  for (int i = 0; i < 3; ++i)
+    shown.push_back({{"cup",
+                      "",
+                      at(0, 0),
+                      at(random.uniform(), 0),
+                      at(0.5, 0.2),
+                      0.2,
+                      0,
+                      {{"plate", at(random.uniform(), random.uniform())}}}});
+  EXPECT_EQ(learn_task("t", shown)->steps[0].reference, the_table);
+}
+
+TEST(LearnTask, SaysWhenDemonstrationsDiffer) {
+  Random random(3);
+  const auto one = lay_the_table(random);
+  auto other = one;
+  other[1].object = "fork";
+  EXPECT_FALSE(learn_task("t", {one, other}));
+  other.pop_back();
+  EXPECT_FALSE(learn_task("t", {one, other}));
+  EXPECT_FALSE(learn_task("t", {}));
+  EXPECT_FALSE(learn_task("t", {ShownTask{}}));
+}
+
+TEST(TaskModel, OrderKeepsWhatMustComeFirst) {
+  TaskModel task{"t", 1, std::vector<Step>(3)};
+  for (std::size_t i = 0; i < 3; ++i) task.steps[i].object = "o" + std::to_string(i);
+  task.steps[0].after = {2};
+  EXPECT_EQ(*order_of(task), (std::vector<std::size_t>{1, 2, 0}));
+  ASSERT_TRUE(check(task));
+  task.steps[2].after = {0};
+  ASSERT_FALSE(check(task));
+  EXPECT_NE(check(task).error().what.find("circle"), std::string::npos);
+  task.steps[2].after = {7};
+  EXPECT_EQ(check(task).error().where, "t, step 3");
+}
+
+TEST(TaskFile, ComesBackBitForBitAndDamageIsTold) {
+  Random random(4);
+  const auto task = learn_task("lay \"the\" table", {lay_the_table(random), lay_the_table(random)});
+  ASSERT_TRUE(task);
+  const auto file =
+      std::filesystem::path(testing::TempDir()) / ("t" + std::to_string(getpid()) + ".task");
+  ASSERT_TRUE(save_task(file, *task));
+  const auto back = load_task(file);
+  ASSERT_TRUE(back) << back.error().message();
+  EXPECT_EQ(to_toml(*back), to_toml(*task));
+  for (std::size_t i = 0; i < task->steps.size(); ++i) {
+    EXPECT_EQ(back->steps[i].X_RO.matrix(), task->steps[i].X_RO.matrix());
+    EXPECT_EQ(back->steps[i].X_OG.matrix(), task->steps[i].X_OG.matrix());
+    EXPECT_EQ(back->steps[i].after, task->steps[i].after);
+  }
+  EXPECT_NE(to_toml(*task).find("name = \"lay \\\"the\\\" table\""), std::string::npos);
+  std::ofstream(file, std::ios::app) << "x";
+  const auto damaged = load_task(file);
+  std::filesystem::remove(file);
+  ASSERT_FALSE(damaged);
+  EXPECT_FALSE(load_task(file));
+  TaskModel nothing;
+  EXPECT_FALSE(save_task(file, nothing)) << "what is no task is not written";
+}
+
+}  // namespace
+}  // namespace prehend::demonstration
