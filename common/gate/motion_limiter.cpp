@@ -119,7 +119,9 @@ void MotionLimiter::bound(Passed& passed) const {
   const Eigen::VectorXd within = place.dof.cwiseMax(limits_.lower).cwiseMin(limits_.upper);
   if ((within - place.dof).cwiseAbs().maxCoeff() > rounding) cut(Cut::joint_range);
   place.dof = within;
-  if (place.effort.size() > 0 && (place.effort.array() > limits_.effort.array()).any()) {
+  if (place.effort.size() == 0) {
+    place.effort = limits_.effort;
+  } else if ((place.effort.array() > limits_.effort.array()).any()) {
     place.effort = place.effort.cwiseMin(limits_.effort);
     cut(Cut::effort);
   }

@@ -15,7 +15,7 @@ namespace prehend::gate {
 struct Place {
   Eigen::VectorXd dof;  // rad or m
   Pose X_WB = Pose::Identity();
-  /// What the drives of each DoF may use to get there, N m or N; empty: all they have.
+  /// What the drives of each DoF may use to get there, N m or N; empty: as much as the gate allows.
   Eigen::VectorXd effort = {};
 };
 
@@ -32,7 +32,8 @@ enum class Cut {
 inline constexpr std::size_t cuts = 7;
 std::string_view to_string(Cut cut);
 
-/// What is left of a command; whatever was not cut is the same to the last bit.
+/// What is left of a command; whatever was not cut is the same to the last bit. It always says its
+/// effort.
 struct Passed {
   Place place;
   std::array<bool, cuts> cut{};

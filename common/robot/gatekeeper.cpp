@@ -40,6 +40,9 @@ gate::Limits limits_of(const model::HandModel& hand, const service::Config& conf
   limits.base = {config.number("gate.base_speed"), config.number("gate.base_acceleration")};
   limits.turn = {config.number("gate.base_turn_speed"),
                  config.number("gate.base_turn_acceleration")};
+  // What is no share is refused, as one of 0 is.
+  const double share = config.number("gate.effort");
+  limits.effort *= share <= 1 ? share : 0;
   const auto& box = config.numbers("gate.box");
   if (box.size() == 6) {
     limits.box_lower = {box[0], box[1], box[2]};

@@ -74,7 +74,7 @@ TEST(Gate, CutsEffortsToThoseOfTheDrives) {
   Command sent = command(barrett(), 1, 0);
   auto passed = gate.admit(sent, at(0));
   ASSERT_TRUE(passed);
-  EXPECT_EQ(passed->place.effort.size(), 0) << "all that the drives have, as it was";
+  EXPECT_EQ(passed->place.effort, most) << "all that it may";
   sent = command(barrett(), 1, 10);
   sent.place.effort = 0.5 * most;
   passed = gate.admit(sent, at(10));
@@ -89,6 +89,19 @@ TEST(Gate, CutsEffortsToThoseOfTheDrives) {
   EXPECT_TRUE(passed->has(Cut::effort));
   EXPECT_EQ(passed->place.effort[2], most[2]);
   EXPECT_EQ(passed->place.effort[1], sent.place.effort[1]);
+}
+
+// A command that says nothing of efforts must not have those that the drives have.
+TEST(Gate, GivesWhoAsksForNoEffortWhatIsAllowed) {
+  Limits limits = limits_of(barrett());
+  limits.effort *= 0.5;
+  auto gate = CommandGate::create(barrett(), {.hand = "hand"}, limits).value();
+  const auto passed = gate.admit(command(barrett(), 1, 0), at(0));
+  ASSERT_TRUE(passed);
+  EXPECT_EQ(passed->place.effort, limits.effort);
+  EXPECT_FALSE(passed->has(Cut::effort));
+  gate.stop("anna", "", at(10));
+  EXPECT_EQ(gate.go(open_at(barrett(), {0, 0, 0.5}), at(20)).place.effort, limits.effort);
 }
 
 TEST(Gate, RefusesWhatIsOldAndWhatIsFromTheFuture) {
