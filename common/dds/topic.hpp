@@ -93,7 +93,7 @@ struct TopicInfo {
   /// For people, in the table of idl/README.md.
   std::string_view rate, remark;
   /// As the IDL has them; set by Topic.
-  std::string (*type_name)() = nullptr;  // with scope, as in discovery: prehend::v1::HandCommand
+  std::string (*type_name)() = nullptr;  // with scope, as in discovery: prehend::v2::HandCommand
   bool (*keyed)() = nullptr;
 };
 

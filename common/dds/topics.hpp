@@ -48,7 +48,7 @@ inline constexpr Topic<v1::ObjectDetectionPubSubType> object_detection{
 
 /// Ownership is shared: an exclusive reader would drop a second writer without a word, while the
 /// gate of the robot (common/gate) refuses and names it.
-inline constexpr Topic<v1::HandCommandPubSubType> robot_command{
+inline constexpr Topic<v2::HandCommandPubSubType> robot_command{
     {.name = "robot/command",
      .qos = {.writer_depth = 64,
              .reader_depth = 1,

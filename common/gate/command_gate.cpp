@@ -34,7 +34,8 @@ std::string_view to_string(Refusal refusal) {
 
 Expected<CommandGate> CommandGate::create(const model::HandModel& hand, GateOptions options,
                                           Limits limits, Where where) {
-  if (limits.joint.size() != hand.dofs().size())
+  if (limits.joint.size() != hand.dofs().size() ||
+      limits.effort.size() != static_cast<Eigen::Index>(hand.dofs().size()))
     return fail("limits are those of another hand", "gate");
   if (auto sound = check(limits); !sound) return tl::unexpected(sound.error());
   if (options.max_age <= Duration::zero() || options.max_silence <= Duration::zero())
@@ -111,7 +112,11 @@ std::optional<Refusal> CommandGate::judge_content(const Command& command) const 
   if (command.model != hand_.name()) return Refusal::another_model;
   const Eigen::VectorXd& dof = command.place.dof;
   if (dof.size() != static_cast<Eigen::Index>(hand_.dofs().size())) return Refusal::wrong_length;
-  if (!dof.allFinite() || !is_finite(command.place.X_WB)) return Refusal::not_finite;
+  const Eigen::VectorXd& effort = command.place.effort;
+  if (effort.size() != 0 && effort.size() != dof.size()) return Refusal::wrong_length;
+  if (!dof.allFinite() || !effort.allFinite() || !is_finite(command.place.X_WB))
+    return Refusal::not_finite;
+  if ((effort.array() < 0).any()) return Refusal::outside_limits;
   if (command.place.X_WB.translation().norm() > far_off) return Refusal::far_away;
   for (Eigen::Index i = 0; i < dof.size(); ++i) {
     const model::HandDof& limits = hand_.dofs()[static_cast<std::size_t>(i)];

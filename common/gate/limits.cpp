@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "common/model/hand_effort.hpp"
+
 namespace prehend::gate {
 namespace {
 
@@ -30,12 +32,15 @@ Limits limits_of(const model::HandModel& hand) {
     const double speed = own.velocity ? (*own.velocity)[i] : margin * dof.max_velocity;
     limits.joint.push_back({speed, own.acceleration ? (*own.acceleration)[i] : speed / start_up});
   }
+  limits.effort = own.effort ? *own.effort : model::max_effort(hand);
   return limits;
 }
 
 Expected<void> check(const Limits& limits) {
   for (const MotionLimit& joint : limits.joint)
     if (!is_sound(joint)) return fail("speed and acceleration must be positive", "gate");
+  if (!limits.effort.allFinite() || !(limits.effort.array() > 0).all())
+    return fail("effort must be positive", "gate.effort", "a share above 0 up to 1");
   if (!is_sound(limits.base) || !is_sound(limits.turn))
     return fail("speed and acceleration of the base must be positive", "gate");
   if (!(limits.box_lower.array() < limits.box_upper.array()).all())

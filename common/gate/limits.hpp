@@ -17,6 +17,7 @@ struct MotionLimit {
 struct Limits {
   Eigen::VectorXd lower, upper;                                // of the DoFs, rad or m
   std::vector<MotionLimit> joint;                              // of the DoFs
+  Eigen::VectorXd effort;                                      // of the DoFs, N m or N
   MotionLimit base{1.2, 300};                                  // of the base's place
   MotionLimit turn{3.6, 900};                                  // of its orientation
   Eigen::Vector3d box_lower = Eigen::Vector3d::Constant(-10);  // m, of the base in W
@@ -24,7 +25,8 @@ struct Limits {
 };
 
 /// What the hand's own description says: [gate] of hand.toml, else its limits. Joints may go 1.2
-/// times as fast as they can, since a stream that uses all of a joint's speed is a sound one.
+/// times as fast as they can, since a stream that uses all of a joint's speed is a sound one, and
+/// push with all that their drives have.
 Limits limits_of(const model::HandModel& hand);
 
 /// An error where a limit allows nothing.

@@ -24,6 +24,7 @@ constexpr auto cut_names =
     named_values<Cut>({{Cut::joint_range, "command cut: joint range"},
                        {Cut::joint_speed, "command cut: joint speed"},
                        {Cut::joint_acceleration, "command cut: joint acceleration"},
+                       {Cut::effort, "command cut: effort"},
                        {Cut::box, "command cut: box of the base"},
                        {Cut::base_speed, "command cut: base speed"},
                        {Cut::base_acceleration, "command cut: base acceleration"}});
@@ -118,6 +119,12 @@ void MotionLimiter::bound(Passed& passed) const {
   const Eigen::VectorXd within = place.dof.cwiseMax(limits_.lower).cwiseMin(limits_.upper);
   if ((within - place.dof).cwiseAbs().maxCoeff() > rounding) cut(Cut::joint_range);
   place.dof = within;
+  if (place.effort.size() == 0) {
+    place.effort = limits_.effort;
+  } else if ((place.effort.array() > limits_.effort.array()).any()) {
+    place.effort = place.effort.cwiseMin(limits_.effort);
+    cut(Cut::effort);
+  }
   const Vector3d inside =
       place.X_WB.translation().cwiseMax(limits_.box_lower).cwiseMin(limits_.box_upper);
   if (inside != place.X_WB.translation()) cut(Cut::box);

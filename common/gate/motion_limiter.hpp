@@ -15,14 +15,25 @@ namespace prehend::gate {
 struct Place {
   Eigen::VectorXd dof;  // rad or m
   Pose X_WB = Pose::Identity();
+  /// What the drives of each DoF may use to get there, N m or N; empty: as much as the gate allows.
+  Eigen::VectorXd effort = {};
 };
 
 /// What of a command was cut off.
-enum class Cut { joint_range, joint_speed, joint_acceleration, box, base_speed, base_acceleration };
-inline constexpr std::size_t cuts = 6;
+enum class Cut {
+  joint_range,
+  joint_speed,
+  joint_acceleration,
+  effort,
+  box,
+  base_speed,
+  base_acceleration
+};
+inline constexpr std::size_t cuts = 7;
 std::string_view to_string(Cut cut);
 
-/// What is left of a command; whatever was not cut is the same to the last bit.
+/// What is left of a command; whatever was not cut is the same to the last bit. It always says its
+/// effort.
 struct Passed {
   Place place;
   std::array<bool, cuts> cut{};

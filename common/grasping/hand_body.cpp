@@ -8,6 +8,7 @@
 
 #include "common/grasping/bullet.hpp"
 #include "common/grasping/closest.hpp"
+#include "common/model/hand_effort.hpp"
 
 namespace prehend::grasping {
 namespace {
@@ -45,7 +46,7 @@ bool LinkPairFilter::ignores(int a, int b) const {
 
 HandBody::HandBody(const model::HandModel& hand, const std::vector<analysis::Material>& materials,
                    btMultiBodyDynamicsWorld& world, double time_step)
-    : hand_(hand), world_(world), time_step_(time_step) {
+    : hand_(hand), world_(world), time_step_(time_step), max_effort_(model::max_effort(hand)) {
   world_.getPairCache()->setOverlapFilterCallback(&filter_);
   build_links();
   world_.addMultiBody(multibody_.get());
@@ -187,8 +188,11 @@ void HandBody::move_colliders() {
   multibody_->updateCollisionObjectWorldTransforms(rotations, origins);
 }
 
-void HandBody::drive(const VectorXd& dof) {
+void HandBody::drive(const VectorXd& dof, const VectorXd& effort) {
   for (int i = 0; i < dof.size(); ++i) update_clutch(i, dof[i]);
+  const VectorXd most = effort.size() > 0
+                            ? VectorXd(effort.cwiseQuotient(max_effort_).cwiseMin(1.0))
+                            : VectorXd::Ones(dof.size());
   const VectorXd target = hand_.joint_angles(dof);
   for (int i = 0; i < target.size(); ++i) {
     const model::HandJoint& joint = hand_.joints()[static_cast<std::size_t>(i)];
@@ -198,14 +202,17 @@ void HandBody::drive(const VectorXd& dof) {
     // Only what closes is to be soft; a spread that gives way lets the object turn.
     double share = led.closing != 0 ? ahead / (std::abs(joint.multiplier) * led.squeeze) : 1.0;
     const auto& released = clutches_[static_cast<std::size_t>(joint.dof)].released;
+    double limit = most[joint.dof];
     if (released && i == led.joint) {
+      limit = 1;  // its gear holds it, whatever the motor may use
       wanted = std::clamp(*released + led.closing * give * led.squeeze, joint.lower, joint.upper);
       const double opened = led.closing * (*released - multibody_->getJointPos(i));
       const double pressed = *joint.breakaway / joint.max_torque;
       share = pressed + (1 - pressed) * std::clamp(opened / (yield * led.squeeze), 0.0, 1.0);
     }
     auto& motor = *motors_[static_cast<std::size_t>(i)];
-    motor.setMaxAppliedImpulse(joint.max_torque * std::clamp(share, min_drive, 1.0) * time_step_);
+    share = std::min(std::clamp(share, min_drive, 1.0), limit);
+    motor.setMaxAppliedImpulse(joint.max_torque * share * time_step_);
     motor.setPositionTarget(wanted, drive_gain);
   }
 }

@@ -30,7 +30,8 @@ struct LinkPairFilter : btOverlapFilterCallback {
 
 /// The hand in a Bullet world: a Featherstone multibody with a collider on each link, a drive and
 /// limits on each joint. Each drive is a spring that reaches its joint's torque limit when the
-/// command is the DoF's squeeze ahead, no faster than the DoF's velocity limit. The base moves as
+/// command is the DoF's squeeze ahead, no faster than the DoF's velocity limit, and pushes with no
+/// more than the effort that the DoF may use. The base moves as
 /// it is told, whatever the hand touches. Link and joint numbers are those of the model; values are
 /// rad and N m, or m and N of a joint that slides.
 ///
@@ -51,8 +52,9 @@ class HandBody {
   void place(const Pose& X_WB, const Eigen::VectorXd& joint, const Eigen::VectorXd& velocity);
   /// The same as `other`, to the bit; of the same hand.
   void copy_state(const HandBody& other);
-  /// Sets the drives for the next step towards these values of the DoFs.
-  void drive(const Eigen::VectorXd& dof);
+  /// Sets the drives for the next step towards these values of the DoFs. effort: what each DoF may
+  /// use, N m or N; empty: all it has.
+  void drive(const Eigen::VectorXd& dof, const Eigen::VectorXd& effort);
   /// The base's velocities for the next step, of its centre of mass. m/s, rad/s, in W.
   void move_base(const Eigen::Vector3d& velocity, const Eigen::Vector3d& turning);
 
@@ -91,6 +93,7 @@ class HandBody {
   const model::HandModel& hand_;
   btMultiBodyDynamicsWorld& world_;
   double time_step_;
+  Eigen::VectorXd max_effort_;  // of each DoF
   LinkPairFilter filter_;
   std::deque<Surface> surfaces_;  // stable addresses
   std::vector<std::unique_ptr<btCollisionShape>> shapes_;

@@ -76,6 +76,7 @@ struct World::State {
   Pose X_WB_command;
   Vector3d velocity_command = Vector3d::Zero();
   VectorXd dof_command;
+  VectorXd effort;  // that the DoFs may use; empty: all they have
   Arm arm;
   bool braking = false;
 
@@ -126,7 +127,7 @@ struct World::State {
     }
     arm.step(fingers->X_WC(), fingers->X_WC_of(X_WB_command), velocity_command, limits, dt());
     fingers->move_base(arm.velocity(), arm.turning());
-    fingers->drive(dof_command);
+    fingers->drive(dof_command, effort);
   }
 
   /// Calls visit(point, first, second) for every contact point that carried force in the last step.
@@ -205,6 +206,7 @@ std::unique_ptr<World> World::clone() const {
   to.arm = state_->arm;
   to.X_WB_command = state_->X_WB_command;
   to.velocity_command = state_->velocity_command;
+  to.effort = state_->effort;
   to.braking = state_->braking;
   for (int i = 0; i < body_count(); ++i) {
     copy->add_body(body(i), body_motion(i).X_WO);
@@ -290,6 +292,15 @@ Expected<void> World::command(const Pose& X_WB, const Eigen::VectorXd& dof,
   state_->velocity_command = velocity;
   state_->dof_command = state_->hand.clamp(dof);
   state_->braking = false;
+  return {};
+}
+
+Expected<void> World::limit_effort(const VectorXd& effort) {
+  if (effort.size() != 0 && effort.size() != state_->dof_command.size())
+    return fail("efforts of another hand", "world");
+  if (!effort.allFinite() || (effort.array() < 0).any())
+    return fail("efforts must be 0 or more", "world");
+  state_->effort = effort;
   return {};
 }
 

@@ -103,6 +103,9 @@ class World {
   /// rounding (1 % of the range).
   Expected<void> command(const Pose& X_WB, const Eigen::VectorXd& dof,
                          const Eigen::Vector3d& velocity = Eigen::Vector3d::Zero());
+  /// What the drives of each DoF may use from now on, N m or N; empty: all they have, as at first.
+  /// Fails, and changes nothing, on values that are negative, not finite, or of the wrong number.
+  Expected<void> limit_effort(const Eigen::VectorXd& effort);
   void hold_still();  // commands base and fingers to stay where they are; a grip keeps its squeeze
   void brake();       // the same, and until the next command the arm brakes as hard as it can
 

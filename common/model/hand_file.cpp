@@ -5,6 +5,7 @@
 
 #include "common/base/file_text.hpp"
 #include "common/base/paths.hpp"
+#include "common/model/hand_effort.hpp"
 #include "common/model/hand_model.hpp"
 #include "common/model/hand_urdf.hpp"
 #include "common/model/toml_values.hpp"
@@ -285,8 +286,8 @@ class HandLoader {
   Expected<void> read_gate(const toml::table& root) {
     const auto table = table_of(root, "gate");
     if (!table) return tl::unexpected(table.error());
-    if (auto known =
-            only_keys(*table, {"lower", "upper", "velocity", "acceleration"}, "gate", hand_page);
+    if (auto known = only_keys(*table, {"lower", "upper", "velocity", "acceleration", "effort"},
+                               "gate", hand_page);
         !known)
       return known;
     HandGate& gate = hand.gate_;
@@ -295,7 +296,8 @@ class HandLoader {
              {"lower", &gate.lower},
              {"upper", &gate.upper},
              {"velocity", &gate.velocity},
-             {"acceleration", &gate.acceleration}}) {
+             {"acceleration", &gate.acceleration},
+             {"effort", &gate.effort}}) {
       if (!table->contains(key)) continue;
       const auto read = numbers(table->get(key), hand.dofs_.size(), std::string("gate.") + key);
       if (!read) return tl::unexpected(read.error());
@@ -305,9 +307,9 @@ class HandLoader {
   }
 
   Expected<void> check_gate() const {
-    for (const auto* values : {&hand.gate_.velocity, &hand.gate_.acceleration})
+    for (const auto* values : {&hand.gate_.velocity, &hand.gate_.acceleration, &hand.gate_.effort})
       if (*values && !((*values)->array() > 0).all())
-        return fail("velocity and acceleration must be positive", "gate");
+        return fail("velocity, acceleration and effort must be positive", "gate");
     for (std::size_t k = 0; k < hand.dofs_.size(); ++k) {
       const auto i = static_cast<Eigen::Index>(k);
       const HandDof& dof = hand.dofs_[k];
@@ -315,6 +317,8 @@ class HandLoader {
       const double upper = hand.gate_.upper ? (*hand.gate_.upper)[i] : dof.upper;
       if (!(lower < upper) || lower < dof.lower - tolerance || upper > dof.upper + tolerance)
         return fail("needs lower < upper, within the limits of DoF " + dof.name, "gate");
+      if (hand.gate_.effort && (*hand.gate_.effort)[i] > max_effort(hand)[i] + tolerance)
+        return fail("is more than the drives have of DoF " + dof.name, "gate.effort");
     }
     return {};
   }

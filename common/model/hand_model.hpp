@@ -84,7 +84,7 @@ struct HandFingertip {
 
 /// What the gate lets through, as far as hand.toml says so: values of all DoFs, in their units.
 struct HandGate {
-  std::optional<Eigen::VectorXd> lower, upper, velocity, acceleration;
+  std::optional<Eigen::VectorXd> lower, upper, velocity, acceleration, effort;
 };
 
 /// The folder of a hand: what has a slash is a path, anything else a name in models/hands.

@@ -20,7 +20,7 @@ constexpr const char* target_name = "gate";
 
 constexpr const char* unled = "nobody sends robot/command; the hand stays as it is";
 
-gate::Command from_message(const v1::HandCommand& message, const dds::SampleInfo& info) {
+gate::Command from_message(const v2::HandCommand& message, const dds::SampleInfo& info) {
   Pose nowhere;
   nowhere.matrix().setConstant(std::numeric_limits<double>::quiet_NaN());
   gate::Command command;
@@ -30,7 +30,8 @@ gate::Command from_message(const v1::HandCommand& message, const dds::SampleInfo
   command.hand = message.hand().to_string();
   command.model = message.model().to_string();
   command.place = {convert::from_message(message.dof()),
-                   convert::from_message(message.X_WB()).value_or(nowhere)};
+                   convert::from_message(message.X_WB()).value_or(nowhere),
+                   convert::from_message(message.effort())};
   return command;
 }
 
@@ -39,6 +40,9 @@ gate::Limits limits_of(const model::HandModel& hand, const service::Config& conf
   limits.base = {config.number("gate.base_speed"), config.number("gate.base_acceleration")};
   limits.turn = {config.number("gate.base_turn_speed"),
                  config.number("gate.base_turn_acceleration")};
+  // What is no share is refused, as one of 0 is.
+  const double share = config.number("gate.effort");
+  limits.effort *= share <= 1 ? share : 0;
   const auto& box = config.numbers("gate.box");
   if (box.size() == 6) {
     limits.box_lower = {box[0], box[1], box[2]};
@@ -103,7 +107,7 @@ Gatekeeper::Gatekeeper(service::Shell& shell, const model::HandModel& hand, cons
   shell_.busy_while([this] { return leader_.has_value(); });
   if (shell_.config().flag("safety.start_stopped"))
     gate_.stop("safety.start_stopped", "not yet released", shell.now());
-  shell_.subscribe(dds::robot_command, std::function([this](const v1::HandCommand& message,
+  shell_.subscribe(dds::robot_command, std::function([this](const v2::HandCommand& message,
                                                             const dds::SampleInfo& info) {
                      // Whoever commanded is gone: the hand holds still once its command is stale.
                      if (!info.gone) on_command(message, info);
@@ -182,7 +186,7 @@ void Gatekeeper::note_refused(std::string_view reason, const gate::WriterId& wri
 
 // --- commands
 
-void Gatekeeper::on_command(const v1::HandCommand& message, const dds::SampleInfo& info) {
+void Gatekeeper::on_command(const v2::HandCommand& message, const dds::SampleInfo& info) {
   const Time now = shell_.now();
   const auto passed = gate_.admit(from_message(message, info), now);
   const bool ours = passed || passed.error() != gate::Refusal::another_hand;
@@ -230,7 +234,7 @@ void Gatekeeper::refuse(gate::Refusal refusal, const dds::SampleInfo& info, Time
   (refusal == gate::Refusal::second_writer ? second_ : refused_) = refused;
 }
 
-void Gatekeeper::obey(const v1::HandCommand& message, const dds::SampleInfo& info,
+void Gatekeeper::obey(const v2::HandCommand& message, const dds::SampleInfo& info,
                       const gate::Passed& passed, Time now) {
   for (std::size_t i = 0; i < gate::cuts; ++i)
     if (passed.cut[i]) {

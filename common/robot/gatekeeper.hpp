@@ -23,7 +23,7 @@ namespace prehend::robot {
 /// What the gate stands before, simulated or real. Called by the shell.
 struct Robot {
   /// Obeys a command: `place` is what the gate has left of it.
-  std::function<Expected<void>(const v1::HandCommand& command, const gate::Place& place, Time now)>
+  std::function<Expected<void>(const v2::HandCommand& command, const gate::Place& place, Time now)>
       obey;
   /// Where the hand is kept now; nothing as long as it may be put anywhere.
   std::function<std::optional<gate::Place>()> where;
@@ -53,9 +53,9 @@ class Gatekeeper {
  private:
   Gatekeeper(service::Shell& shell, const model::HandModel& hand, const std::string& name,
              gate::CommandGate gate, Robot robot);
-  void on_command(const v1::HandCommand& message, const dds::SampleInfo& info);
+  void on_command(const v2::HandCommand& message, const dds::SampleInfo& info);
   void refuse(gate::Refusal refusal, const dds::SampleInfo& info, Time now);
-  void obey(const v1::HandCommand& message, const dds::SampleInfo& info, const gate::Passed& passed,
+  void obey(const v2::HandCommand& message, const dds::SampleInfo& info, const gate::Passed& passed,
             Time now);
   void count(std::string_view reason);
 

@@ -98,6 +98,8 @@ const std::vector<ConfigKey>& config_keys() {
       {"gate.max_silence", 0.3, "s without a command, after which another writer may lead"},
       {"gate.box", Numbers{-10, -10, -10, 10, 10, 10},
        "m, on the table: where the base may be, lower x, y, z, upper x, y, z"},
+      {"gate.effort", 1.0,
+       "how much of the effort of hand.toml the fingers may use, above 0 up to 1"},
       {"gate.base_speed", 1.2, "m/s, of the base"},
       {"gate.base_acceleration", 300.0, "m/s², of the base"},
       {"gate.base_turn_speed", 3.6, "rad/s, of the base"},

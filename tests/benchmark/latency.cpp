@@ -106,7 +106,7 @@ int floor_relay(const Place& place) {
   auto participant = join(place, "floor-relay", "mapping");
   auto writer = *participant.writer(dds::robot_command);
   auto reader = *participant.reader(dds::hand_posture);
-  v1::HandCommand command;
+  v2::HandCommand command;
   command.hand("hand");
   command.dof(std::vector<double>(4));
   Relay<v1::HandPosture> relay([&](const v1::HandPosture& posture) {
@@ -181,7 +181,7 @@ Figures measure_floor(double rate, std::size_t wanted, const std::string& self, 
   service::LatencyWindow window;
   std::atomic<std::size_t> seen = 0;
   const std::size_t warm_up = static_cast<std::size_t>(rate);
-  Relay<v1::HandCommand> relay([&](const v1::HandCommand& command) {
+  Relay<v2::HandCommand> relay([&](const v2::HandCommand& command) {
     const Duration latency = now() - from_ns(command.origin_ns());
     const std::scoped_lock lock(mutex);
     if (++seen > warm_up) window.add(latency);
@@ -197,7 +197,8 @@ Figures measure_floor(double rate, std::size_t wanted, const std::string& self, 
 }
 
 /// The real chain: the world's own measure, from its status.
-Figures measure_lab(double rate, std::size_t wanted, const Case& at) {
+Figures measure_lab(double rate, std::size_t wanted, const Case& at,
+                    const std::filesystem::path& audit) {
   const std::string rig = fmt::format("lab-{}-{}", getpid(), rate);
   const Place place = at.place(rig);
   const auto spawn = [&](const std::string& name, std::vector<std::string> more) {
@@ -214,7 +215,8 @@ Figures measure_lab(double rate, std::size_t wanted, const Case& at) {
   };
   auto participant = join(place, "watcher", "viewer");
   auto statuses = *participant.reader(dds::service_status);
-  auto simulation = spawn("simulation", {});
+  // Its gate is always there; it also writes down who leads, and what is refused.
+  auto simulation = spawn("simulation", {"safety.audit=" + audit.string()});
   auto mapping = spawn("mapping", {});
   auto glove = spawn("glove", {fmt::format("glove.rate={}", rate)});
   Figures figures;
@@ -265,7 +267,7 @@ int run(bool json, double seconds, const std::vector<std::string>& cases, const 
     for (const double rate : {30.0, 500.0}) {
       const auto wanted = static_cast<std::size_t>(std::min(1024.0, rate * seconds));
       const Figures before = measure_floor(rate, wanted, self, at);
-      const Figures lab = measure_lab(rate, wanted, at);
+      const Figures lab = measure_lab(rate, wanted, at, folder->path() / "audit");
       const Figures after = measure_floor(rate, wanted, self, at);
       const double p50 = 0.5 * (before.p50 + after.p50), p99 = 0.5 * (before.p99 + after.p99);
       rows.push_back({{"case", name},

@@ -104,8 +104,8 @@ class States : public eprosima::fastdds::dds::DataReaderListener {
 };
 
 /// Lets the base go around a circle of 10 cm.
-void command(dds::Writer<v1::HandCommand>& writer, const std::atomic<bool>& ended) {
-  v1::HandCommand message;
+void command(dds::Writer<v2::HandCommand>& writer, const std::atomic<bool>& ended) {
+  v2::HandCommand message;
   message.hand("hand");
   message.model("barrett");
   message.dof({0, 0, 0, 0});

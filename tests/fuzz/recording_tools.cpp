@@ -37,7 +37,7 @@ std::string record(const recording::types::Library& contract, const std::string&
     recording::mcap::Metadata idl{"idl", {}};
     std::uint64_t time = 1'000'000'000;
     for (const auto& [topic, name] : {std::pair("object/detection", "prehend::v1::ObjectDetection"),
-                                      std::pair("robot/command", "prehend::v1::HandCommand"),
+                                      std::pair("robot/command", "prehend::v2::HandCommand"),
                                       std::pair("lab/clock", "prehend::v1::LabClock")}) {
       const recording::types::Structure& type = *contract.find(name);
       idl.metadata.emplace_back(name, recording::types::omgidl(type));

@@ -25,7 +25,7 @@ class SetMode : public Rig {
   void watch() {
     for (const auto& sample : commands_.take()) {
       if (sample.info.gone) continue;
-      const v1::HandCommand& now = sample.data;
+      const v2::HandCommand& now = sample.data;
       if (last_) {
         const double t = 1e-9 * static_cast<double>(now.stamp_ns() - last_->stamp_ns());
         for (std::size_t i = 0; i < now.dof().size(); ++i)
@@ -71,11 +71,11 @@ class SetMode : public Rig {
     return last_ ? last_->dof() : std::vector<double>();
   }
 
-  dds::Reader<v1::HandCommand> commands_ = reader(dds::robot_command);
+  dds::Reader<v2::HandCommand> commands_ = reader(dds::robot_command);
   dds::Reader<v1::OperatorReply> replies_ = reader(dds::operator_reply);
   dds::Writer<v1::HandPosture> postures_ = writer(dds::hand_posture);
   dds::Writer<v1::OperatorCommand> orders_ = writer(dds::operator_command);
-  std::optional<v1::HandCommand> last_;
+  std::optional<v2::HandCommand> last_;
   std::uint64_t frames_ = 0;
   int order_count_ = 0;
   bool moved_ = false;

@@ -38,7 +38,7 @@ class Recovery : public Rig {
   Strings sets_;
   std::map<std::string, service::Process> processes_;
   dds::Reader<v1::HandPosture> postures_ = reader(dds::hand_posture);
-  dds::Reader<v1::HandCommand> commands_ = reader(dds::robot_command);
+  dds::Reader<v2::HandCommand> commands_ = reader(dds::robot_command);
   dds::Reader<v1::HandState> states_ = reader(dds::robot_state);
   dds::Reader<v1::ObjectDetection> detections_ = reader(dds::object_detection);
 };
@@ -79,7 +79,7 @@ TEST_F(Recovery, WithoutAGloveTheHandHoldsStill) {
   processes_.at("glove").signal(SIGKILL);
   ASSERT_TRUE(processes_.at("glove").wait(seconds(5)));
   ASSERT_TRUE(
-      hear<v1::HandCommand>(commands_, 10, [](auto& c) { return c.mode() == v1::MODE_HOLD; }) ||
+      hear<v2::HandCommand>(commands_, 10, [](auto& c) { return c.mode() == v1::MODE_HOLD; }) ||
       commands_.take().empty());
   // The joints come to rest at what was last commanded, and stay there.
   const auto at_rest = [](const v1::HandState& state) {

@@ -228,7 +228,7 @@ TEST_F(Replay, WrongUseIsOneLine) {
 // stamps are those at which the commands were made, so the quotients are exact up to rounding.
 TEST_F(Replay, EasesTheHandToWhereTheRecordingBegins) {
   const auto model = model::HandModel::load(share_directory() / "models/hands" / "barrett").value();
-  v1::HandCommand goal;
+  v2::HandCommand goal;
   goal.hand("hand");
   goal.model("barrett");
   goal.mode(v1::MODE_INTELLIGENT);
@@ -256,8 +256,8 @@ TEST_F(Replay, EasesTheHandToWhereTheRecordingBegins) {
   auto player =
       start_program("prehend-replay", with_lab({file("goal.mcap"), "--quiet", "--ease-in", "hand",
                                                 "--stamps", "now", "-t", "robot/command"}));
-  std::vector<v1::HandCommand> eased;
-  std::optional<v1::HandCommand> recorded;
+  std::vector<v2::HandCommand> eased;
+  std::optional<v2::HandCommand> recorded;
   ASSERT_TRUE(eventually(30, [&] {
     for (const auto& sample : commands.take()) {
       if (sample.info.gone) continue;
@@ -271,7 +271,7 @@ TEST_F(Replay, EasesTheHandToWhereTheRecordingBegins) {
   ASSERT_GT(eased.size(), 20u);
   EXPECT_EQ(recorded->dof(), goal.dof());
   EXPECT_EQ(recorded->mode(), v1::MODE_INTELLIGENT);
-  for (const v1::HandCommand& command : eased) {
+  for (const v2::HandCommand& command : eased) {
     EXPECT_EQ(command.mode(), v1::MODE_DIRECT);  // it moves
     EXPECT_EQ(command.weight(), 0);
     EXPECT_EQ(command.object(), "");
@@ -305,7 +305,7 @@ TEST_F(Replay, EasesTheHandToWhereTheRecordingBegins) {
 // A recording comes from anywhere: what it calls its hand is a name, never the way to a file.
 TEST_F(Replay, ARecordedHandIsANameAndNoPath) {
   for (const std::string model : {"../hands/barrett", "/tmp", "."}) {
-    v1::HandCommand command;
+    v2::HandCommand command;
     command.hand("hand");
     command.model(model);
     auto recording = create("path.mcap");

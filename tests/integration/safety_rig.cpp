@@ -5,8 +5,8 @@ namespace prehend::integration {
 using Eigen::Vector3d;
 using std::chrono::milliseconds;
 
-v1::HandCommand SafetyRig::command(const Vector3d& p) {
-  v1::HandCommand message;
+v2::HandCommand SafetyRig::command(const Vector3d& p) {
+  v2::HandCommand message;
   message.hand("hand");
   message.model("barrett");
   message.sequence_number(++sequence_);
@@ -37,8 +37,8 @@ void SafetyRig::listen() {
     if (!sample.info.gone && sample.data.name().to_string() == "simulation") status_ = sample.data;
 }
 
-bool SafetyRig::send(dds::Writer<v1::HandCommand>& writer, double limit_s,
-                     const std::function<v1::HandCommand()>& next,
+bool SafetyRig::send(dds::Writer<v2::HandCommand>& writer, double limit_s,
+                     const std::function<v2::HandCommand()>& next,
                      const std::function<bool()>& condition) {
   return eventually(limit_s, [&] {
     writer.write(next());

@@ -18,12 +18,12 @@ inline const Strings patient{"gate.max_silence=2"};
 class SafetyRig : public Rig {
  protected:
   /// The hand open, its base at p; counted, and of now.
-  v1::HandCommand command(const Eigen::Vector3d& p);
+  v2::HandCommand command(const Eigen::Vector3d& p);
   /// What has been said since.
   void listen();
   /// Sends what `next` makes every 20 ms until the condition holds.
-  bool send(dds::Writer<v1::HandCommand>& writer, double limit_s,
-            const std::function<v1::HandCommand()>& next, const std::function<bool()>& condition);
+  bool send(dds::Writer<v2::HandCommand>& writer, double limit_s,
+            const std::function<v2::HandCommand()>& next, const std::function<bool()>& condition);
   /// Listens until the condition holds.
   bool wait(double limit_s, const std::function<bool()>& condition);
   /// A simulation whose hand follows our commands.
@@ -39,7 +39,7 @@ class SafetyRig : public Rig {
   bool says(const std::string& words) const;
 
   std::uint64_t sequence_ = 0;
-  dds::Writer<v1::HandCommand> commands_ = writer(dds::robot_command);
+  dds::Writer<v2::HandCommand> commands_ = writer(dds::robot_command);
   dds::Reader<v1::HandState> states_ = reader(dds::robot_state);
   dds::Reader<v1::GateState> gates_ = reader(dds::robot_gate);
   dds::Reader<v1::ServiceStatus> statuses_ = reader(dds::service_status);

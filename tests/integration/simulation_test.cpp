@@ -11,12 +11,12 @@ namespace {
 using Eigen::Vector3d;
 
 /// Where the palm is, and how far the fingers have closed, rad.
-v1::HandCommand command(const Vector3d& p_WG, double closure) {
+v2::HandCommand command(const Vector3d& p_WG, double closure) {
   Eigen::Matrix3d R;  // palm along y, its x axis up
   R.col(0) = Vector3d::UnitZ();
   R.col(2) = Vector3d::UnitY();
   R.col(1) = R.col(2).cross(R.col(0));
-  v1::HandCommand message;
+  v2::HandCommand message;
   message.hand("hand");
   message.model("barrett");
   message.stamp_ns(now_ns());

@@ -19,7 +19,7 @@ constexpr std::int64_t remembered_ns = 10'000'000'000;
 
 /// Where the grasped body was when the hand closed, in W.
 std::optional<Eigen::Vector3d> grasped_at(const v1::GraspReport& report,
-                                          const std::optional<v1::HandCommand>& command) {
+                                          const std::optional<v2::HandCommand>& command) {
   if (!command) return std::nullopt;
   const auto X_WB = convert::from_message(command->X_WB());
   const auto X_BO = convert::from_message(report.X_BO());
@@ -52,7 +52,7 @@ void Observer::hear(const v1::ObjectDetection& detection) {
   while (heard.back().stamp_ns() - heard.front().stamp_ns() > remembered_ns) heard.pop_front();
 }
 
-void Observer::hear(const v1::HandCommand& command) {
+void Observer::hear(const v2::HandCommand& command) {
   // What comes after the first grasp is another story; a hand that holds still because the
   // demonstration is over says nothing about how it was followed.
   if (report_ || (command.mode() == v1::MODE_HOLD && commanded())) return;

@@ -24,7 +24,7 @@ class Observer {
 
   void hear(const v1::GloveFrame& frame);
   void hear(const v1::ObjectDetection& detection);
-  void hear(const v1::HandCommand& command);
+  void hear(const v2::HandCommand& command);
   void hear(const v1::GraspReport& report);
   void hear(const v1::ServiceStatus& status);
   void lost_service(const std::string& key);
@@ -51,7 +51,7 @@ class Observer {
   std::optional<model::Scene> truth_;
   std::map<std::string, v1::ServiceStatus> services_;                  // by key
   std::map<std::string, std::deque<v1::ObjectDetection>> detections_;  // by name, in order of stamp
-  std::optional<v1::HandCommand> command_;
+  std::optional<v2::HandCommand> command_;
   std::optional<v1::GraspReport> report_;
   std::string device_;
   std::uint64_t frames_ = 0;

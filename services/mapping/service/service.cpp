@@ -259,9 +259,9 @@ class Service::Topics {
   service::OrderBook orders_;
   MappingModes modes_;
   std::string hand_name_;
-  service::Shell::Output<v1::HandCommand> output_;
+  service::Shell::Output<v2::HandCommand> output_;
   service::Shell::Output<v1::OperatorReply> replies_;
-  v1::HandCommand message_;  // reused, so that a command costs no allocation
+  v2::HandCommand message_;  // reused, so that a command costs no allocation
   std::uint64_t sequence_number_ = 0;
   Time last_posture_;  // that was answered
   std::string last_reject_, missing_;

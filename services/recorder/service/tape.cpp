@@ -3,12 +3,14 @@
 #include <algorithm>
 
 #include "common/recording/layout/latched_samples.hpp"
+#include "common/recording/layout/older_types.hpp"
 
 namespace prehend::recorder {
 
 namespace {
 
-Played played(const recording::Stream& stream, const recording::mcap::Message& message) {
+Played played(const recording::Stream& stream, const recording::mcap::Message& message,
+              bool older) {
   Played result;
   result.stream = &stream;
   result.log_time = from_ns(static_cast<std::int64_t>(message.log_time));
@@ -16,6 +18,7 @@ Played played(const recording::Stream& stream, const recording::mcap::Message& m
   sample.kind = stream.kind;
   if (stream.kind == dds::RawSample::Kind::data)
     sample.payload.assign(message.data.begin(), message.data.end());
+  if (older) recording::make_current(sample.payload);
   sample.instance = stream.instance;
   sample.writer = stream.writer;
   sample.sequence = message.sequence;
@@ -32,7 +35,7 @@ Expected<Tape> Tape::open(const std::vector<std::filesystem::path>& files, const
   for (const auto& path : files) {
     auto reader = recording::mcap::Reader::open(path);
     if (!reader) return tl::unexpected(reader.error());
-    auto file = std::make_unique<File>(File{std::move(*reader), {}, {}, {}});
+    auto file = std::make_unique<File>(File{std::move(*reader), {}, {}, {}, {}});
     for (const Error& error : file->reader.contents().damage) tape.note(error);
     const auto statistics = file->reader.statistics();
     if (!statistics) return tl::unexpected(statistics.error());
@@ -45,7 +48,12 @@ Expected<Tape> Tape::open(const std::vector<std::filesystem::path>& files, const
         tape.note(stream.error());
         continue;
       }
-      if (wanted(stream->topic.name)) file->streams.emplace(id, std::move(*stream));
+      if (!wanted(stream->topic.name)) continue;
+      const std::string current(recording::current_type(stream->topic.type));
+      const bool older = current != stream->topic.type;
+      stream->topic.type = current;
+      const auto added = file->streams.emplace(id, std::move(*stream)).first;
+      if (older) file->older.insert(&added->second);
     }
     tape.files_.push_back(std::move(file));
     if (statistics->message_count == 0) continue;
@@ -89,7 +97,8 @@ void Tape::advance(File& file) {
     if (!*message) return;
     const auto stream = file.streams.find((*message)->message.channel_id);
     if (stream == file.streams.end()) continue;
-    file.waiting = played(stream->second, (*message)->message);
+    file.waiting =
+        played(stream->second, (*message)->message, file.older.contains(&stream->second));
     return;
   }
 }
@@ -136,9 +145,13 @@ std::vector<Played> Tape::standing(Time time) {
       standing.take(found->second, (*message)->message);
     }
   }
+  const auto is_older = [this](const recording::Stream* stream) {
+    return std::ranges::any_of(files_,
+                               [&](const auto& file) { return file->older.contains(stream); });
+  };
   std::vector<Played> all;
   for (const auto& sample : standing.samples())
-    all.push_back(played(*sample.stream, sample.message()));
+    all.push_back(played(*sample.stream, sample.message(), is_older(sample.stream)));
   return all;
 }
 

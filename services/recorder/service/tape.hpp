@@ -5,6 +5,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -23,7 +24,8 @@ struct Played {
 };
 
 /// One or several recordings (the parts of a split one) as one sequence of samples in order of log
-/// time. What cannot be read is counted and passed by.
+/// time. What cannot be read is counted and passed by. Messages whose type has got more fields
+/// since are of the newest one (older_types.hpp).
 class Tape {
  public:
   using Wanted = std::function<bool(const std::string& topic)>;
@@ -52,6 +54,7 @@ class Tape {
   struct File {
     recording::mcap::Reader reader;
     std::map<std::uint16_t, recording::Stream> streams;  // wanted ones, by channel
+    std::set<const recording::Stream*> older;            // whose messages are of an older type
     std::optional<recording::mcap::MessageCursor> cursor;
     std::optional<Played> waiting;
   };

@@ -14,7 +14,8 @@ struct Command {
   Time stamp{};
   Time origin{};
   std::string model;
-  Eigen::VectorXd dof;  // rad
+  Eigen::VectorXd dof;     // rad
+  Eigen::VectorXd effort;  // N m, that the DoFs may use; empty: all they have
   Pose X_WB = Pose::Identity();
   int mode = 0;
   double weight = 0;

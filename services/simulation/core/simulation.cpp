@@ -84,9 +84,13 @@ Expected<void> Simulation::accept(const Command& command, Time now) {
     return fail("command of wrong length");
   if (!command.dof.allFinite() || !is_finite(command.X_WB)) return fail("command not finite");
   if (command.X_WB.translation().norm() > far_off) return fail("command far away");
+  if (auto limited = world_->limit_effort(command.effort); !limited)
+    return fail("command with impossible efforts", limited.error().where);
   if (!command_) approach(command);
-  if (auto taken = world_->command(command.X_WB, command.dof); !taken)
+  if (auto taken = world_->command(command.X_WB, command.dof); !taken) {
+    world_->limit_effort(command_ ? command_->effort : Eigen::VectorXd());
     return fail("command outside limits", taken.error().where, taken.error().hint);
+  }
   command_ = command;
   accepted_ = now;
   holding_ = braking_ = false;

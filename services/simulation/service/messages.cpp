@@ -5,12 +5,13 @@
 #include "common/convert/convert.hpp"
 
 namespace prehend::simulation {
-Command from_message(const v1::HandCommand& message, const gate::Place& place) {
+Command from_message(const v2::HandCommand& message, const gate::Place& place) {
   Command command;
   command.stamp = from_ns(message.stamp_ns());
   command.origin = from_ns(message.origin_ns());
   command.model = message.model().to_string();
   command.dof = place.dof;
+  command.effort = place.effort;
   command.X_WB = place.X_WB;
   command.mode = static_cast<int>(message.mode());
   command.weight = message.weight();

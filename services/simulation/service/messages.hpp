@@ -14,7 +14,7 @@
 namespace prehend::simulation {
 
 /// place: what the gate has left of it.
-Command from_message(const v1::HandCommand& message, const gate::Place& place);
+Command from_message(const v2::HandCommand& message, const gate::Place& place);
 
 /// An object as it was seen. What the catalogue knows is taken from there, except the size, which
 /// was seen; anything else is taken for a light thing of wood.

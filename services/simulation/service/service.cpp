@@ -69,7 +69,7 @@ Expected<void> Service::start() {
   }
 
   robot::Robot robot;
-  robot.obey = [this](const v1::HandCommand& message, const gate::Place& place, Time now) {
+  robot.obey = [this](const v2::HandCommand& message, const gate::Place& place, Time now) {
     return simulation_->accept(from_message(message, place), now);
   };
   robot.where = [this] { return where(); };
@@ -104,6 +104,7 @@ void Service::go(const gate::Place& place, Time now) {
   command.origin = {};
   command.mode = static_cast<int>(v1::MODE_HOLD);
   command.dof = place.dof;
+  command.effort = place.effort;
   command.X_WB = place.X_WB;
   if (auto went = simulation_->accept(command, now); !went) shell_.status().drop(went.error().what);
 }

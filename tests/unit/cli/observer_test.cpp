@@ -29,8 +29,8 @@ v1::ObjectDetection detection(const std::string& name, double x, double y, std::
   return message;
 }
 
-v1::HandCommand command(v1::MappingMode mode, double weight, const std::string& object) {
-  v1::HandCommand message;
+v2::HandCommand command(v1::MappingMode mode, double weight, const std::string& object) {
+  v2::HandCommand message;
   message.model("barrett");
   message.mode(mode);
   message.weight(weight);

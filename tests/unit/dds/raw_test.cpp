@@ -102,7 +102,7 @@ TEST_F(Raw, DiscoveryTellsTypeKeyAndQosOfATopic) {
   DiscoveredWriter command, tick;
   ASSERT_TRUE(match(command, found, "robot/command"));
   ASSERT_TRUE(match(tick, found, "lab/clock"));
-  EXPECT_EQ(command.topic.type, "prehend::v1::HandCommand");
+  EXPECT_EQ(command.topic.type, "prehend::v2::HandCommand");
   EXPECT_TRUE(command.topic.keyed);
   EXPECT_FALSE(tick.topic.keyed);
   EXPECT_EQ(command.rigs, std::vector{rig});
@@ -239,7 +239,7 @@ TEST_F(Raw, WhatAKeepLastWriterHasForgottenIsNoLoss) {
 // Recordings are read by whoever got them from somewhere: what is damaged in them is refused and
 // does not end the process.
 TEST(Decode, RefusesWhatIsDamaged) {
-  v1::HandCommand message, decoded;
+  v2::HandCommand message, decoded;
   message.hand("hand");
   message.dof({0.1, 0.2});
   RawSample sample;

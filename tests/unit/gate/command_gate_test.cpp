@@ -6,6 +6,7 @@
 
 #include <limits>
 
+#include "common/model/hand_effort.hpp"
 #include "tests/unit/gate/fixtures.hpp"
 
 namespace prehend::gate {
@@ -57,7 +58,50 @@ TEST(Gate, RefusesWhatCannotBeMeant) {
   broken = command(barrett(), 1, 0);
   broken.place.dof[1] = barrett().dofs()[1].upper + 0.1;
   EXPECT_EQ(refusal(gate, broken, at(0)), Refusal::outside_limits);
+  broken = command(barrett(), 1, 0);
+  broken.place.effort = Eigen::VectorXd::Ones(3);
+  EXPECT_EQ(refusal(gate, broken, at(0)), Refusal::wrong_length);
+  broken.place.effort = Eigen::Vector4d(0, 0, std::numeric_limits<double>::infinity(), 0);
+  EXPECT_EQ(refusal(gate, broken, at(0)), Refusal::not_finite);
+  broken.place.effort = Eigen::Vector4d(0, 0, -0.1, 0);
+  EXPECT_EQ(refusal(gate, broken, at(0)), Refusal::outside_limits);
   EXPECT_FALSE(gate.leader(at(0))) << "nonsense leads nothing";
+}
+
+TEST(Gate, CutsEffortsToThoseOfTheDrives) {
+  auto gate = made(barrett());
+  const Eigen::VectorXd most = model::max_effort(barrett());
+  Command sent = command(barrett(), 1, 0);
+  auto passed = gate.admit(sent, at(0));
+  ASSERT_TRUE(passed);
+  EXPECT_EQ(passed->place.effort, most) << "all that it may";
+  sent = command(barrett(), 1, 10);
+  sent.place.effort = 0.5 * most;
+  passed = gate.admit(sent, at(10));
+  ASSERT_TRUE(passed);
+  EXPECT_EQ(passed->place.effort, sent.place.effort);
+  EXPECT_FALSE(passed->has(Cut::effort));
+  sent = command(barrett(), 1, 20);
+  sent.place.effort = 0.5 * most;
+  sent.place.effort[2] = 3 * most[2];
+  passed = gate.admit(sent, at(20));
+  ASSERT_TRUE(passed);
+  EXPECT_TRUE(passed->has(Cut::effort));
+  EXPECT_EQ(passed->place.effort[2], most[2]);
+  EXPECT_EQ(passed->place.effort[1], sent.place.effort[1]);
+}
+
+// A command that says nothing of efforts must not have those that the drives have.
+TEST(Gate, GivesWhoAsksForNoEffortWhatIsAllowed) {
+  Limits limits = limits_of(barrett());
+  limits.effort *= 0.5;
+  auto gate = CommandGate::create(barrett(), {.hand = "hand"}, limits).value();
+  const auto passed = gate.admit(command(barrett(), 1, 0), at(0));
+  ASSERT_TRUE(passed);
+  EXPECT_EQ(passed->place.effort, limits.effort);
+  EXPECT_FALSE(passed->has(Cut::effort));
+  gate.stop("anna", "", at(10));
+  EXPECT_EQ(gate.go(open_at(barrett(), {0, 0, 0.5}), at(20)).place.effort, limits.effort);
 }
 
 TEST(Gate, RefusesWhatIsOldAndWhatIsFromTheFuture) {
@@ -242,6 +286,9 @@ TEST(Gate, ObeysOnlyWithConsentWhereThatIsAsked) {
 TEST(Gate, IsNotMadeWithLimitsThatAllowNothing) {
   Limits limits = limits_of(barrett());
   limits.base.speed = 0;
+  EXPECT_FALSE(CommandGate::create(barrett(), {}, limits));
+  limits = limits_of(barrett());
+  limits.effort[1] = 0;
   EXPECT_FALSE(CommandGate::create(barrett(), {}, limits));
   limits = limits_of(barrett());
   limits.box_upper = limits.box_lower;

@@ -14,6 +14,7 @@
 #include <tuple>
 
 #include "common/base/random.hpp"
+#include "common/model/hand_effort.hpp"
 #include "tests/unit/gate/fixtures.hpp"
 
 namespace prehend::gate {
@@ -60,6 +61,11 @@ std::vector<Sent> wild(Random& random, const model::HandModel& hand) {
               .toRotationMatrix();
       for (double& dof : place.dof) dof += random.normal(random.uniform() < 0.1 ? 1 : 0.05);
       place.dof = hand.clamp(place.dof);
+      place.effort.resize(0);
+      if (random.uniform() < 0.7) {
+        place.effort = model::max_effort(hand);
+        for (double& effort : place.effort) effort *= random.uniform(0, 1.5);
+      }
       Command command{writer(from), ++sequence, at(ms), "hand", hand.name(), place};
       const double fault = random.uniform();
       if (fault < 0.02)
@@ -72,9 +78,19 @@ std::vector<Sent> wild(Random& random, const model::HandModel& hand) {
         command.model = "other";
       else if (fault < 0.07)
         command.place.dof.conservativeResize(command.place.dof.size() + 1);
-      else if (fault < 0.10)
+      else if (fault < 0.075)
+        command.place.effort = Eigen::VectorXd::Constant(place.dof.size(), -1);
+      else if (fault < 0.08)
+        command.place.effort =
+            Eigen::VectorXd::Constant(place.dof.size(), std::numeric_limits<double>::quiet_NaN());
+      else if (fault < 0.0825)
+        command.place.effort =
+            Eigen::VectorXd::Constant(place.dof.size(), std::numeric_limits<double>::infinity());
+      else if (fault < 0.085)
+        command.place.effort = Eigen::VectorXd::Ones(place.dof.size() + 1);
+      else if (fault < 0.115)
         command.stamp += seconds(random.uniform(-1, 1));
-      else if (fault < 0.11)
+      else if (fault < 0.125)
         command.sequence += random.index(1000);
       const Duration delay = seconds(random.uniform() < 0.2 ? random.uniform(0, 0.3) : 0.005);
       all.push_back({command, at(ms) + delay});
@@ -90,6 +106,7 @@ Limits random_limits(Random& random, const model::HandModel& hand) {
   Limits limits = limits_of(hand);
   if (random.uniform() < 0.5) return limits;
   for (MotionLimit& joint : limits.joint) joint = {random.uniform(0.1, 3), random.uniform(0.1, 30)};
+  for (double& effort : limits.effort) effort *= random.uniform(0.1, 1);
   limits.base = {random.uniform(0.1, 1), random.uniform(0.1, 30)};
   limits.turn = {random.uniform(0.1, 3), random.uniform(0.1, 30)};
   limits.box_lower = {-0.5, -0.5, 0};
@@ -117,6 +134,7 @@ class Watch {
     EXPECT_TRUE(place.dof.allFinite() && is_finite(place.X_WB));
     EXPECT_LE((place.dof - limits_.upper).maxCoeff(), 0);
     EXPECT_GE((place.dof - limits_.lower).minCoeff(), 0);
+    see_effort(command, passed);
     const Vector3d& p = place.X_WB.translation();
     EXPECT_TRUE((p.array() >= limits_.box_lower.array() - 1e-9).all() &&
                 (p.array() <= limits_.box_upper.array() + 1e-9).all());
@@ -136,6 +154,21 @@ class Watch {
     then_ = now;
     ++passed_;
   }
+  /// Bounded by the limits whatever was asked for, counted where it is cut, and else as it came.
+  void see_effort(const Command& command, const Passed& passed) const {
+    const Eigen::VectorXd &effort = passed.place.effort, &asked = command.place.effort;
+    ASSERT_EQ(effort.size(), limits_.effort.size());
+    EXPECT_TRUE((effort.array() >= 0).all() && (effort.array() <= limits_.effort.array()).all());
+    if (asked.size() == 0) {
+      EXPECT_EQ(effort, limits_.effort);
+      EXPECT_FALSE(passed.has(Cut::effort)) << "it asked for nothing";
+      return;
+    }
+    ASSERT_EQ(asked.size(), effort.size());
+    EXPECT_TRUE((effort.array() <= asked.array()).all());
+    EXPECT_EQ(passed.has(Cut::effort), effort != asked);
+  }
+
   const std::optional<Place>& place() const { return place_; }
   int passed() const { return passed_; }
   int leads() const { return leads_; }
@@ -204,10 +237,15 @@ TEST_P(RandomStreams, OfMappingPassUnchanged) {
           place.X_WB,
           make_pose(goal, Eigen::AngleAxisd(random.normal(), Vector3d::UnitY()).toRotationMatrix()),
           1.0 * t, 3.0 * t);
+      place.effort = random.uniform() < 0.5
+                         ? Eigen::VectorXd()
+                         : Eigen::VectorXd(random.uniform() * model::max_effort(hand));
       const Command command{writer(1), ++sequence, stamp, "hand", hand.name(), place};
       const auto passed = gate.admit(command, now);
       ASSERT_TRUE(passed) << to_string(passed.error()) << ", seed " << seed << ", " << i;
       EXPECT_EQ(passed->place.dof, place.dof);
+      EXPECT_EQ(passed->place.effort,
+                place.effort.size() > 0 ? place.effort : model::max_effort(hand));
       EXPECT_EQ(passed->place.X_WB.matrix(), place.X_WB.matrix());
       for (std::size_t cut = 0; cut < cuts; ++cut)
         EXPECT_FALSE(passed->cut[cut]) << to_string(static_cast<Cut>(cut)) << ", seed " << seed;

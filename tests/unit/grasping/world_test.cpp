@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "common/grasping/hold_test.hpp"
+#include "common/model/hand_effort.hpp"
 #include "tests/support/hands.hpp"
 
 namespace {
@@ -193,6 +194,38 @@ TEST(World, HoldingStillKeepsTheGripAndStopsWhatMoves) {
   // It brakes from 1 m/s at 10 m/s² and returns to where it was told to stay.
   EXPECT_LT((moving->hand_motion().X_WB.translation() - then.X_WB.translation()).norm(), 1e-3);
   EXPECT_LT((moving->hand_motion().dof - then.dof).norm(), 5e-3);
+}
+
+TEST(World, DrivesUseNoMoreEffortThanTheyMay) {
+  const Pose X_WB = side_grasp(Vector3d(0, 0, 0.06));
+  auto world = empty_world(X_WB);
+  ASSERT_TRUE(world->add_body(talc, standing(talc)));
+  const VectorXd most = model::max_effort(barrett());
+  VectorXd effort = 0.1 * most;  // too little for a clutch to let go
+  effort[0] = most[0];
+  const auto run_and_watch = [&](World& one, double time) {
+    for (double t = 0; t < time && !testing::Test::HasFailure(); t += one.time_step()) {
+      one.step();
+      const VectorXd torque = one.hand_motion().torque.cwiseAbs();
+      for (std::size_t j = 0; j < barrett().joints().size(); ++j) {
+        const model::HandJoint& joint = barrett().joints()[j];
+        EXPECT_LE(torque[static_cast<Eigen::Index>(j)],
+                  effort[joint.dof] / most[joint.dof] * joint.max_torque * (1 + 1e-9))
+            << joint.name;
+      }
+    }
+  };
+  ASSERT_TRUE(world->limit_effort(effort));
+  ASSERT_TRUE(world->command(X_WB, Eigen::Vector4d(0, 1.4, 1.4, 1.4)));
+  run_and_watch(*world, 1.5);
+  run_and_watch(*world->clone(), 0.1);
+  EXPECT_FALSE(world->limit_effort(VectorXd::Ones(3)));
+  EXPECT_FALSE(world->limit_effort(-most));
+  EXPECT_FALSE(
+      world->limit_effort(VectorXd::Constant(4, std::numeric_limits<double>::quiet_NaN())));
+  world->hold_still();
+  run_and_watch(*world, 0.1);  // until it is said anew
+  EXPECT_TRUE(world->limit_effort({}));
 }
 
 TEST(World, RefusesNonsense) {

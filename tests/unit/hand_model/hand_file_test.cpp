@@ -195,6 +195,9 @@ TEST(HandFile, RefusesWhatIsNoHandAndSaysWhere) {
            {false, "orientation = [1, 0", "orientation = [0, 0", "grasp_frame"},
            {false, "[torque]", "[reach]\nopening = 0.0\n[torque]", "reach.opening"},
            {false, "[torque]", "[torques]", "torques"},
+           {false, "[torque]", "[gate]\neffort = [1.0, 0.0]\n[torque]", "positive"},
+           {false, "[torque]", "[gate]\neffort = [1.0]\n[torque]", "gate.effort"},
+           {false, "[torque]", "[gate]\neffort = [1.0, 0.8]\n[torque]", "gate.effort"},
            {false, "open = [0.025, 0.0]", "open = [0.025]", "postures.open"},
            {false, "open = [0.025, 0.0]", "open = [0.03, 0.0]", "thumb"},
            {false, "open = [0.025, 0.0]", "shut = [0.025, 0.0]", "open"}}) {

@@ -70,7 +70,7 @@ TEST(KeyHash, IsTheOneOfFastDdsForEveryKeyedType) {
   agrees<v1::HandPosturePubSubType>(*contract, "prehend::v1::HandPosture");
   agrees<v1::CameraImagePubSubType>(*contract, "prehend::v1::CameraImage");
   agrees<v1::ObjectDetectionPubSubType>(*contract, "prehend::v1::ObjectDetection");
-  agrees<v1::HandCommandPubSubType>(*contract, "prehend::v1::HandCommand");
+  agrees<v2::HandCommandPubSubType>(*contract, "prehend::v2::HandCommand");
   agrees<v1::HandStatePubSubType>(*contract, "prehend::v1::HandState");
   agrees<v1::SceneStatePubSubType>(*contract, "prehend::v1::SceneState");
   agrees<v1::ObjectStatePubSubType>(*contract, "prehend::v1::ObjectState");

@@ -61,7 +61,7 @@ class Writing {
           RawSample::Kind::disposed);
   }
   void command(std::uint64_t number, int ms) {
-    v1::HandCommand command;
+    v2::HandCommand command;
     command.hand("hand");
     command.sequence_number(number);
     command.stamp_ns(at(ms));
@@ -243,6 +243,39 @@ TEST_F(PlayerTest, OldCommandsReachARobotWithTheirStamps) {
   EXPECT_TRUE(numbers.contains(19)) << numbers.size();
   EXPECT_EQ(recording::to_text(offered_["robot/command"]),
             recording::to_text(dds::robot_command.qos));
+}
+
+// A command was once without effort, which is now the sequence at its end.
+TEST_F(PlayerTest, CommandsOfTheVersionBeforeAreReadAsThoseOfNow) {
+  const auto path = scratch_ / "a.mcap";
+  Writing writing(path);
+  Source source = writing.source(dds::robot_command);
+  source.topic.type = "prehend::v1::HandCommand";
+  v2::HandCommand command;
+  command.model("barrett");
+  command.dof({0.1, 0.2, 0.3});
+  command.extrapolating(true);
+  for (int i = 0; i < 8; ++i) {
+    command.hand(std::string(static_cast<std::size_t>(i), 'h'));
+    command.object(std::string(static_cast<std::size_t>(i), 'o'));
+    std::vector<std::uint8_t> payload = dds::encode(dds::robot_command, command);
+    payload.resize(payload.size() - 4);
+    if (i % 2 == 0)  // a writer may leave the padding at the end out
+      while (payload.back() == 0) payload.pop_back();
+    writing.write(source, payload, i, 1);
+  }
+  writing.close();
+  auto tape = Tape::open({path}, [](const std::string&) { return true; }).value();
+  EXPECT_EQ(tape.streams().front()->topic.type, dds::robot_command.type_name());
+  for (int i = 0; i < 8; ++i) {
+    const auto played = tape.next();
+    ASSERT_TRUE(played);
+    command.hand(std::string(static_cast<std::size_t>(i), 'h'));
+    command.object(std::string(static_cast<std::size_t>(i), 'o'));
+    v2::HandCommand read;
+    ASSERT_TRUE(dds::decode(dds::robot_command, played->sample, read));
+    EXPECT_EQ(read, command);
+  }
 }
 
 TEST_F(PlayerTest, StampsOfNowKeepTheirDistances) {

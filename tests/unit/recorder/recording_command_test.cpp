@@ -83,7 +83,7 @@ class RecordingCommand : public ::testing::Test {
         write(detections, RawSample::Kind::data, track, number, 100 * i,
               dds::encode(dds::object_detection, detection));
       if (i == 5) write(detections, RawSample::Kind::disposed, 2, number + 1, 550, {});
-      v1::HandCommand command;
+      v2::HandCommand command;
       command.hand("hand");
       command.origin_ns(begin_ns + i * 100'000'000ll);
       command.dof({0.1 * i, -1});

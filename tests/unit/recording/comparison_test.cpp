@@ -145,7 +145,7 @@ TEST(Comparison, EveryNumberIsHeldToItsTolerance) {
 }
 
 TEST(Comparison, SamplesAreAlignedByOriginWhateverTheirStamp) {
-  const recording::types::Structure& type = *contract().find("prehend::v1::HandCommand");
+  const recording::types::Structure& type = *contract().find("prehend::v2::HandCommand");
   Random random(2);
   Comparison comparison(defaults());
   Value value = random_value(type, random);
@@ -185,7 +185,7 @@ TEST(Comparison, TheFirstDifferencesAreTheEarliest) {
 
 // Fuzzing found that a key of a damaged recording ended the program.
 TEST(Comparison, StringsThatAreNoTextAreToldAllTheSame) {
-  const recording::types::Structure& type = *contract().find("prehend::v1::HandCommand");
+  const recording::types::Structure& type = *contract().find("prehend::v2::HandCommand");
   Random random(2);
   Comparison comparison(defaults());
   Value value = random_value(type, random);

@@ -48,7 +48,7 @@ class EveryTopic : public ::testing::Test {};
 
 using TopicTypes =
     ::testing::Types<v1::GloveFramePubSubType, v1::HandPosturePubSubType, v1::CameraImagePubSubType,
-                     v1::ObjectDetectionPubSubType, v1::HandCommandPubSubType,
+                     v1::ObjectDetectionPubSubType, v2::HandCommandPubSubType,
                      v1::HandStatePubSubType, v1::SceneStatePubSubType, v1::ObjectStatePubSubType,
                      v1::GraspReportPubSubType, v1::OperatorCommandPubSubType,
                      v1::OperatorReplyPubSubType, v1::LabClockPubSubType, v1::LabProgressPubSubType,

@@ -68,6 +68,9 @@ TEST(Simulation, RefusesCommandsThatCannotBeFollowed) {
   broken = command({0, 0, 0.3}, 0);
   broken.X_WB.translation().x() = nan;
   EXPECT_EQ(simulation->accept(broken, start).error().what, "command not finite");
+  broken = command({0, 0, 0.3}, 0);
+  broken.effort = VectorXd::Ones(3);
+  EXPECT_FALSE(simulation->accept(broken, start));
   EXPECT_FALSE(simulation->accept(command({0, 0, 300}, 0), start));
   const Pose before = simulation->world().hand_motion().X_WB;
   run_until(*simulation, start + milliseconds(100));
@@ -101,6 +104,20 @@ TEST(Simulation, TheFirstCommandPlacesTheHandLaterOnesMoveIt) {
   ASSERT_TRUE(simulation->accept(second, start));
   run_until(*simulation, start + milliseconds(100));
   EXPECT_LT((at() - first.X_WB.translation()).norm(), 0.1);
+}
+
+// An effort of nothing at all moves no finger; the next command may use all there is again.
+TEST(Simulation, FingersUseNoMoreEffortThanTheCommandAllows) {
+  const auto simulation = made();
+  ASSERT_TRUE(simulation->accept(command({0, 0, 0.5}, 0), start));
+  Command weak = command({0, 0, 0.5}, 1);
+  weak.effort = VectorXd::Zero(4);
+  ASSERT_TRUE(simulation->accept(weak, start));
+  run_until(*simulation, start + milliseconds(150));
+  EXPECT_LT(simulation->world().hand_motion().dof.cwiseAbs().maxCoeff(), 1e-3);
+  ASSERT_TRUE(simulation->accept(command({0, 0, 0.5}, 1), start + milliseconds(150)));
+  run_until(*simulation, start + milliseconds(300));
+  EXPECT_GT(simulation->world().hand_motion().dof[1], 0.05);
 }
 
 TEST(Simulation, TheFirstCommandNeverPlacesTheHandIntoAnObject) {

@@ -82,6 +82,8 @@ class Trial {
     const auto passed = gate_.admit(command, now);
     if (!passed)
       refused_ = gate::to_string(passed.error());
+    else if (const auto limited = world_->limit_effort(passed->place.effort); !limited)
+      refused_ = limited.error().message();
     else if (const auto done = world_->command(passed->place.X_WB, passed->place.dof); !done)
       refused_ = done.error().message();
     else

@@ -171,7 +171,7 @@ struct ExternalMapping::State {
 
   void take(std::vector<gate::Command>& made) {
     for (const dds::RawSample& sample : inbox.take()) {
-      v1::HandCommand message;
+      v2::HandCommand message;
       if (sample.kind != dds::RawSample::Kind::data ||
           !dds::decode(dds::robot_command, sample, message))
         continue;
@@ -179,12 +179,13 @@ struct ExternalMapping::State {
       if (!X_WB) continue;  // as the robot's side does
       gate::WriterId writer{};
       std::copy_n(sample.writer.begin(), writer.size(), writer.begin());
-      made.push_back({writer,
-                      message.sequence_number(),
-                      from_ns(message.stamp_ns()) - beginning,
-                      message.hand().to_string(),
-                      message.model().to_string(),
-                      {convert::from_message(message.dof()), *X_WB}});
+      made.push_back(
+          {writer,
+           message.sequence_number(),
+           from_ns(message.stamp_ns()) - beginning,
+           message.hand().to_string(),
+           message.model().to_string(),
+           {convert::from_message(message.dof()), *X_WB, convert::from_message(message.effort())}});
     }
   }
 

@@ -100,7 +100,7 @@ class Easing {
       if (played->stream->topic.name != dds::robot_command.name ||
           played->sample.kind != dds::RawSample::Kind::data)
         continue;
-      v1::HandCommand command;
+      v2::HandCommand command;
       if (!dds::decode(dds::robot_command, played->sample, command) ||
           command.hand().to_string() != hand)
         continue;
@@ -143,7 +143,7 @@ class Easing {
   }
 
  private:
-  Easing(Played first, const v1::HandCommand& command, model::HandModel model, HandPlace to)
+  Easing(Played first, const v2::HandCommand& command, model::HandModel model, HandPlace to)
       : first_(std::move(first)), command_(command), model_(std::move(model)), to_(std::move(to)) {
     // It moves the hand, and knows nothing of objects: whoever watches for a hand that stands still
     // must not take it for one.
@@ -155,7 +155,7 @@ class Easing {
     command_.origin_ns(0);
   }
   Played first_;
-  v1::HandCommand command_;
+  v2::HandCommand command_;
   model::HandModel model_;
   HandPlace to_;
   std::optional<EaseIn> way_;
