@@ -11,7 +11,8 @@ namespace prehend::dds {
 /// Who may come next. A few are admitted at once; in a crowd, whoever announces itself again. Those
 /// who are there do so twice a second, a flood of invented ones does not. Fast DDS
 /// shakes hands with a hundred at a time, and invented ones stay among these for their lease.
-/// Pure; takes memory only in a crowd.
+/// Pure; takes memory only
+/// in a crowd.
 class Admission {
  public:
   bool admits(const GuidPrefix& newcomer, Time now);
@@ -28,7 +29,7 @@ class Admission {
   };
   double free_ = at_once;
   Time last_{};
-  std::vector<Waiting> waiting_;
+  std::vector<Waiting> waiting_;  // each at a place of its own, unless two have the same
 };
 
 }  // namespace prehend::dds

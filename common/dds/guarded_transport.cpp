@@ -109,50 +109,34 @@ class Transport final : public PassThroughTransport {
         low_level_transport_->is_local_locator(remote) ? Ipv4{127, 0, 0, 1} : ip_of(remote);
     const bool accepted = guard_.accepts({bytes, size}, source);
     if (accepted) next->OnDataReceived(bytes, size, local, remote);
-    shake_hands_early({bytes, size}, accepted, {next, local, remote, source});
+    if (const auto early = early_handshake({bytes, size}, accepted))
+      if (guard_.accepts(*early, source))
+        next->OnDataReceived(early->data(), static_cast<std::uint32_t>(early->size()), local,
+                             remote);
     if (carries_samples(local)) return;
     for (const auto& late : guard_.take_departures())
       next->OnDataReceived(late.data(), static_cast<std::uint32_t>(late.size()), local, remote);
   }
 
-  /// What came on this way has nobody to go to any more.
-  bool CloseInputChannel(const rtps::Locator_t& local) override {
-    const bool closed = PassThroughTransport::CloseInputChannel(local);  // nothing comes after it
-    const std::scoped_lock lock(mutex_);
-    early_.clear();
-    return closed;
-  }
-
  private:
-  /// How a message came, and to whom.
-  struct Way {
-    transport::TransportReceiverInterface* next;
-    rtps::Locator_t local, remote;
-    Ipv4 source;
-  };
-  /// Keeps a handshake of somebody who is not admitted, or passes on what was kept of one who is
-  /// with this message. It goes the way that it came: who reads handshakes does not hear the group
-  /// that announcements are sent to.
-  void shake_hands_early(std::span<const std::uint8_t> message, bool accepted, const Way& way) {
+  /// What was kept of a sender that is admitted with this packet.
+  std::optional<std::vector<std::uint8_t>> early_handshake(std::span<const std::uint8_t> message,
+                                                           bool accepted) {
     constexpr std::size_t header = 20;
-    if (message.size() < header) return;
+    if (message.size() < header) return std::nullopt;
     const GuidPrefix sender = wire::array_at<12>(message, 8);
     const bool keeps = !accepted && read_packet(message) && read_plaintext(message).shakes_hands;
-    const std::scoped_lock lock(mutex_);  // until it is passed on: nobody ends that way before
-    if (keeps) early_.keep(sender, message, way, process_now());
-    if (!accepted || early_.empty()) return;
-    const auto early = early_.take(sender, process_now());
-    if (early && guard_.accepts(early->message, early->way.source))
-      early->way.next->OnDataReceived(early->message.data(),
-                                      static_cast<std::uint32_t>(early->message.size()),
-                                      early->way.local, early->way.remote);
+    const std::scoped_lock lock(mutex_);
+    if (keeps) early_.keep(sender, message, process_now());
+    if (!accepted || early_.empty()) return std::nullopt;
+    return early_.take(sender, process_now());
   }
 
   PacketGuard& guard_;
   transport::SendResourceList lower_;
   std::size_t wrapped_ = 0;  // of these
   std::mutex mutex_;
-  EarlyHandshakes<Way> early_;
+  EarlyHandshakes early_;
 };
 
 struct Descriptor final : transport::ChainingTransportDescriptor {
