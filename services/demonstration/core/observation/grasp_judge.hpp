@@ -1,0 +1,42 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/model/grasp_taxonomy.hpp"
+#include "services/demonstration/core/observation/seen.hpp"
+#include "services/demonstration/core/recognition/recogniser.hpp"
+
+namespace prehend::demonstration {
+
+/// Which kind of grasp a hand makes: P(kind | hand) as far as somebody trained a recogniser, times
+/// P(kind | object), by the object's shape and size. Without a recogniser the hand tells no more
+/// than from where the palm comes. Keeps references to both.
+class GraspJudge {
+ public:
+  /// recogniser: may be nullptr.
+  GraspJudge(const model::GraspTaxonomy& taxonomy, const Recogniser* recogniser);
+
+  const std::vector<std::string>& kinds() const { return kinds_; }
+  /// A hand comes to an object; nothing that was seen before counts any more.
+  void begin();
+  /// After all hands since begin(). object: nullptr if the hand is at none.
+  Distribution see(const SeenHand& hand, const SeenObject* object);
+
+ private:
+  Eigen::VectorXd prior(const SeenObject* object) const;
+  Distribution by_approach(const SeenHand& hand) const;
+
+  const model::GraspTaxonomy& taxonomy_;
+  const Recogniser* recogniser_;
+  std::vector<std::string> kinds_;
+  std::optional<RecogniserStream> stream_;
+  std::optional<SeenHand> first_, last_;
+};
+
+/// What a recogniser looks at. before: the hand a moment ago, for speeds; nullptr if there was
+/// none.
+HandSample sample_of(const SeenHand& hand, const SeenHand* before, Time begin);
+
+}  // namespace prehend::demonstration

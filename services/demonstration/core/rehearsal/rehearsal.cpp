@@ -1,0 +1,134 @@
+#include "services/demonstration/core/rehearsal/rehearsal.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "common/model/placement.hpp"
+
+namespace prehend::demonstration {
+
+namespace {
+
+using Eigen::AngleAxisd;
+using Eigen::Vector3d;
+
+constexpr int steps_a_command = 5;                    // 100 Hz, as robot/state
+constexpr double max_step_time = 60;                  // s
+constexpr double same_place = 0.01, same_turn = 0.1;  // m, rad: no other grasp
+
+Pose turned(double degrees, const Pose& X_OG) {
+  const AngleAxisd turn(degrees * std::numbers::pi / 180, Vector3d::UnitZ());
+  return Pose(turn) * X_OG;
+}
+
+/// One step as a task of its own.
+TaskModel alone(const TaskModel& task, std::size_t step) {
+  TaskModel made{task.name, task.demonstrations, {task.steps[step]}};
+  made.steps.front().after.clear();
+  return made;
+}
+
+}  // namespace
+
+std::vector<RobotGrasp> grasp_candidates(const model::HandModel& hand, const model::Shape& shape,
+                                         const Pose& X_OG) {
+  std::vector<Pose> found;
+  const auto offer = [&](const Pose& wanted) {
+    const auto made = model::nearest_grasp(shape, wanted, hand.reach());
+    if (!made || std::any_of(found.begin(), found.end(), [&](const Pose& other) {
+          return (other.translation() - made->translation()).norm() < same_place &&
+                 angle_between(other.linear(), made->linear()) < same_turn;
+        }))
+      return;
+    found.push_back(*made);
+  };
+  offer(X_OG);
+  for (const double turn : {30, -30, 60, -60, 90, -90, 180}) offer(turned(turn, X_OG));
+  const Vector3d y = X_OG.linear().col(1);
+  const Vector3d closing = Vector3d(y.x(), y.y(), 0).norm() > 1e-6
+                               ? Vector3d(y.x(), y.y(), 0).normalized()
+                               : Vector3d::UnitX().eval();
+  const Pose above = make_pose(Vector3d::Zero(), model::grasp_axes(-Vector3d::UnitZ(), closing));
+  for (const double turn : {0, 90, 45, -45}) offer(turned(turn, above));
+  std::vector<RobotGrasp> made;
+  for (const Pose& X : found)
+    made.push_back({X * hand.X_BG().inverse(), hand.postures().at("open")});
+  return made;
+}
+
+Places places_of(const grasping::World& world) {
+  Places made;
+  for (int i = 0; i < world.body_count(); ++i) made[world.body(i).name] = world.body_motion(i).X_WO;
+  return made;
+}
+
+Shapes shapes_of(const std::vector<Thing>& things) {
+  Shapes made;
+  for (const Thing& thing : things) made[thing.body.name] = thing.body.shape;
+  return made;
+}
+
+Expected<void> perform_in(grasping::World& world, TaskPerformer& performer, double longest) {
+  for (int n = 0; !performer.over(); ++n) {
+    const double t = n * steps_a_command * world.time_step();
+    if (t > longest) return fail("takes longer than it should");
+    const grasping::HandMotion motion = world.hand_motion();
+    const HandGoal goal =
+        performer.step({Time(seconds(t)), motion.X_WB, motion.dof, motion.joint}, places_of(world));
+    if (auto told = world.command(goal.X_WB, goal.dof); !told) return told;
+    for (int i = 0; i < steps_a_command; ++i) world.step();
+  }
+  return {};
+}
+
+Expected<Rehearsal> rehearse(const model::HandModel& hand, const TaskModel& task,
+                             const std::vector<Thing>& things, const HandGoal& from,
+                             const RehearsalOptions& options) {
+  const auto order = order_of(task);
+  if (!order) return tl::unexpected(order.error());
+  auto created = grasping::World::create(hand, from.X_WB, from.dof);
+  if (!created) return tl::unexpected(created.error());
+  std::unique_ptr<grasping::World> world = std::move(*created);
+  for (const Thing& thing : things)
+    if (auto added = world->add_body(thing.body, thing.X_WO); !added)
+      return tl::unexpected(added.error());
+  const Shapes shapes = shapes_of(things);
+  Rehearsal made{std::vector<RobotGrasp>(task.steps.size()),
+                 std::vector<Verdict>(task.steps.size())};
+  for (const std::size_t i : *order) {
+    const Step& step = task.steps[i];
+    const auto shape = shapes.find(step.object);
+    if (shape == shapes.end())
+      return fail("is not in this lab", step.object, "the task " + task.name + " needs it");
+    std::string why = "the hand cannot reach around it";
+    const auto candidates = grasp_candidates(hand, shape->second, step.X_OG);
+    bool done = false;
+    for (int k = 0;
+         k < std::min<int>(options.max_tries, static_cast<int>(candidates.size())) && !done; ++k) {
+      options.tell(i, k);
+      auto other = world->clone();
+      const RobotGrasp& grasp = candidates[static_cast<std::size_t>(k)];
+      auto performer = TaskPerformer::create(
+          hand, alone(task, i), shapes, places_of(*other), {grasp},
+          {other->commanded_base(), other->commanded_dof()}, options.performer, options.verdict);
+      if (!performer) return tl::unexpected(performer.error());
+      const auto performed = perform_in(*other, *performer, max_step_time);
+      const Verdict& verdict = performer->verdicts().front();
+      why = performed ? verdict.reason : performed.error().what;
+      done = performed && verdict.done;
+      if (!done) continue;
+      world = std::move(other);
+      made.grasps[i] = grasp;
+      made.verdicts[i] = verdict;
+    }
+    if (!done)
+      return fail("no grasp does step " + std::to_string(i + 1) + " of " + task.name + ": " + why,
+                  step.object, "place the objects otherwise, or show another grasp");
+  }
+  return made;
+}
+
+}  // namespace prehend::demonstration

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "common/grasping/world.hpp"
+#include "services/demonstration/core/reproduction/task_performer.hpp"
+
+namespace prehend::demonstration {
+
+/// An object on the table.
+struct Thing {
+  grasping::Body body;
+  Pose X_WO = Pose::Identity();
+};
+
+/// How this hand may take an object that a person took at X_OG: that way first, then turned about
+/// the object's axis, then from above, the open hand each time. What its reach does not allow is
+/// left out; may be empty.
+std::vector<RobotGrasp> grasp_candidates(const model::HandModel& hand, const model::Shape& shape,
+                                         const Pose& X_OG);
+
+struct RehearsalOptions {
+  int max_tries = 10;  // of each step
+  PerformerOptions performer;
+  VerdictOptions verdict;
+  /// Told before each try: which step of the task, which try of it, both from 0.
+  std::function<void(std::size_t step, int attempt)> tell = [](std::size_t, int) {};
+};
+
+/// How a task went in a world of thought.
+struct Rehearsal {
+  std::vector<RobotGrasp> grasps;  // of each step
+  std::vector<Verdict> verdicts;   // of each step
+};
+
+/// Tries a task in a world of its own, with other grasps until each step is done, and so finds
+/// grasps that hold, are reachable and move nothing else. Fails, naming the step, where none does.
+Expected<Rehearsal> rehearse(const model::HandModel& hand, const TaskModel& task,
+                             const std::vector<Thing>& things, const HandGoal& from,
+                             const RehearsalOptions& options = {});
+
+/// Lets a performer move the hand of a world until it is over, at most so long, s.
+Expected<void> perform_in(grasping::World& world, TaskPerformer& performer, double longest);
+
+/// Places and shapes of things, by name.
+Places places_of(const grasping::World& world);
+Shapes shapes_of(const std::vector<Thing>& things);
+
+}  // namespace prehend::demonstration

@@ -1,0 +1,40 @@
+#include "services/demonstration/core/reproduction/way.hpp"
+
+#include <algorithm>
+
+namespace prehend::demonstration {
+
+namespace {
+
+constexpr double short_way = 1e-4;  // m or rad: no movement
+constexpr double min_time = 0.15;   // s, of one movement
+
+double eased(double t) {
+  t = std::clamp(t, 0.0, 1.0);
+  return t * t * t * (10 - 15 * t + 6 * t * t);
+}
+
+}  // namespace
+
+Way::Way(std::vector<Pose> poses, double speed, double turn_speed) : poses_(std::move(poses)) {
+  double end = 0;
+  ends_.push_back(end);
+  for (std::size_t i = 1; i < poses_.size(); ++i) {
+    const double length = (poses_[i].translation() - poses_[i - 1].translation()).norm();
+    const double angle = angle_between(poses_[i].linear(), poses_[i - 1].linear());
+    if (length > short_way || angle > short_way)
+      end += std::max({min_time, length / speed, angle / turn_speed});
+    ends_.push_back(end);
+  }
+}
+
+Pose Way::at(double t) const {
+  for (std::size_t i = 1; i < poses_.size(); ++i) {
+    if (t >= ends_[i]) continue;
+    return interpolate(poses_[i - 1], poses_[i],
+                       eased((t - ends_[i - 1]) / (ends_[i] - ends_[i - 1])));
+  }
+  return poses_.back();
+}
+
+}  // namespace prehend::demonstration

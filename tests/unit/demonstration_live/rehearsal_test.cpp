@@ -1,0 +1,119 @@
+// Tasks are done again in a world, by the performer that also moves a robot's hand: objects come to
+// where they shall be, whatever stands where at the beginning; and what cannot be done is said.
+#include "services/demonstration/core/rehearsal/rehearsal.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "common/base/paths.hpp"
+#include "common/model/catalogue.hpp"
+#include "common/model/placement.hpp"
+#include "services/demonstration/core/reproduction/alike.hpp"
+
+namespace prehend::demonstration {
+namespace {
+
+using testing::HasSubstr;
+
+const model::HandModel& barrett() {
+  static const model::HandModel hand =
+      model::HandModel::load(model::hand_directory("barrett")).value();
+  return hand;
+}
+
+const model::Catalogue& objects() {
+  static const model::Catalogue catalogue =
+      model::Catalogue::load(share_directory() / "models/objects/catalogue.toml").value();
+  return catalogue;
+}
+
+Thing thing(const std::string& name, double x, double y) {
+  const model::CatalogueObject& known = *objects().find(name);
+  return {{known.name, known.shape, known.mass, known.material, {}, {}},
+          make_pose({x, y, model::half_extents(known.shape).z()})};
+}
+
+HandGoal resting() {
+  return {make_pose({0, -0.4, 0.6}), barrett().postures().at("open")};
+}
+
+/// Taken from the side, as a person does who comes from the front.
+Pose from_the_side() {
+  return make_pose({0, 0, 0.01},
+                   model::grasp_axes(Eigen::Vector3d::UnitY(), Eigen::Vector3d::UnitX()));
+}
+
+TaskModel put(const std::string& object, const std::string& reference,
+              const Eigen::Vector3d& place) {
+  TaskModel task{"put", 1, {}};
+  task.steps.push_back({.object = object,
+                        .grasp = "medium wrap",
+                        .X_OG = from_the_side(),
+                        .reference = reference,
+                        .X_RO = make_pose(place),
+                        .via_height = 0.1,
+                        .upright = true});
+  return task;
+}
+
+TEST(Rehearsal, PutsAnObjectToItsPlaceOnTheTable) {
+  const std::vector<Thing> things{thing("Talc", 0.1, 0.05), thing("Carton box", -0.4, 0.3)};
+  const auto made =
+      rehearse(barrett(), put("Talc", the_table, {-0.1, -0.1, things[0].X_WO.translation().z()}),
+               things, resting());
+  ASSERT_TRUE(made) << made.error().message();
+  EXPECT_LT(made->verdicts[0].error, 0.02);
+  EXPECT_LT(made->verdicts[0].turn, 0.17);
+  EXPECT_LT(made->verdicts[0].max_tilt, 0.26);
+}
+
+TEST(Rehearsal, PutsAnObjectBesideAnother) {
+  const std::vector<Thing> things{thing("Cup", -0.1, 0.1), thing("Carton box", 0.25, 0.2)};
+  const double lower = things[0].X_WO.translation().z() - things[1].X_WO.translation().z();
+  const auto made =
+      rehearse(barrett(), put("Cup", "Carton box", {0.0, -0.3, lower}), things, resting());
+  ASSERT_TRUE(made) << made.error().message();
+  EXPECT_LT(made->verdicts[0].error, 0.02);
+}
+
+TEST(Rehearsal, SaysWhatCannotBeDone) {
+  const std::vector<Thing> things{thing("Carton box", 0.1, 0.05)};
+  const auto absent = rehearse(barrett(), put("Talc", the_table, {0, 0, 0.05}), things, resting());
+  ASSERT_FALSE(absent);
+  EXPECT_THAT(absent.error().message(), HasSubstr("Talc: is not in this lab"));
+  const auto nowhere =
+      rehearse(barrett(), put("Carton box", "Teapot", {0, 0, 0.05}), things, resting());
+  ASSERT_FALSE(nowhere);
+  EXPECT_THAT(nowhere.error().message(), HasSubstr("Teapot: is not in this lab"));
+}
+
+TEST(TaskPerformer, FailsWhereTheObjectDoesNotComeAlong) {
+  // A world in which the object is nailed to the table.
+  Thing nailed = thing("Talc", 0.1, 0.05);
+  nailed.body.mass = 0;
+  const auto made = rehearse(barrett(), put("Talc", the_table, {-0.1, -0.1, 0.0525}), {nailed},
+                             resting(), {.max_tries = 1});
+  ASSERT_FALSE(made);
+  EXPECT_THAT(made.error().message(), HasSubstr("lift: was not lifted"));
+}
+
+TEST(Alike, OfACylinderOnlyTheAxisShowsOfABoxHalfTurnsDoNot) {
+  using Eigen::AngleAxisd;
+  using Eigen::Matrix3d;
+  using Eigen::Vector3d;
+  const Matrix3d goal = Matrix3d::Identity();
+  const Matrix3d yaw = AngleAxisd(1.0, Vector3d::UnitZ()).toRotationMatrix();
+  const Matrix3d roll = AngleAxisd(0.3, Vector3d::UnitX()).toRotationMatrix();
+  const Matrix3d half = AngleAxisd(3.1, Vector3d::UnitZ()).toRotationMatrix();
+  const model::Shape cylinder{model::ShapeKind::cylinder, {0.03, 0.03, 0.1}};
+  const model::Shape box{model::ShapeKind::box, {0.03, 0.05, 0.1}};
+  const model::Shape sphere{model::ShapeKind::sphere, {0.03, 0.03, 0.03}};
+  EXPECT_NEAR(visible_turn(cylinder, yaw, goal), 0, 1e-6);
+  EXPECT_NEAR(visible_turn(cylinder, roll * yaw, goal), 0.3, 1e-6);
+  EXPECT_NEAR(visible_turn(box, yaw, goal), 1.0, 1e-6);
+  EXPECT_NEAR(visible_turn(box, half, goal), M_PI - 3.1, 1e-6);
+  EXPECT_NEAR(visible_turn(sphere, roll, goal), 0, 1e-6);
+}
+
+}  // namespace
+}  // namespace prehend::demonstration

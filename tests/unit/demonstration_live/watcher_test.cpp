@@ -1,0 +1,203 @@
+// A person who does not exist shows tasks to the watcher, who has to understand them: phases, what
+// was taken, where it was put; and what is wrong with what was shown is said in one clear line.
+#include "services/demonstration/core/observation/watcher.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "common/base/paths.hpp"
+#include "common/base/random.hpp"
+#include "services/demonstration/core/observation/grasp_judge.hpp"
+#include "services/demonstration/core/person/person.hpp"
+
+namespace prehend::demonstration {
+namespace {
+
+using testing::HasSubstr;
+
+const Time start = from_ns(1'700'000'000'000'000'000);
+
+model::Catalogue catalogue() {
+  return model::Catalogue::load(share_directory() / "models/objects/catalogue.toml").value();
+}
+
+/// A talc at the middle of the table, a cup on its left.
+model::Scene scene() {
+  const model::Catalogue known = catalogue();
+  model::Scene made;
+  for (const auto& [name, place] : {std::pair{"Talc", Eigen::Vector2d(0.05, 0.1)},
+                                    std::pair{"Cup", Eigen::Vector2d(-0.3, 0.15)}}) {
+    const double height = model::half_extents(known.find(name)->shape).z();
+    made.objects.push_back({name, make_pose({place.x(), place.y(), height})});
+  }
+  return made;
+}
+
+Person person(const std::vector<Transfer>& transfers, std::uint64_t seed = 1) {
+  auto made = Person::create(scene(), catalogue(), transfers, seed);
+  if (!made) throw std::runtime_error(made.error().message());
+  return std::move(*made);
+}
+
+Transfer talc_to(double x, double y) {
+  return {"Talc", {x, y, model::half_extents(catalogue().find("Talc")->shape).z()}, 0};
+}
+
+/// What a watcher is shown, and what may be wrong with it.
+struct Showing {
+  std::function<bool(double t)> hand = [](double) { return true; };
+  std::function<bool(const std::string& object, double t)> object = [](auto&, double) {
+    return true;
+  };
+  double until = 1e9;  // s
+  std::vector<TimedSegment> news;
+};
+
+SeenHand hand_of(const Person& person, double t, Random& random) {
+  const Person::HandThen then = person.hand(t);
+  const auto tips = person.model().fingertip_poses(model::HumanHand::posture(then.closure));
+  SeenHand made{start + seconds(t), then.X_WH, person.model().scale(), {}};
+  made.X_WH.pretranslate(random.normal3(0.001));
+  for (const std::size_t f : {0, 1, 4})
+    made.p_HF[f] = tips[f].translation() + random.normal3(0.001);
+  return made;
+}
+
+void show(Watcher& watcher, const Person& person, Showing& showing) {
+  Random random(7);
+  for (int n = 0; n / 30.0 < std::min(person.duration(), showing.until); ++n) {
+    const double t = n / 30.0;
+    if (n % 3 == 0)
+      for (const Person::ObjectThen& object : person.objects(t))
+        if (!object.hidden && showing.object(object.name, t)) {
+          Pose X_WO = object.X_WO;
+          X_WO.pretranslate(random.normal3(0.002));
+          ASSERT_TRUE(watcher.see(SeenObject{start + seconds(t), object.name, object.shape, X_WO}));
+        }
+    if (showing.hand(t)) {
+      ASSERT_TRUE(watcher.see(hand_of(person, t, random), "medium wrap"));
+    }
+    for (const TimedSegment& each : watcher.news()) showing.news.push_back(each);
+  }
+}
+
+Expected<Demonstration> shown(const Person& person, Showing& showing) {
+  Watcher watcher{WatcherOptions{}};
+  EXPECT_TRUE(watcher.begin("TEA", start));
+  show(watcher, person, showing);
+  return watcher.end(start + seconds(std::min(person.duration(), showing.until)), showing.news);
+}
+
+TEST(Watcher, UnderstandsWhatWasTakenAndWhereItWasPut) {
+  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+    const Person one = person({talc_to(0.25, -0.05)}, seed);
+    Showing showing;
+    const auto made = shown(one, showing);
+    ASSERT_TRUE(made) << made.error().message();
+    ASSERT_EQ(made->steps.size(), 1u);
+    const ShownStep& step = made->steps.front();
+    EXPECT_EQ(step.object, "Talc");
+    EXPECT_EQ(step.grasp, "medium wrap");
+    // Noise of 2 mm, averaged over five pictures and more.
+    EXPECT_NEAR(step.X_WO_after.translation().x(), 0.25, 0.005);
+    EXPECT_NEAR(step.X_WO_after.translation().y(), -0.05, 0.005);
+    EXPECT_NEAR(step.X_WO_before.translation().x(), 0.05, 0.005);
+    EXPECT_GT(step.highest, step.X_WO_before.translation().z() + 0.1);
+    EXPECT_LT(step.max_tilt, 0.1);
+    EXPECT_TRUE(step.X_WR.contains("Cup"));
+    const auto grasp = step.X_WO_before.inverse() * step.X_WG_grasped;
+    EXPECT_LT(grasp.translation().head<2>().norm(), 0.02) << "the hand grasps around the axis";
+  }
+}
+
+TEST(Watcher, TellsPhasesWhenTheyAreOverEachOnceAndTruly) {
+  const Person one = person({talc_to(0.25, -0.05), {"Cup", {0.2, 0.3, 0.05}, 0}});
+  Showing showing;
+  const auto made = shown(one, showing);
+  ASSERT_TRUE(made) << made.error().message();
+  ASSERT_EQ(made->segments.size(), one.truth().size());
+  ASSERT_EQ(showing.news.size(), one.truth().size());
+  for (std::size_t i = 0; i < one.truth().size(); ++i) {
+    EXPECT_EQ(made->segments[i].phase, one.truth()[i].phase) << i;
+    EXPECT_EQ(showing.news[i].phase, one.truth()[i].phase) << i;
+    EXPECT_EQ(made->segments[i].object, one.truth()[i].object) << i;
+    EXPECT_NEAR(to_seconds(made->segments[i].begin - start), one.truth()[i].begin, 0.25) << i;
+  }
+}
+
+TEST(Watcher, ObjectsInTheHandNeedNotBeSeen) {
+  const Person one = person({talc_to(0.25, -0.05)});
+  EXPECT_TRUE(std::any_of(one.truth().begin(), one.truth().end(),
+                          [](const auto& each) { return each.phase == Phase::hold; }));
+  Showing showing;
+  showing.object = [&](const std::string& name, double t) {
+    return name != "Talc" || t < 2 || t > one.duration() - 1.5;
+  };
+  const auto made = shown(one, showing);
+  ASSERT_TRUE(made) << made.error().message();
+  EXPECT_NEAR(made->steps.front().X_WO_after.translation().x(), 0.25, 0.005);
+}
+
+TEST(Watcher, SaysInOneLineWhatIsWrong) {
+  const Person one = person({talc_to(0.25, -0.05)});
+  const auto said = [&](Showing showing) {
+    const auto made = shown(one, showing);
+    return made ? std::string("understood") : made.error().message();
+  };
+  EXPECT_THAT(said({.object = [](auto&, double) { return false; }}),
+              HasSubstr("no object was recognised"));
+  EXPECT_THAT(said({.hand = [](double) { return false; }}), HasSubstr("no hand was seen"));
+  EXPECT_THAT(said({.hand = [](double t) { return t < 2 || t > 3.5; }}),
+              HasSubstr("the hand was not seen for 1."));
+  EXPECT_THAT(said({.object = [](auto& name, double t) { return name != "Talc" || t < 2; }}),
+              HasSubstr("Talc: is still in the hand, or out of sight"));
+  EXPECT_THAT(said({.hand = [](double t) { return t < 4; }}),
+              HasSubstr("the hand was not seen for"))
+      << "it has left with the object";
+  EXPECT_EQ(said({.hand = [&](double t) { return t < one.duration() - 0.7; }}), "understood");
+  EXPECT_THAT(said({.until = 4}), HasSubstr("Talc: is still in the hand, or out of sight"));
+  EXPECT_THAT(said({.until = 1}), HasSubstr("nothing was taken"));
+}
+
+TEST(Watcher, BeginsAndEndsOnce) {
+  Watcher watcher{WatcherOptions{}};
+  std::vector<TimedSegment> rest;
+  const auto early = watcher.end(start, rest);
+  ASSERT_FALSE(early);
+  EXPECT_THAT(early.error().message(), HasSubstr("no demonstration has begun"));
+  ASSERT_TRUE(watcher.begin("TEA", start));
+  const auto twice = watcher.begin("COFFEE", start);
+  ASSERT_FALSE(twice);
+  EXPECT_THAT(twice.error().message(), HasSubstr("TEA: is being shown already"));
+  EXPECT_FALSE(watcher.end(start, rest));
+  EXPECT_FALSE(watcher.task());
+}
+
+TEST(Watcher, RefusesWhatCannotBe) {
+  Watcher watcher{WatcherOptions{}};
+  SeenHand hand{start, make_pose({0, 0, 0.2}), 1, {}};
+  EXPECT_TRUE(watcher.see(hand, ""));
+  EXPECT_FALSE(watcher.see(hand, "")) << "twice";
+  hand.stamp += seconds(1);
+  hand.X_WH.translation().x() = std::nan("");
+  EXPECT_FALSE(watcher.see(hand, ""));
+  hand.X_WH.translation().x() = 1000;
+  EXPECT_FALSE(watcher.see(hand, ""));
+  EXPECT_FALSE(watcher.see(SeenObject{start, "Talc", {}, Pose::Identity()})) << "no shape";
+}
+
+TEST(GraspJudge, AnswersByObjectAndApproachAndFavoursWhatFits) {
+  const auto taxonomy = model::GraspTaxonomy::of_the_house().value();
+  GraspJudge judge(taxonomy, nullptr);
+  const Person one = person({talc_to(0.25, -0.05)});
+  Random random(1);
+  const SeenHand hand = hand_of(one, 0, random);
+  const SeenObject talc{start, "Talc", catalogue().find("Talc")->shape, Pose::Identity()};
+  const Distribution with = judge.see(hand, &talc), without = judge.see(hand, nullptr);
+  EXPECT_NEAR(with.sum(), 1, 1e-9);
+  EXPECT_NEAR(without.sum(), 1, 1e-9);
+  EXPECT_GT(with.maxCoeff(), without.maxCoeff()) << "to know the object makes it surer";
+}
+
+}  // namespace
+}  // namespace prehend::demonstration
