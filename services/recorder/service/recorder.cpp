@@ -96,6 +96,7 @@ void Recorder::take(const Source& source, dds::RawSample&& sample) {
   if (source.topic.qos.transient_local)
     remember({&source, std::make_shared<const dds::RawSample>(sample)});
   if (is_left_out(source, sample)) return;
+  if (messages_ == 0) opened_ = sample.received;  // no part is left empty behind
   if (file_->size() >= options_.split_bytes || file_->is_full() ||
       sample.received - opened_ >= options_.split_time) {
     check(close());
