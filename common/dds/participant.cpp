@@ -14,6 +14,7 @@
 
 #include "common/base/log.hpp"
 #include "common/dds/guarded_transport.hpp"
+#include "common/dds/handshake_pause.hpp"
 #include "common/dds/peers.hpp"
 #include "common/dds/serialized_transport.hpp"
 #include "common/dds/server_watch.hpp"
@@ -178,7 +179,11 @@ Expected<Participant> Participant::join(const ParticipantOptions& options) {
   if (!qos) return tl::unexpected(qos.error());
   qos->name(options.name);
   qos->user_data().setValue({own_middleware.begin(), own_middleware.end()});
-  if (state->keys) secure(*qos, *state->keys);
+  if (state->keys) {
+    secure(*qos, *state->keys);
+    if (PREHEND_FAST_DDS == 2 && !handshakes_pause_for_removals())
+      log::warning("this release of Fast DDS may lock itself up when others leave");
+  }
   PacketGuard::Hear hear;
   if constexpr (hides_secured_peers)
     hear = [at = state.get()](const Announcement& said) { at->peers->hear(said); };
