@@ -24,9 +24,9 @@
 #include "common/base/clock.hpp"
 #include "common/base/paths.hpp"
 #include "common/dds/participant.hpp"
+#include "common/serial/pseudo_terminal.hpp"
 #include "common/service/process.hpp"
 #include "services/glove/devices/device.hpp"
-#include "services/glove/devices/pseudo_terminal.hpp"
 
 namespace prehend {
 namespace {
@@ -135,7 +135,7 @@ class DeviceLine {
 
  private:
   bool datagrams_;
-  std::unique_ptr<glove::Plug> plug_;
+  std::unique_ptr<serial::Plug> plug_;
   std::unique_ptr<glove::Emulator> device_;
   std::string rest_;
   std::size_t sent_ = 0;
@@ -177,7 +177,7 @@ Figures measure(const std::string& kind, const std::string& format, double lengt
   const std::string rig = fmt::format("glove-driver-{}", ::getpid());
   const auto row = must(glove::find_device(kind));
   DeviceLine driver_line(row, format), service_line(row, format);
-  auto floor_line = must(glove::PseudoTerminal::open({}));
+  auto floor_line = must(serial::PseudoTerminal::open({}));
   constexpr std::size_t bytes = 100;  // as four sensors' matrices have
 
   auto participant = join(domain, rig, "watcher");

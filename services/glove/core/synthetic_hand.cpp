@@ -4,8 +4,9 @@
 #include <cmath>
 #include <numbers>
 
+#include "common/base/motion.hpp"
 #include "common/base/random.hpp"
-#include "common/model/placement.hpp"
+#include "common/model/human_grasp.hpp"
 
 namespace prehend::glove {
 namespace {
@@ -36,35 +37,6 @@ constexpr std::array<double, phase_count> durations{2.0, 1.0, 0.7, 1.0, 2.5, 0.8
 constexpr double lift_height = 0.12;                   // m
 constexpr double approach_path = 0.12;                 // m, straight in
 constexpr double rest_back = 0.25, rest_above = 0.20;  // m
-
-/// Position along a path that starts and ends at rest, least jerk in between (Flash, Hogan 1985).
-double minimum_jerk(double t) {
-  t = std::clamp(t, 0.0, 1.0);
-  return t * t * t * (10 - 15 * t + 6 * t * t);
-}
-
-Pose moved(const Pose& X_WH, const Vector3d& p_W) {
-  Pose X = X_WH;
-  X.pretranslate(p_W);
-  return X;
-}
-
-/// How a person would come at the object before taking its size into account, X_OG.
-Pose intended_grasp(const model::Shape& shape, const Pose& X_WO,
-                    const model::Demonstrator& person) {
-  Matrix3d R_WG;
-  if (shape.kind == model::ShapeKind::box && shape.size.z() >= person.reach.clearance) {
-    // Across its depth, with the fingers on the far side.
-    const Vector3d depth = X_WO.linear().col(0);
-    const Vector3d closing =
-        (Vector3d(depth.x(), depth.y(), 0).normalized()) * (depth.y() < 0 ? -1.0 : 1.0);
-    R_WG = model::grasp_axes(-Vector3d::UnitZ(), closing);
-  } else {
-    const Vector3d toward(-std::cos(person.grasp_yaw), -std::sin(person.grasp_yaw), 0);
-    R_WG = model::grasp_axes(toward, toward.cross(Vector3d::UnitZ()));
-  }
-  return X_WO.inverse() * make_pose(X_WO.translation(), R_WG);
-}
 
 Vector3d direction(Random& random) {
   while (true) {
@@ -121,8 +93,7 @@ Expected<SyntheticHand> SyntheticHand::create(const model::Scene& scene,
       return fail("the target '" + person.target + "' is not in the scene", "synthetic hand",
                   "name one of the scene's objects as demonstrator.target");
     const Pose& X_WO = placed->X_WO;
-    const auto X_OG = model::nearest_grasp(
-        object->shape, intended_grasp(object->shape, X_WO, person), person.reach);
+    const auto X_OG = model::human_grasp(object->shape, X_WO, person);
     if (!X_OG)
       return fail("no hand can grasp '" + person.target + "'", "synthetic hand",
                   "choose a smaller target");

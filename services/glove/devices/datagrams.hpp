@@ -9,7 +9,7 @@
 
 #include "common/base/error.hpp"
 #include "common/base/time.hpp"
-#include "services/glove/devices/emulator.hpp"
+#include "common/serial/plug.hpp"
 
 namespace prehend::glove {
 
@@ -54,7 +54,7 @@ class DatagramReceiver {
 };
 
 /// A UDP socket that sends, to nobody perhaps. A token goes before every datagram.
-class DatagramSender final : public Plug {
+class DatagramSender final : public serial::Plug {
  public:
   static Expected<DatagramSender> create(const std::string& address, std::string token = {});
   DatagramSender(DatagramSender&& other) noexcept;

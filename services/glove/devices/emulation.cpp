@@ -1,42 +1,14 @@
 #include "services/glove/devices/emulation.hpp"
 
 #include <algorithm>
-#include <deque>
 #include <thread>
+
+#include "common/serial/wire.hpp"
 
 namespace prehend::glove {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-
-/// Bytes on their way through a line of a certain speed.
-class Wire {
- public:
-  explicit Wire(int baud) : byte_(baud > 0 ? seconds(10.0 / baud) : Duration::zero()) {}
-
-  bool busy(Duration now) const { return free_ > now; }
-  void send(std::string bytes, Duration now) {
-    if (bytes.empty()) return;
-    free_ = std::max(free_, now) + byte_ * static_cast<std::int64_t>(bytes.size());
-    on_it_.push_back({free_, std::move(bytes)});
-  }
-  /// When the next record will have arrived; none on its way: `otherwise`.
-  Duration next(Duration otherwise) const {
-    return on_it_.empty() ? otherwise : std::min(otherwise, on_it_.front().arrival);
-  }
-  void deliver(Duration now, Plug& plug) {
-    for (; !on_it_.empty() && on_it_.front().arrival <= now; on_it_.pop_front())
-      plug.write(on_it_.front().bytes);
-  }
-
- private:
-  struct Sent {
-    Duration arrival;  // of the last byte
-    std::string bytes;
-  };
-  Duration byte_, free_{};
-  std::deque<Sent> on_it_;
-};
 
 }  // namespace
 
@@ -46,9 +18,9 @@ Expected<void> emulate(const EmulationOptions& options, const FrameSource& sourc
   const Clock::time_point start = Clock::now();
   const auto elapsed = [&] { return std::chrono::duration_cast<Duration>(Clock::now() - start); };
   Faults faults(options.faults);
-  std::unique_ptr<Plug> plug;
+  std::unique_ptr<serial::Plug> plug;
   std::unique_ptr<Emulator> device;
-  Wire wire(options.baud);
+  serial::Wire wire(options.baud);
   std::uint64_t tick = 0, n = 0;
   // Nobody reaches before somebody looks. On a line the host speaks first, datagrams just come.
   std::optional<Duration> begun;
@@ -67,7 +39,7 @@ Expected<void> emulate(const EmulationOptions& options, const FrameSource& sourc
       if (!made) return tl::unexpected(made.error());
       plug = std::move(*made);
       device = options.device();
-      wire = Wire(options.baud);
+      wire = serial::Wire(options.baud);
       if (options.on_plugged) options.on_plugged(plug->where());
     }
     const Duration due = seconds(static_cast<double>(tick) / options.rate);

@@ -3,6 +3,7 @@
 #include <functional>
 #include <memory>
 
+#include "common/serial/plug.hpp"
 #include "services/glove/core/frame_source.hpp"
 #include "services/glove/devices/emulator.hpp"
 #include "services/glove/devices/faults.hpp"
@@ -10,10 +11,11 @@
 namespace prehend::glove {
 
 struct EmulationOptions {
-  std::function<std::unique_ptr<Emulator>()> device;         // as it is when switched on
-  std::function<Expected<std::unique_ptr<Plug>>()> plug_in;  // asked again after an unplugging
-  double rate = 30;                                          // Hz, measurements
-  int baud = 0;  // 8N1; bytes take their time on the line. 0: they take none
+  std::function<std::unique_ptr<Emulator>()> device;  // as it is when switched on
+  std::function<Expected<std::unique_ptr<serial::Plug>>()>
+      plug_in;       // asked again after an unplugging
+  double rate = 30;  // Hz, measurements
+  int baud = 0;      // 8N1; bytes take their time on the line. 0: they take none
   FaultOptions faults;
   std::function<void(const std::string& where)> on_plugged = {};
 };

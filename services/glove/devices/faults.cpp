@@ -2,15 +2,12 @@
 
 #include <utility>
 
+#include "common/serial/line_faults.hpp"
+
 namespace prehend::glove {
 namespace {
 
 constexpr double lever = 0.05;  // m, from a joint to what it moves
-
-bool within(Duration now, double begin, double length) {
-  const double t = to_seconds(now);
-  return begin >= 0 && t >= begin && t < begin + length;
-}
 
 }  // namespace
 
@@ -30,25 +27,16 @@ Frame Faults::spoil(Frame frame) {
 }
 
 std::string Faults::spoil(std::string record) {
-  if (record.empty()) return record;
-  if (random_.uniform() < options_.drop_bytes) record.erase(random_.index(record.size()), 1);
-  if (record.size() > 1 && random_.uniform() < options_.swap_bytes) {
-    const std::size_t i = random_.index(record.size() - 1);
-    std::swap(record[i], record[i + 1]);
-  }
-  std::string foreign;
-  if (random_.uniform() < options_.garbage)
-    for (std::size_t n = 1 + random_.index(20); n > 0; --n)
-      foreign.push_back(static_cast<char>(random_.bits() & 0xff));
-  return foreign + record;
+  return serial::spoil(std::move(record),
+                       {options_.garbage, options_.drop_bytes, options_.swap_bytes}, random_);
 }
 
 bool Faults::silent(Duration since_start) const {
-  return within(since_start, options_.silent_at, options_.silent_for);
+  return serial::within(since_start, options_.silent_at, options_.silent_for);
 }
 
 bool Faults::unplugged(Duration since_start) const {
-  return within(since_start, options_.unplug_at, options_.unplug_for);
+  return serial::within(since_start, options_.unplug_at, options_.unplug_for);
 }
 
 }  // namespace prehend::glove

@@ -6,12 +6,12 @@
 
 #include "common/base/clock.hpp"
 #include "common/base/log.hpp"
+#include "common/serial/serial_port.hpp"
 #include "services/glove/devices/frame_clock.hpp"
 #include "services/glove/devices/joint_emulator.hpp"
 #include "services/glove/devices/joint_protocol.hpp"
 #include "services/glove/devices/nest_of_birds.hpp"
 #include "services/glove/devices/persistent.hpp"
-#include "services/glove/devices/serial_port.hpp"
 
 namespace prehend::glove {
 namespace {
@@ -75,7 +75,7 @@ class JointGlove final : public Device {
 
  private:
   Expected<void> live(const std::stop_token& stop) {
-    auto port = SerialPort::open(path_, baud_);
+    auto port = serial::SerialPort::open(path_, baud_);
     if (!port) return tl::unexpected(port.error());
     const auto sensors = begin(*port);
     if (!sensors) return tl::unexpected(sensors.error());
@@ -91,7 +91,7 @@ class JointGlove final : public Device {
   }
 
   /// Ends a stream, asks for the number of sensors and starts streaming.
-  Expected<std::size_t> begin(SerialPort& port) {
+  Expected<std::size_t> begin(serial::SerialPort& port) {
     port.discard_input();
     if (auto sent = port.write("\x03"); !sent) return tl::unexpected(sent.error());
     if (auto drained = hear(port, quiet); !drained) return tl::unexpected(drained.error());
@@ -117,7 +117,7 @@ class JointGlove final : public Device {
   }
 
   /// Reads, and forgets, until it is quiet for so long, but not for ever.
-  Expected<void> hear(SerialPort& port, Duration silence) {
+  Expected<void> hear(serial::SerialPort& port, Duration silence) {
     const auto until = Clock::now() + answer_time;
     while (Clock::now() < until) {
       auto bytes = port.read(silence);
@@ -127,7 +127,8 @@ class JointGlove final : public Device {
     return {};
   }
 
-  Expected<void> listen(SerialPort& port, std::size_t sensors, const std::stop_token& stop) {
+  Expected<void> listen(serial::SerialPort& port, std::size_t sensors,
+                        const std::stop_token& stop) {
     joint::RecordParser parser(sensors);
     std::uint64_t garbage = 0;
     auto last = Clock::now();

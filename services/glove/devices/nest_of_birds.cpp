@@ -6,12 +6,12 @@
 
 #include "common/base/clock.hpp"
 #include "common/base/log.hpp"
+#include "common/serial/serial_port.hpp"
 #include "services/glove/devices/bird_emulator.hpp"
 #include "services/glove/devices/bird_protocol.hpp"
 #include "services/glove/devices/bird_words.hpp"
 #include "services/glove/devices/frame_clock.hpp"
 #include "services/glove/devices/persistent.hpp"
-#include "services/glove/devices/serial_port.hpp"
 
 namespace prehend::glove {
 namespace {
@@ -121,14 +121,14 @@ class NestOfBirds final : public Device {
 
  private:
   Expected<void> live(const std::stop_token& stop) {
-    auto port = SerialPort::open(path_, baud_);
+    auto port = serial::SerialPort::open(path_, baud_);
     if (!port) return tl::unexpected(port.error());
     if (auto begun = begin(*port, stop); !begun || stop.stop_requested()) return begun;
     clock_.restart();
     return setup_.point ? ask(*port, stop) : listen(*port, stop);
   }
 
-  Expected<void> begin(SerialPort& port, const std::stop_token& stop) {
+  Expected<void> begin(serial::SerialPort& port, const std::stop_token& stop) {
     port.discard_input();
     auto sent = port.write({&xon, 1});
     if (sent) sent = port.write("B");  // ends a stream
@@ -145,7 +145,7 @@ class NestOfBirds final : public Device {
     return port.write(setup_.commands());
   }
 
-  Expected<void> configure(SerialPort& port, const std::stop_token& stop) {
+  Expected<void> configure(serial::SerialPort& port, const std::stop_token& stop) {
     if (auto sent = port.write("/"); !sent) return sent;
     Persistent::pause(stop, settle);
     const char command[] = {'P', bird::auto_configure, static_cast<char>(setup_.sensors)};
@@ -161,7 +161,7 @@ class NestOfBirds final : public Device {
   }
 
   /// Asks it who it is, and says so when that is new.
-  Expected<void> introduce(SerialPort& port) {
+  Expected<void> introduce(serial::SerialPort& port) {
     std::array<std::string, 4> answers;
     constexpr std::array asked{bird::model_name, bird::revision, bird::status, bird::error_code};
     for (std::size_t i = 0; i < asked.size(); ++i) {
@@ -188,7 +188,7 @@ class NestOfBirds final : public Device {
   }
 
   /// Reads until nothing comes any more.
-  Expected<void> drain(SerialPort& port) {
+  Expected<void> drain(serial::SerialPort& port) {
     const auto until = Clock::now() + milliseconds(300);
     while (Clock::now() < until) {
       auto bytes = port.read(bird_quiet);
@@ -199,7 +199,7 @@ class NestOfBirds final : public Device {
   }
 
   /// The answer, shorter if not all of it came in time.
-  Expected<std::string> examine(SerialPort& port, std::uint8_t parameter) {
+  Expected<std::string> examine(serial::SerialPort& port, std::uint8_t parameter) {
     const char question[] = {'O', static_cast<char>(parameter)};
     if (auto sent = port.write({question, sizeof question}); !sent)
       return tl::unexpected(sent.error());
@@ -214,7 +214,7 @@ class NestOfBirds final : public Device {
   }
 
   /// Do all units run? No also when nobody answers.
-  Expected<bool> running(SerialPort& port) {
+  Expected<bool> running(serial::SerialPort& port) {
     const auto answer = examine(port, bird::system_status);
     if (!answer) return tl::unexpected(answer.error());
     if (answer->size() != bird::max_units) return false;
@@ -228,7 +228,7 @@ class NestOfBirds final : public Device {
   /// Reads what comes and passes on what is complete; fails when nothing has come for too long.
   class Reader {
    public:
-    Reader(NestOfBirds& device, SerialPort& port)
+    Reader(NestOfBirds& device, serial::SerialPort& port)
         : device_(device), port_(port), parser_(device.setup_.layout()) {}
 
     /// Number of frames.
@@ -254,13 +254,13 @@ class NestOfBirds final : public Device {
 
    private:
     NestOfBirds& device_;
-    SerialPort& port_;
+    serial::SerialPort& port_;
     bird::RecordParser parser_;
     std::uint64_t garbage_ = 0;
     Clock::time_point last_ = Clock::now();
   };
 
-  Expected<void> listen(SerialPort& port, const std::stop_token& stop) {
+  Expected<void> listen(serial::SerialPort& port, const std::stop_token& stop) {
     if (auto sent = port.write("@"); !sent) return sent;
     Reader reader(*this, port);
     while (!stop.stop_requested())
@@ -269,7 +269,7 @@ class NestOfBirds final : public Device {
     return {};
   }
 
-  Expected<void> ask(SerialPort& port, const std::stop_token& stop) {
+  Expected<void> ask(serial::SerialPort& port, const std::stop_token& stop) {
     Reader reader(*this, port);
     auto due = Clock::now();
     while (!stop.stop_requested()) {

@@ -1,6 +1,7 @@
 #include <algorithm>
 
 #include "common/base/log.hpp"
+#include "common/serial/pseudo_terminal.hpp"
 #include "services/glove/core/synthetic_hand.hpp"
 #include "services/glove/devices/datagrams.hpp"
 #include "services/glove/devices/device.hpp"
@@ -8,7 +9,6 @@
 #include "services/glove/devices/landmarks.hpp"
 #include "services/glove/devices/nest_of_birds.hpp"
 #include "services/glove/devices/paced.hpp"
-#include "services/glove/devices/pseudo_terminal.hpp"
 #include "services/glove/files/hand_recording.hpp"
 
 namespace prehend::glove {
@@ -135,17 +135,17 @@ EmulationOptions emulation_of(const DeviceKind& kind, const DeviceOptions& optio
   made.device = [kind, options] { return kind.emulate(options); };
   if (kind.line == Line::datagrams) {
     const std::string address = options.port.empty() ? std::string(kind.address) : options.port;
-    made.plug_in = [address, token = options.token]() -> Expected<std::unique_ptr<Plug>> {
+    made.plug_in = [address, token = options.token]() -> Expected<std::unique_ptr<serial::Plug>> {
       auto sender = DatagramSender::create(address, token);
       if (!sender) return tl::unexpected(sender.error());
       return std::make_unique<DatagramSender>(std::move(*sender));
     };
   } else {
     made.baud = options.baud;
-    made.plug_in = [link]() -> Expected<std::unique_ptr<Plug>> {
-      auto terminal = PseudoTerminal::open(link);
+    made.plug_in = [link]() -> Expected<std::unique_ptr<serial::Plug>> {
+      auto terminal = serial::PseudoTerminal::open(link);
       if (!terminal) return tl::unexpected(terminal.error());
-      return std::make_unique<PseudoTerminal>(std::move(*terminal));
+      return std::make_unique<serial::PseudoTerminal>(std::move(*terminal));
     };
   }
   return made;

@@ -6,8 +6,8 @@
 
 #include <filesystem>
 
+#include "common/serial/pseudo_terminal.hpp"
 #include "services/glove/devices/bird_emulator.hpp"
-#include "services/glove/devices/pseudo_terminal.hpp"
 #include "tests/unit/glove_devices/listener.hpp"
 
 namespace prehend::glove {
@@ -46,10 +46,10 @@ class Tracker {
   static EmulationOptions line(const std::filesystem::path& link, const FaultOptions& faults,
                                bird::EmulatorOptions options, double rate) {
     return {.device = [options] { return std::make_unique<bird::Emulator>(options); },
-            .plug_in = [link]() -> Expected<std::unique_ptr<Plug>> {
-              auto terminal = PseudoTerminal::open(link);
+            .plug_in = [link]() -> Expected<std::unique_ptr<serial::Plug>> {
+              auto terminal = serial::PseudoTerminal::open(link);
               if (!terminal) return tl::unexpected(terminal.error());
-              return std::make_unique<PseudoTerminal>(std::move(*terminal));
+              return std::make_unique<serial::PseudoTerminal>(std::move(*terminal));
             },
             .rate = rate,
             .baud = 115200,

@@ -10,10 +10,10 @@
 #include <optional>
 
 #include "common/base/clock.hpp"
+#include "common/serial/serial_port.hpp"
 #include "services/glove/devices/frame_clock.hpp"
 #include "services/glove/devices/hand_in_frame.hpp"
 #include "services/glove/devices/persistent.hpp"
-#include "services/glove/devices/serial_port.hpp"
 
 namespace prehend::glove {
 namespace bend {
@@ -69,7 +69,7 @@ class Glove final : public Device {
 
  private:
   Expected<void> live(const std::stop_token& stop) {
-    auto port = SerialPort::open(path_, baud_);
+    auto port = serial::SerialPort::open(path_, baud_);
     if (!port) return tl::unexpected(port.error());
     port->discard_input();
     if (auto sent = port->write(bend::start); !sent) return sent;

@@ -1,4 +1,4 @@
-#include "services/glove/devices/pseudo_terminal.hpp"
+#include "common/serial/pseudo_terminal.hpp"
 
 #include <fcntl.h>
 #include <poll.h>
@@ -12,7 +12,7 @@
 #include <cstring>
 #include <utility>
 
-namespace prehend::glove {
+namespace prehend::serial {
 
 Expected<PseudoTerminal> PseudoTerminal::open(const std::filesystem::path& link) {
   PseudoTerminal made;
@@ -73,4 +73,4 @@ void PseudoTerminal::write(std::string_view bytes) {
   }
 }
 
-}  // namespace prehend::glove
+}  // namespace prehend::serial

@@ -6,9 +6,9 @@
 
 #include "common/base/error.hpp"
 #include "common/base/time.hpp"
-#include "services/glove/devices/emulator.hpp"
+#include "common/serial/plug.hpp"
 
-namespace prehend::glove {
+namespace prehend::serial {
 
 /// The far end of a serial line made of software: a program opens path() as its port. It may open
 /// and close it as often as it likes.
@@ -35,4 +35,4 @@ class PseudoTerminal final : public Plug {
   std::filesystem::path link_;
 };
 
-}  // namespace prehend::glove
+}  // namespace prehend::serial

@@ -1,8 +1,9 @@
-#include "services/glove/devices/serial_port.hpp"
+#include "common/serial/serial_port.hpp"
 
 #include <fcntl.h>
 #include <libserialport.h>
 #include <poll.h>
+#include <sys/file.h>
 #include <termios.h>
 #include <unistd.h>
 
@@ -13,7 +14,7 @@
 #include <filesystem>
 #include <utility>
 
-namespace prehend::glove {
+namespace prehend::serial {
 namespace {
 
 std::string last_error() {
@@ -36,35 +37,44 @@ bool wait_for(int handle, short events, Duration timeout, short& seen) {
 }  // namespace
 
 Expected<SerialPort> SerialPort::open(const std::string& path, int baud) {
-  const std::string hint = "check glove.port, the cable, and the right to use it (group dialout)";
+  const std::string hint =
+      "check the name of the port, the cable, and the right to use it (group dialout)";
   // The library knows ports by their place in /dev, not by links to it.
   std::error_code error;
   const std::filesystem::path real = std::filesystem::canonical(path, error);
   if (error) return fail("there is no such port", path, hint);
   SerialPort made(path);
-  if (real.string().starts_with("/dev/pts/")) {
-    made.handle_ = ::open(real.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
-    termios settings{};
-    if (made.handle_ < 0 || ::tcgetattr(made.handle_, &settings) != 0)
-      return fail(std::strerror(errno), path, hint);
-    ::cfmakeraw(&settings);
-    ::tcsetattr(made.handle_, TCSANOW, &settings);
-    return made;
-  }
-  if (sp_get_port_by_name(real.c_str(), &made.port_) != SP_OK)
-    return fail("this is not a serial port", path, hint);
-  if (sp_open(made.port_, SP_MODE_READ_WRITE) != SP_OK)
-    return fail("the port cannot be opened: " + last_error(), path, hint);
-  if (sp_set_baudrate(made.port_, baud) != SP_OK || sp_set_bits(made.port_, 8) != SP_OK ||
-      sp_set_parity(made.port_, SP_PARITY_NONE) != SP_OK ||
-      sp_set_stopbits(made.port_, 1) != SP_OK ||
-      sp_set_flowcontrol(made.port_, SP_FLOWCONTROL_NONE) != SP_OK)
-    return fail("the port cannot be set up: " + last_error(), path, "check glove.baud");
-  // These trackers take a raised RTS for a reset that lasts.
-  sp_set_rts(made.port_, SP_RTS_OFF);
-  if (sp_get_port_handle(made.port_, &made.handle_) != SP_OK)
-    return fail("the port has no handle: " + last_error(), path, hint);
+  if (auto opened = made.open_real(real.string(), baud, hint); !opened)
+    return tl::unexpected(opened.error());
+  // Two programs would each hear half of what comes.
+  if (::flock(made.handle_, LOCK_EX | LOCK_NB) != 0)
+    return fail("another program uses the port", path, "end that one first");
   return made;
+}
+
+Expected<void> SerialPort::open_real(const std::string& real, int baud, const std::string& hint) {
+  if (real.starts_with("/dev/pts/")) {
+    handle_ = ::open(real.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
+    termios settings{};
+    if (handle_ < 0 || ::tcgetattr(handle_, &settings) != 0)
+      return fail(std::strerror(errno), path_, hint);
+    ::cfmakeraw(&settings);
+    ::tcsetattr(handle_, TCSANOW, &settings);
+    return {};
+  }
+  if (sp_get_port_by_name(real.c_str(), &port_) != SP_OK)
+    return fail("this is not a serial port", path_, hint);
+  if (sp_open(port_, SP_MODE_READ_WRITE) != SP_OK)
+    return fail("the port cannot be opened: " + last_error(), path_, hint);
+  if (sp_set_baudrate(port_, baud) != SP_OK || sp_set_bits(port_, 8) != SP_OK ||
+      sp_set_parity(port_, SP_PARITY_NONE) != SP_OK || sp_set_stopbits(port_, 1) != SP_OK ||
+      sp_set_flowcontrol(port_, SP_FLOWCONTROL_NONE) != SP_OK)
+    return fail("the port cannot be set up: " + last_error(), path_, "check the baud rate");
+  // These trackers take a raised RTS for a reset that lasts.
+  sp_set_rts(port_, SP_RTS_OFF);
+  if (sp_get_port_handle(port_, &handle_) != SP_OK)
+    return fail("the port has no handle: " + last_error(), path_, hint);
+  return {};
 }
 
 SerialPort::SerialPort(SerialPort&& other) noexcept
@@ -111,4 +121,4 @@ void SerialPort::discard_input() {
   ::tcflush(handle_, TCIFLUSH);
 }
 
-}  // namespace prehend::glove
+}  // namespace prehend::serial

@@ -9,7 +9,7 @@
 
 struct sp_port;
 
-namespace prehend::glove {
+namespace prehend::serial {
 
 /// A serial line, 8 bits, no parity, 1 stop bit, no flow control. Not for several threads at once.
 ///
@@ -17,7 +17,7 @@ namespace prehend::glove {
 /// lines, TIOCMGET), so these are opened here; what is read and written goes the same way.
 class SerialPort {
  public:
-  /// `path` may be a link.
+  /// `path` may be a link. Refuses a port that another program uses in this way.
   static Expected<SerialPort> open(const std::string& path, int baud);
   SerialPort(SerialPort&& other) noexcept;
   SerialPort& operator=(SerialPort&&) = delete;
@@ -32,10 +32,11 @@ class SerialPort {
 
  private:
   explicit SerialPort(std::string path) : path_(std::move(path)) {}
+  Expected<void> open_real(const std::string& real, int baud, const std::string& hint);
 
   std::string path_;
   int handle_ = -1;
   sp_port* port_ = nullptr;  // owns the handle; null: a pseudo-terminal, the handle is ours
 };
 
-}  // namespace prehend::glove
+}  // namespace prehend::serial
