@@ -51,9 +51,10 @@ Collision::Collision(const model::ArmModel& arm, Surroundings surroundings)
     : table_(surroundings.table) {
   for (std::size_t link = 0; link < arm.links.size(); ++link)
     for (const model::Capsule& capsule : arm.links[link].capsules)
-      parts_.push_back({static_cast<int>(link), capsule});
+      parts_.push_back({static_cast<int>(link), capsule, false});
   const int last = static_cast<int>(arm.joints.size());
-  for (const model::Capsule& capsule : surroundings.carried) parts_.push_back({last, capsule});
+  for (const model::Capsule& capsule : surroundings.carried)
+    parts_.push_back({last, capsule, surroundings.may_touch});
   for (std::size_t a = 0; a < parts_.size(); ++a)
     for (std::size_t b = a + 1; b < parts_.size(); ++b)
       if (!is_free(arm, parts_[a].link, parts_[b].link))
@@ -85,7 +86,7 @@ void Collision::visit(const Configuration& at, const double& range, const Visit&
   }
   for (std::size_t a = 0; table_ && a < parts_.size(); ++a) {
     // What the first joint turns keeps its height, wherever it is.
-    if (parts_[a].link < 2) continue;
+    if (parts_[a].link < 2 || parts_[a].may_touch) continue;
     for (const Vector3d& end : {placed[a].capsule.a, placed[a].capsule.b}) {
       const double distance = end.z() - placed[a].capsule.radius - *table_;
       if (distance <= range)

@@ -19,6 +19,7 @@ Nearest nearest(const model::Capsule& a, const model::Capsule& b);
 struct Surroundings {
   std::optional<double> table;          // m, height of its plane in A
   std::vector<model::Capsule> carried;  // shapes at the last link, in its frame: the hand
+  bool may_touch = false;               // what is carried may come to the table, as hands do
 };
 
 /// How near parts of an arm are to each other. Links that a joint joins are not looked at, the base
@@ -44,6 +45,7 @@ class Collision {
   struct Part {
     int link = 0;
     model::Capsule capsule;
+    bool may_touch = false;
   };
 
   /// Calls with both parts (second -1: the table) and what is between them, for all that are not

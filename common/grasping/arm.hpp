@@ -18,6 +18,23 @@ struct BrakeLimits {
   double turn_acceleration = 100.0;  // rad/s²
 };
 
+/// The hand's base as a body. As heavy as this, whatever the hand touches is lost in its inertia.
+struct BaseBody {
+  double mass = 1000;    // kg
+  double inertia = 100;  // kg m²
+};
+
+/// What an arm can push the base with, N and N m.
+struct Push {
+  double force = 0, torque = 0;
+};
+
+/// What pushes against the base, in W: N, and N m about its centre of mass.
+struct BaseLoad {
+  Eigen::Vector3d force = Eigen::Vector3d::Zero();
+  Eigen::Vector3d torque = Eigen::Vector3d::Zero();
+};
+
 /// The base's velocity on its way to where it was told to be: fast, within the limits, hardly any
 /// overshoot (1 mm at 500 Hz). A value: two with the same history move alike.
 class Arm {

@@ -16,10 +16,6 @@ namespace {
 using Eigen::Vector3d;
 using Eigen::VectorXd;
 
-// The base follows its command and is not moved by what the hand touches: it weighs so much that
-// the reaction of fingers and objects is lost in its inertia.
-constexpr double base_mass = 1000;    // kg
-constexpr double base_inertia = 100;  // kg m²
 constexpr double drive_gain = 0.1;    // share of a joint's error that the drive removes each step
 constexpr double min_drive = 0.1;     // share of its torque that a drive may always use
 constexpr double slips_after = 0.02;  // s, that a joint must be blocked before its clutch lets go
@@ -45,10 +41,10 @@ bool LinkPairFilter::ignores(int a, int b) const {
 }
 
 HandBody::HandBody(const model::HandModel& hand, const std::vector<analysis::Material>& materials,
-                   btMultiBodyDynamicsWorld& world, double time_step)
+                   btMultiBodyDynamicsWorld& world, double time_step, const BaseBody& base)
     : hand_(hand), world_(world), time_step_(time_step), max_effort_(model::max_effort(hand)) {
   world_.getPairCache()->setOverlapFilterCallback(&filter_);
-  build_links();
+  build_links(base);
   world_.addMultiBody(multibody_.get());
   build_colliders(materials);
   ignore_overlaps();
@@ -66,10 +62,10 @@ HandBody::~HandBody() {
   world_.getPairCache()->setOverlapFilterCallback(nullptr);
 }
 
-void HandBody::build_links() {
+void HandBody::build_links(const BaseBody& base) {
   const auto& joints = hand_.joints();
-  multibody_ = std::make_unique<btMultiBody>(static_cast<int>(joints.size()), base_mass,
-                                             btVector3(base_inertia, base_inertia, base_inertia),
+  multibody_ = std::make_unique<btMultiBody>(static_cast<int>(joints.size()), base.mass,
+                                             btVector3(base.inertia, base.inertia, base.inertia),
                                              false, false);
   for (int i = 0; i < static_cast<int>(joints.size()); ++i) {
     const model::HandJoint& joint = joints[static_cast<std::size_t>(i)];
@@ -256,6 +252,14 @@ double HandBody::motor_velocity(int dof) const {
 void HandBody::move_base(const Vector3d& velocity, const Vector3d& turning) {
   multibody_->setBaseVel(to_bullet(velocity));
   multibody_->setBaseOmega(to_bullet(turning));
+}
+
+Vector3d HandBody::base_velocity() const {
+  return from_bullet(multibody_->getBaseVel());
+}
+
+Vector3d HandBody::base_turning() const {
+  return from_bullet(multibody_->getBaseOmega());
 }
 
 Pose HandBody::X_WB() const {

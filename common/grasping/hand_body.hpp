@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "common/base/pose.hpp"
+#include "common/grasping/arm.hpp"
 #include "common/grasping/surface.hpp"
 #include "common/model/hand_model.hpp"
 
@@ -43,7 +44,7 @@ class HandBody {
  public:
   /// materials: of each link. The world must outlive the hand and gets its pair filter.
   HandBody(const model::HandModel& hand, const std::vector<analysis::Material>& materials,
-           btMultiBodyDynamicsWorld& world, double time_step);
+           btMultiBodyDynamicsWorld& world, double time_step, const BaseBody& base = {});
   ~HandBody();
   HandBody(const HandBody&) = delete;
   HandBody& operator=(const HandBody&) = delete;
@@ -57,6 +58,8 @@ class HandBody {
   void drive(const Eigen::VectorXd& dof, const Eigen::VectorXd& effort);
   /// The base's velocities for the next step, of its centre of mass. m/s, rad/s, in W.
   void move_base(const Eigen::Vector3d& velocity, const Eigen::Vector3d& turning);
+  Eigen::Vector3d base_velocity() const;  // as it is, after what the hand has touched
+  Eigen::Vector3d base_turning() const;
 
   Pose X_WB() const;
   /// C: at the base's centre of mass, along the axes of B.
@@ -83,7 +86,7 @@ class HandBody {
     std::optional<double> released;  // where it was let go
   };
 
-  void build_links();
+  void build_links(const BaseBody& base);
   void build_colliders(const std::vector<analysis::Material>& materials);
   void ignore_overlaps();
   void build_drives();

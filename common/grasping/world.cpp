@@ -9,11 +9,13 @@
 #include <algorithm>
 #include <cmath>
 #include <deque>
+#include <optional>
 #include <utility>
 
 #include "common/analysis/materials.hpp"
 #include "common/analysis/wrench_space.hpp"
 #include "common/grasping/bullet.hpp"
+#include "common/grasping/carrier.hpp"
 #include "common/grasping/closest.hpp"
 #include "common/grasping/hand_body.hpp"
 #include "common/grasping/surface.hpp"
@@ -80,6 +82,8 @@ struct World::State {
   Arm arm;
   bool braking = false;
 
+  std::optional<Carrier> carrier;
+
   State(const model::HandModel& model, const std::vector<analysis::Material>& materials,
         const WorldOptions& world_options)
       : hand(model), options(world_options) {
@@ -90,7 +94,7 @@ struct World::State {
     info.m_erp2 = 0.2;
     info.m_globalCfm = 0;
     if (options.table) add_table();
-    fingers = std::make_unique<HandBody>(hand, materials, bullet, dt());
+    fingers = std::make_unique<HandBody>(hand, materials, bullet, dt(), options.base);
   }
 
   ~State() {
@@ -113,6 +117,7 @@ struct World::State {
     fingers->place(X_WB, hand.joint_angles(hand.clamp(dof)),
                    VectorXd::Zero(static_cast<Eigen::Index>(hand.joints().size())));
     arm.stop();
+    carrier.reset();
     braking = false;
     X_WB_command = X_WB;
     velocity_command.setZero();
@@ -120,6 +125,17 @@ struct World::State {
   }
 
   void drive() {
+    if (carrier) {
+      carrier->step(fingers->X_WC(), fingers->base_velocity(), fingers->base_turning(),
+                    options.base, dt());
+      fingers->move_base(carrier->velocity(), carrier->turning());
+    } else {
+      drive_base();
+    }
+    fingers->drive(dof_command, effort);
+  }
+
+  void drive_base() {
     ArmLimits limits = options.arm;
     if (braking) {
       limits.acceleration = options.brake.acceleration;
@@ -127,7 +143,6 @@ struct World::State {
     }
     arm.step(fingers->X_WC(), fingers->X_WC_of(X_WB_command), velocity_command, limits, dt());
     fingers->move_base(arm.velocity(), arm.turning());
-    fingers->drive(dof_command, effort);
   }
 
   /// Calls visit(point, first, second) for every contact point that carried force in the last step.
@@ -199,8 +214,10 @@ Expected<std::unique_ptr<World>> World::create(const model::HandModel& hand, con
 
 std::unique_ptr<World> World::clone() const {
   // What was valid once is valid again.
-  std::unique_ptr<World> copy = std::move(
-      *create(state_->hand, state_->fingers->X_WB(), state_->dof_command, state_->options));
+  WorldOptions options = state_->options;
+  options.base = {};
+  std::unique_ptr<World> copy =
+      std::move(*create(state_->hand, state_->fingers->X_WB(), state_->dof_command, options));
   State& to = *copy->state_;
   to.fingers->copy_state(*state_->fingers);
   to.arm = state_->arm;
@@ -323,6 +340,18 @@ void World::hold_still() {
   state_->dof_command = state_->hand.clamp(state_->dof_command);
 }
 
+void World::carry(const Pose& X_WB, const Push& most) {
+  if (!state_->carrier) state_->carrier.emplace();
+  state_->carrier->aim(state_->fingers->X_WC_of(X_WB), most);
+  state_->X_WB_command = X_WB;
+}
+
+BaseLoad World::base_load() const {
+  if (!state_->carrier) return {};
+  return state_->carrier->load(state_->fingers->base_velocity(), state_->fingers->base_turning(),
+                               state_->options.base, state_->dt());
+}
+
 void World::step() {
   state_->drive();
   state_->bullet.stepSimulation(state_->dt(), 0);
@@ -352,6 +381,9 @@ HandMotion World::hand_motion() const {
   return motion;
 }
 
+Pose World::base() const {
+  return state_->fingers->X_WB();
+}
 const Pose& World::commanded_base() const {
   return state_->X_WB_command;
 }

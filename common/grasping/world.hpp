@@ -48,6 +48,7 @@ struct WorldOptions {
   double object_damping = 0;
   ArmLimits arm;
   BrakeLimits brake;
+  BaseBody base;  // heavy as it is by itself, the base gives way to nothing
 };
 
 /// rad and N m; m and N of what slides.
@@ -83,9 +84,10 @@ class World {
   World(const World&) = delete;
   World& operator=(const World&) = delete;
 
-  /// A new world in the same state, to the bit, and with the same commands. What Bullet remembers
-  /// of the last step's contacts does not go with it, so that the two move apart, by micrometres
-  /// where things rest; two clones of the same world stay the same.
+  /// A new world in the same state, to the bit, and with the same commands; its base is not
+  /// carried, but gives way to nothing and goes where it is commanded. What Bullet remembers of the
+  /// last step's contacts does not go with it, so that the two move apart, by micrometres where
+  /// things rest; two clones of the same world stay the same.
   std::unique_ptr<World> clone() const;
 
   /// Adds a body and returns its number, 0, 1, ...
@@ -108,12 +110,18 @@ class World {
   Expected<void> limit_effort(const Eigen::VectorXd& effort);
   void hold_still();  // commands base and fingers to stay where they are; a grip keeps its squeeze
   void brake();       // the same, and until the next command the arm brakes as hard as it can
+  /// From the next step on an arm carries the base and is here, whatever was commanded before. It
+  /// pushes no harder than this; base.mass says how heavy it is. place_hand() takes it away again.
+  void carry(const Pose& X_WB, const Push& most);
+  /// What pushed against the carried base in the last step; before the first: nothing.
+  BaseLoad base_load() const;
 
   void step();
   double time_step() const;
 
   const model::HandModel& hand() const;
   HandMotion hand_motion() const;
+  Pose base() const;
   const Pose& commanded_base() const;
   const Eigen::VectorXd& commanded_dof() const;
   bool has_table() const;

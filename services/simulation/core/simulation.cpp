@@ -34,18 +34,23 @@ grasping::Body body_of(const model::CatalogueObject& object) {
 }
 
 Expected<std::unique_ptr<Simulation>> Simulation::create(const model::HandModel& hand,
-                                                         const Options& options) {
-  auto world = grasping::World::create(hand, resting_place, hand.postures().at("open"),
-                                       {.rate = options.rate, .brake = options.brake});
+                                                         const Options& options,
+                                                         std::unique_ptr<CarryingArm> arm) {
+  grasping::WorldOptions how{.rate = options.rate, .brake = options.brake};
+  if (arm) how.base = CarryingArm::base();
+  auto world = grasping::World::create(hand, arm ? arm->home() : resting_place,
+                                       hand.postures().at("open"), how);
   if (!world) return tl::unexpected(world.error());
-  return std::unique_ptr<Simulation>(new Simulation(hand, options, std::move(*world)));
+  return std::unique_ptr<Simulation>(
+      new Simulation(hand, options, std::move(*world), std::move(arm)));
 }
 
 Simulation::Simulation(const model::HandModel& hand, const Options& options,
-                       std::unique_ptr<grasping::World> world)
+                       std::unique_ptr<grasping::World> world, std::unique_ptr<CarryingArm> arm)
     : hand_(hand),
       options_(options),
       world_(std::move(world)),
+      arm_(std::move(arm)),
       detector_(world_->time_step()),
       period_(seconds(world_->time_step())) {}
 
@@ -86,11 +91,12 @@ Expected<void> Simulation::accept(const Command& command, Time now) {
   if (command.X_WB.translation().norm() > far_off) return fail("command far away");
   if (auto limited = world_->limit_effort(command.effort); !limited)
     return fail("command with impossible efforts", limited.error().where);
-  if (!command_) approach(command);
+  if (!command_ && !arm_) approach(command);
   if (auto taken = world_->command(command.X_WB, command.dof); !taken) {
     world_->limit_effort(command_ ? command_->effort : Eigen::VectorXd());
     return fail("command outside limits", taken.error().where, taken.error().hint);
   }
+  if (arm_) arm_->follow(command.X_WB);
   command_ = command;
   accepted_ = now;
   holding_ = braking_ = false;
@@ -99,6 +105,7 @@ Expected<void> Simulation::accept(const Command& command, Time now) {
 
 void Simulation::hold() {
   world_->brake();
+  if (arm_) arm_->brake();
   holding_ = braking_ = true;
 }
 
@@ -106,6 +113,10 @@ void Simulation::hold() {
 void Simulation::brake() {
   const Pose before = world_->commanded_base();
   world_->hold_still();
+  if (arm_) {
+    braking_ = !arm_->rests();
+    return;
+  }
   const Pose& now = world_->commanded_base();
   braking_ = (now.translation() - before.translation()).norm() > 1e-6 ||
              angle_between(now.linear(), before.linear()) > 1e-6;
@@ -141,8 +152,10 @@ bool Simulation::step() {
   time_ += period_;
   if (!holding_ && time_ - accepted_ > options_.stale) {
     world_->hold_still();
+    if (arm_) arm_->brake();
     holding_ = true;
   }
+  if (arm_) arm_->step(*world_);
   world_->step();
   if (braking_) brake();
   if (const auto body = detector_.update(*world_); body && command_) {
@@ -160,6 +173,11 @@ bool Simulation::step() {
     closure_ = std::move(closure);
   }
   return true;
+}
+
+std::optional<ArmMotion> Simulation::arm_motion() const {
+  if (!arm_) return std::nullopt;
+  return arm_->motion(*world_);
 }
 
 std::optional<Closure> Simulation::take_closure() {

@@ -12,6 +12,7 @@
 #include "common/grasping/world.hpp"
 #include "common/model/catalogue.hpp"
 #include "common/model/scene.hpp"
+#include "services/simulation/core/carrying_arm.hpp"
 #include "services/simulation/core/closure.hpp"
 #include "services/simulation/core/command.hpp"
 
@@ -32,8 +33,10 @@ grasping::Body body_of(const model::CatalogueObject& object);
 /// sightings, closures found. Deterministic; asks no clock. Keeps a reference to the hand.
 class Simulation {
  public:
+  /// arm: carries the hand, which begins at its home; none: the hand flies.
   static Expected<std::unique_ptr<Simulation>> create(const model::HandModel& hand,
-                                                      const Options& options = {});
+                                                      const Options& options = {},
+                                                      std::unique_ptr<CarryingArm> arm = nullptr);
 
   /// Objects as the scene says. Fails on what cannot be simulated.
   Expected<void> build(const model::Scene& scene, const model::Catalogue& catalogue);
@@ -42,9 +45,9 @@ class Simulation {
   /// hand is far. True if the bodies of the world have changed. Fails when it cannot be placed.
   Expected<bool> see(const grasping::Body& body, const Pose& X_WO);
 
-  /// Follows a command from now on. The first one puts the hand there at once, unless it would
-  /// touch something. Refuses commands for another model, of wrong length or not finite, and far
-  /// away ones.
+  /// Follows a command from now on. The first one puts a hand without an arm there at once, unless
+  /// it would touch something. Refuses commands for another model, of wrong length or not finite,
+  /// and far away ones.
   Expected<void> accept(const Command& command, Time now);
 
   /// Stops as fast as the arm can, and stays there, with its squeeze, until the next command.
@@ -64,16 +67,20 @@ class Simulation {
   /// The base still moves, though it was told to stop.
   bool is_braking() const { return braking_; }
   const grasping::World& world() const { return *world_; }
+  /// What the arm does; nothing without one.
+  std::optional<ArmMotion> arm_motion() const;
+  const CarryingArm* arm() const { return arm_.get(); }
 
  private:
   Simulation(const model::HandModel& hand, const Options& options,
-             std::unique_ptr<grasping::World> world);
+             std::unique_ptr<grasping::World> world, std::unique_ptr<CarryingArm> arm);
   void approach(const Command& command);
   void brake();
 
   const model::HandModel& hand_;
   Options options_;
   std::unique_ptr<grasping::World> world_;
+  std::unique_ptr<CarryingArm> arm_;
   ClosureDetector detector_;
   Duration period_;
   Time time_{}, goal_{};

@@ -58,9 +58,12 @@ Expected<void> Service::start() {
                                     config.number("simulation.brake_turn")};
   if (!(brake.acceleration > 0 && brake.turn_acceleration > 0))
     return wrong_use("must be positive", "simulation.brake, simulation.brake_turn");
-  auto simulation = Simulation::create(hand_, {.rate = rate, .brake = brake});
+  auto arm = arm_of(config, hand_);
+  if (!arm) return tl::unexpected(arm.error());
+  auto simulation = Simulation::create(hand_, {.rate = rate, .brake = brake}, std::move(*arm));
   if (!simulation) return tl::unexpected(simulation.error());
   simulation_ = std::move(*simulation);
+  if (simulation_->arm()) arm_.emplace(shell_, *simulation_->arm());
   if (const auto file = config.path("lab.scene"); !file.empty()) {
     const auto scene = model::load_scene(file, catalogue_);
     if (!scene) return tl::unexpected(scene.error());
@@ -154,6 +157,7 @@ void Service::publish_state() {
     object.stamp_ns(to_ns(time));
     object_state_.publish(object);
   }
+  if (arm_) arm_->tell(*simulation_->arm_motion(), simulation_->command(), time);
   ++sequence_;
 }
 

@@ -12,6 +12,7 @@
 #include "common/robot/gatekeeper.hpp"
 #include "common/service/shell.hpp"
 #include "services/simulation/core/simulation.hpp"
+#include "services/simulation/service/arm_teller.hpp"
 
 namespace prehend::simulation {
 
@@ -44,6 +45,7 @@ class Service {
   bool from_scene_ = false;
   std::unique_ptr<Simulation> simulation_;
   std::unique_ptr<robot::Gatekeeper> gate_;
+  std::optional<ArmTeller> arm_;  // none: the hand flies
   service::Shell::Output<v1::HandState> hand_state_;
   service::Shell::Output<v1::ObjectState> object_state_;
   service::Shell::Output<v1::SceneState> scene_state_;

@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "common/arm/inverse.hpp"
+#include "common/model/arm_choice.hpp"
 #include "services/simulation/tools/arm/commands.hpp"
 #include "services/simulation/tools/arm_import/make_arm.hpp"
 #include "services/simulation/tools/hand_import/check.hpp"
@@ -62,7 +63,7 @@ int run_check(const CheckArguments& arguments) {
   if (is_file) {
     judge_urdf(arguments, findings, document);
   } else {
-    const auto arm = load_arm(arguments.what);
+    const auto arm = model::load_arm(arguments.what);
     if (!arm && arm.error().exit == exit_wrong_use) return tool::complain(arm.error());
     if (arm)
       describe(*arm, document);
@@ -89,14 +90,6 @@ int run_check(const CheckArguments& arguments) {
 }
 
 }  // namespace
-
-Expected<model::ArmModel> load_arm(const std::string& name) {
-  const auto folder = model::arm_directory(name);
-  std::error_code ignored;
-  if (name.empty() || !std::filesystem::exists(folder / "arm.toml", ignored))
-    return wrong_use("there is no such arm", "'" + name + "'", model::arm_hint());
-  return model::ArmModel::load(folder);
-}
 
 void add_check(tool::Program& program) {
   auto arguments = std::make_shared<CheckArguments>();

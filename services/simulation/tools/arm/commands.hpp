@@ -1,6 +1,5 @@
 #pragma once
 
-#include "common/model/arm_model.hpp"
 #include "common/tool/program.hpp"
 
 namespace prehend::simulation {
@@ -10,8 +9,5 @@ void add_check(tool::Program& program);
 void add_add(tool::Program& program);
 void add_solve(tool::Program& program);
 void add_reach(tool::Program& program);
-
-/// The arm of this name, or in this folder. An unknown one is wrong use.
-Expected<model::ArmModel> load_arm(const std::string& name);
 
 }  // namespace prehend::simulation

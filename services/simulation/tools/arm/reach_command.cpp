@@ -10,6 +10,7 @@
 #include "common/arm/mounting.hpp"
 #include "common/arm/reach.hpp"
 #include "common/base/gnuplot.hpp"
+#include "common/model/arm_choice.hpp"
 #include "services/simulation/tools/arm/commands.hpp"
 
 namespace prehend::simulation {
@@ -89,7 +90,7 @@ Expected<void> draw(const std::vector<arm::ReachRow>& rows, const std::string& p
 }
 
 int run_reach(const ReachArguments& arguments) {
-  const auto arm = load_arm(arguments.arm);
+  const auto arm = model::load_arm(arguments.arm);
   if (!arm) return tool::complain(arm.error());
   const auto task = task_of(*arm, arguments);
   if (!task) return tool::complain(task.error());

@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "common/arm/inverse.hpp"
+#include "common/model/arm_choice.hpp"
 #include "services/simulation/tools/arm/commands.hpp"
 
 namespace prehend::simulation {
@@ -76,7 +77,7 @@ void print(const model::ArmModel& arm, const std::vector<arm::Joints>& postures)
 int run_solve(const SolveArguments& arguments) {
   const auto X = pose_from(arguments.pose);
   if (!X) return tool::complain(X.error());
-  const auto arm = load_arm(arguments.arm);
+  const auto arm = model::load_arm(arguments.arm);
   if (!arm) return tool::complain(arm.error());
   const Pose X_AE = arguments.frame == "shoulder" ? arm->X_AS * *X : *X;
   const auto postures = arm::Inverse(*arm).branches(X_AE);
