@@ -316,6 +316,19 @@ std::string Gatekeeper::stop(const std::string& by, const std::string& reason, T
                      kept ? "" : ", until this process ends: " + kept.error().message());
 }
 
+void Gatekeeper::fault(const std::string& reason, Time now) {
+  if (gate_.stopped()) return;
+  stop("the robot itself", reason, now);
+  if (!shell_.lockstep()) {
+    look_around(now);
+    tell(now);
+  }
+}
+
+void Gatekeeper::start_anew() {
+  if (!gate_.stopped()) gate_.release();
+}
+
 Expected<std::string> Gatekeeper::release(const std::string& by, const std::string& reason,
                                           Time now) {
   if (reason.empty()) return fail("a release needs a reason", by);

@@ -47,6 +47,16 @@ class Gatekeeper {
 
   /// From the service's tick.
   void tick(Time now);
+  /// Something is wrong with the robot: it is stopped, as by an operator, until somebody releases
+  /// it.
+  void fault(const std::string& reason, Time now);
+  bool is_stopped() const { return gate_.stopped().has_value(); }
+  /// May it move by itself, to home? Not while it is stopped, nor without the consent that is asked
+  /// for.
+  bool may_move(Time now) const { return !is_stopped() && gate_.has_consent(now); }
+  /// The robot did not follow, or nobody knew where it was: the next command counts from where it
+  /// is.
+  void start_anew();
 
   ~Gatekeeper();
 

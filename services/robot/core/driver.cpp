@@ -1,0 +1,45 @@
+#include "services/robot/core/driver.hpp"
+
+#include "services/robot/core/barrett_driver.hpp"
+#include "services/robot/core/dynamixel_driver.hpp"
+
+namespace prehend::robot {
+
+std::string_view to_string(Phase phase) {
+  switch (phase) {
+    case Phase::offline:
+      return "offline";
+    case Phase::configured:
+      return "configured";
+    case Phase::homing:
+      return "homing";
+    case Phase::homed:
+      return "homed";
+    case Phase::ready:
+      return "ready";
+    case Phase::faulted:
+      return "faulted";
+  }
+  return "unknown";
+}
+
+const std::vector<DriverKind>& driver_kinds() {
+  static const std::vector<DriverKind> kinds{
+      {"barrett", "barrett", "", 9600, "BarrettHand BH8-262, RS-232", barrett::create},
+      {"dynamixel", "", "dynamixel.toml", 57600, "servos of protocol 2.0 on one line",
+       dynamixel::create},
+  };
+  return kinds;
+}
+
+Expected<const DriverKind*> find_driver(std::string_view name) {
+  std::string names;
+  for (const DriverKind& kind : driver_kinds()) {
+    if (kind.name == name) return &kind;
+    names += (names.empty() ? "" : " or ") + std::string(kind.name);
+  }
+  return wrong_use("there is no driver '" + std::string(name) + "'", "robot.device",
+                   "give " + names);
+}
+
+}  // namespace prehend::robot

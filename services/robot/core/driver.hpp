@@ -1,0 +1,88 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "common/base/error.hpp"
+#include "common/base/time.hpp"
+#include "common/model/hand_model.hpp"
+
+namespace prehend::robot {
+
+/// What a robot is ready for. Moving is a ready one that moves; stopped is the gate's word.
+enum class Phase {
+  offline,     // nobody answers
+  configured,  // answers, and does not know where its joints are
+  homing,      // finds that out; it moves
+  homed,       // knows it, and does not yet listen to commands
+  ready,       // follows commands
+  faulted      // says that something is wrong with it
+};
+std::string_view to_string(Phase phase);
+
+/// What it said of itself last. Values of the DoFs, in their units.
+struct Reading {
+  Time stamp{};
+  Eigen::VectorXd dof, velocity;
+  Eigen::VectorXd effort;             // N m or N, estimated
+  std::optional<double> temperature;  // °C, the hottest
+};
+
+struct DriverOptions {
+  int baud = 9600;              // of the line
+  double rate = 100;            // Hz, of commands, as far as the line has room
+  double max_temperature = 60;  // °C, above which it is faulted
+  Duration lost_after = std::chrono::milliseconds(300);  // without a sound answer
+  std::string wiring = {}, wiring_file = {};  // which servo moves what, where hands differ in that
+};
+
+/// The near end of a robot's line as a value: bytes in, bytes out, and what they mean. All times
+/// are given to it. What it is told to follow is within the hand's limits.
+class Driver {
+ public:
+  virtual ~Driver() = default;
+
+  /// The line is open: the conversation begins anew.
+  virtual void connected(Time now) = 0;
+  /// The line is gone.
+  virtual void disconnected(const std::string& why) = 0;
+  /// What has come, perhaps nothing; returns what is to be sent. Called often.
+  virtual std::string step(std::string_view heard, Time now) = 0;
+  /// What is to be sent before nobody calls step() any more: nothing moves after it.
+  virtual std::string farewell() = 0;
+
+  /// Finds out where its joints are, if it is configured or ready. The robot moves.
+  virtual void home() = 0;
+  /// Follows this posture from now on; effort: N m or N, that the drives may use; empty: all.
+  virtual void follow(const Eigen::VectorXd& dof, const Eigen::VectorXd& effort, Time now) = 0;
+  /// Stays where it is, at once, and ends its homing; what presses against something keeps
+  /// pressing.
+  virtual void hold() = 0;
+
+  virtual Phase phase() const = 0;
+  /// Of an offline or a faulted one: what is wrong.
+  virtual const std::string& trouble() const = 0;
+  virtual const std::optional<Reading>& reading() const = 0;
+  /// What kind of robot it says it is.
+  virtual const std::string& identity() const = 0;
+  /// Answers that were no sound ones since the last call, by what was wrong with them.
+  virtual std::vector<std::string> take_rejects() = 0;
+};
+
+struct DriverKind {
+  std::string_view name;
+  std::string_view hand;    // model it drives; empty: any that has a wiring
+  std::string_view wiring;  // file in the folder of such a hand; empty: none is needed
+  int baud;                 // of its line, unless somebody set it otherwise
+  std::string_view description;
+  Expected<std::unique_ptr<Driver>> (*create)(const model::HandModel& hand,
+                                              const DriverOptions& options);
+};
+const std::vector<DriverKind>& driver_kinds();
+Expected<const DriverKind*> find_driver(std::string_view name);
+
+}  // namespace prehend::robot

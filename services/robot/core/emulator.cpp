@@ -1,0 +1,41 @@
+#include "services/robot/core/emulator.hpp"
+
+#include "services/robot/core/barrett_emulator.hpp"
+#include "services/robot/core/dynamixel_emulator.hpp"
+
+namespace prehend::robot {
+
+namespace {
+
+Expected<std::unique_ptr<Emulator>> barrett_hand(const model::HandModel& hand,
+                                                 const EmulatedOptions& options) {
+  return std::make_unique<barrett::Emulator>(hand, options);
+}
+
+Expected<std::unique_ptr<Emulator>> dynamixel_servos(const model::HandModel& hand,
+                                                     const EmulatedOptions& options) {
+  const auto servos = dynamixel::parse_wiring(options.wiring, hand, options.wiring_file);
+  if (!servos) return tl::unexpected(servos.error());
+  return std::make_unique<dynamixel::Emulator>(hand, *servos, options);
+}
+
+}  // namespace
+
+const std::vector<EmulatorKind>& emulator_kinds() {
+  static const std::vector<EmulatorKind> kinds{
+      {"barrett", "barrett", "", barrett_hand, 38400},
+      {"dynamixel", "", "dynamixel.toml", dynamixel_servos, 1000000},
+  };
+  return kinds;
+}
+
+Expected<const EmulatorKind*> find_emulator(std::string_view name) {
+  std::string names;
+  for (const EmulatorKind& kind : emulator_kinds()) {
+    if (kind.name == name) return &kind;
+    names += (names.empty() ? "" : " or ") + std::string(kind.name);
+  }
+  return wrong_use("there is no emulator '" + std::string(name) + "'", "--device", "give " + names);
+}
+
+}  // namespace prehend::robot

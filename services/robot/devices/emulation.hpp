@@ -1,0 +1,44 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+
+#include "common/serial/line_faults.hpp"
+#include "common/serial/plug.hpp"
+#include "services/robot/core/emulator.hpp"
+
+namespace prehend::robot {
+
+/// What goes wrong with robots and their lines. Times are s after the start; negative: never.
+struct FaultOptions {
+  serial::LineFaults line;
+  double late = 0;        // share of answers that come late_by after their time
+  double late_by = 0.15;  // s
+  double silent_at = -1;  // from when on it says and hears nothing
+  double silent_for = 1;
+  double cut_at = -1;  // when the cable is pulled out; the robot keeps its power
+  double cut_for = 2;
+  double hot_at = -1;  // when its motors are hot
+  double hot_for = 2;
+  double hot = 80;  // °C
+  double stuck_at = -1;
+  double stuck_for = 3;
+  std::size_t stuck = 0;  // DoF
+  std::uint64_t seed = 1;
+};
+
+struct EmulationOptions {
+  std::function<Expected<std::unique_ptr<serial::Plug>>()> plug_in;  // asked again after a cut
+  int baud = 0;  // bytes take their time on the line; 0: they take none
+  FaultOptions faults;
+  std::function<void(const std::string& where)> on_plugged = {};
+  /// Called after each step, for a twin.
+  std::function<void(Emulator& robot)> on_step = {};
+};
+
+/// Runs an emulated robot in real time, until `stopped` says so.
+Expected<void> emulate(const EmulationOptions& options, Emulator& robot,
+                       const std::function<bool()>& stopped);
+
+}  // namespace prehend::robot

@@ -1,0 +1,47 @@
+#include "services/robot/service/options.hpp"
+
+#include <filesystem>
+#include <utility>
+
+#include "common/base/file_text.hpp"
+
+namespace prehend::robot {
+
+Expected<Connection> connection_of(const service::Config& config) {
+  for (const char* key : {"robot.rate", "robot.max_temperature", "robot.lost_after"})
+    if (!(config.number(key) > 0)) return wrong_use("must be positive", key);
+  if (config.number("robot.rate") > 500) return wrong_use("must be at most 500", "robot.rate");
+  const auto kind = find_driver(config.text("robot.device"));
+  if (!kind) return tl::unexpected(kind.error());
+  Connection connection;
+  connection.device = config.text("robot.device");
+  connection.port = config.text("robot.port");
+  const std::int64_t baud = config.integer("robot.baud");
+  if (baud < 0 || baud > 10000000) return wrong_use("is no speed of a line", "robot.baud");
+  connection.baud = baud == 0 ? (*kind)->baud : static_cast<int>(baud);
+  if (connection.port.empty())
+    return wrong_use("is no port", "robot.port", "give /dev/ttyUSB0 or where an emulator is");
+  const std::filesystem::path folder = model::hand_directory(
+      (*kind)->hand.empty() ? config.text("mapping.hand") : std::string((*kind)->hand));
+  auto hand = model::HandModel::load(folder);
+  if (!hand) return tl::unexpected(hand.error());
+  DriverOptions options{.baud = connection.baud,
+                        .rate = config.number("robot.rate"),
+                        .max_temperature = config.number("robot.max_temperature"),
+                        .lost_after = seconds(config.number("robot.lost_after"))};
+  if (!(*kind)->wiring.empty()) {
+    std::filesystem::path file = config.path("robot.wiring");
+    if (file.empty()) file = folder / (*kind)->wiring;
+    const auto text = read_file(file, "give robot.wiring; see services/robot/README.md");
+    if (!text) return tl::unexpected(text.error());
+    options.wiring = *text;
+    options.wiring_file = file.string();
+  }
+  connection.hand = std::make_unique<model::HandModel>(std::move(*hand));
+  auto driver = (*kind)->create(*connection.hand, options);
+  if (!driver) return tl::unexpected(driver.error());
+  connection.driver = std::move(*driver);
+  return connection;
+}
+
+}  // namespace prehend::robot

@@ -1,0 +1,267 @@
+// The robot service with an emulated BarrettHand at the end of a pseudo-terminal: real processes,
+// the real protocol, and what goes wrong with both.
+#include <csignal>
+#include <nlohmann/json.hpp>
+
+#include "common/convert/convert.hpp"
+#include "tests/integration/rig.hpp"
+
+namespace prehend::integration {
+namespace {
+
+using nlohmann::json;
+
+class Robot : public Rig {
+ protected:
+  std::string port() const { return (folder_ / "robot_port").string(); }
+  service::Process emulate(Strings arguments = {}) {
+    arguments.insert(arguments.begin(), {"emulate", "--link", port()});
+    auto process = start_program("prehend-robot-tool", arguments);
+    EXPECT_TRUE(eventually(20, [&] { return std::filesystem::exists(port()); }));
+    return process;
+  }
+  Strings settings(Strings more = {}) const {
+    more.insert(more.end(), {"robot.port=" + port()});
+    return more;
+  }
+  void serve(const Strings& more = {}) { service_.emplace(start("robot", settings(more))); }
+
+  v2::HandCommand command(double closure) {
+    v2::HandCommand message;
+    message.hand("hand");
+    message.model(model_);
+    message.sequence_number(++sequence_);
+    message.stamp_ns(now_ns());
+    message.origin_ns(now_ns());
+    message.dof(std::vector<double>(model_ == "barrett" ? 4 : 1, closure));
+    if (model_ == "barrett") message.dof()[0] = 0;  // the spread
+    message.X_WB(convert::to_message(make_pose({0, 0, 0.5})));
+    message.mode(v1::MODE_DIRECT);
+    return message;
+  }
+  void listen() {
+    for (auto& sample : states_.take())
+      if (!sample.info.gone) {
+        state_ = sample.data;
+        ++heard_;
+      }
+    for (auto& sample : gates_.take())
+      if (!sample.info.gone) gate_ = sample.data;
+    for (auto& sample : statuses_.take())
+      if (!sample.info.gone && sample.data.name().to_string() == "robot") status_ = sample.data;
+  }
+  bool wait(double limit_s, const std::function<bool()>& condition) {
+    return eventually(limit_s, [&] {
+      listen();
+      return condition();
+    });
+  }
+  /// Sends every 20 ms until the condition holds.
+  bool lead(double closure, double limit_s, const std::function<bool()>& condition) {
+    return eventually(limit_s, [&] {
+      commands_.write(command(closure));
+      std::this_thread::sleep_for(std::chrono::milliseconds(20));
+      listen();
+      return condition();
+    });
+  }
+  double finger(std::size_t n) const { return n < state_.dof().size() ? state_.dof()[n] : -1; }
+  bool says(const std::string& words) const {
+    return status_.message().to_string().find(words) != std::string::npos;
+  }
+  std::uint64_t dropped(const std::string& reason) const {
+    for (const auto& drop : status_.drops())
+      if (drop.reason().to_string() == reason) return drop.count();
+    return 0;
+  }
+  void order(v1::OperatorAction action, const std::string& argument) {
+    v1::OperatorCommand message;
+    message.id("test-" + std::to_string(++orders_count_));
+    message.stamp_ns(now_ns());
+    message.action(action);
+    message.target("gate");
+    message.argument(argument);
+    ASSERT_TRUE(orders_.write(message));
+  }
+  /// Follows commands: homed before, or by itself.
+  void start_ready(const Strings& emulated = {}) {
+    emulator_.emplace(emulate(emulated));
+    serve();
+    ASSERT_TRUE(wait(30, [&] { return heard_ > 0; })) << status_.message();
+    meet(commands_);
+    ASSERT_TRUE(lead(0.5, 30, [&] { return std::abs(finger(1) - 0.5) < 0.02; })) << finger(1);
+  }
+
+  dds::Writer<v2::HandCommand> commands_ = writer(dds::robot_command);
+  dds::Writer<v1::OperatorCommand> orders_ = writer(dds::operator_command);
+  dds::Reader<v1::HandState> states_ = reader(dds::robot_state);
+  dds::Reader<v1::GateState> gates_ = reader(dds::robot_gate);
+  dds::Reader<v1::ServiceStatus> statuses_ = reader(dds::service_status);
+  v1::HandState state_;
+  v1::GateState gate_;
+  v1::ServiceStatus status_;
+  std::string model_ = "barrett";
+  int heard_ = 0, orders_count_ = 0;
+  std::uint64_t sequence_ = 0;
+  std::optional<service::Process> emulator_, service_;
+};
+
+TEST_F(Robot, IsCheckedHomedLedStoppedAndReleased) {
+  emulator_.emplace(emulate());
+  const Answer check =
+      run("prehend-robot-tool", with_lab({"check", "--json", "--set", settings()[0]}), 30);
+  ASSERT_EQ(check.exit_code, 0) << check.log;
+  EXPECT_EQ(json::parse(check.output)["state"], "configured");
+  const Answer home =
+      run("prehend-robot-tool", with_lab({"home", "--json", "--set", settings()[0]}), 60);
+  ASSERT_EQ(home.exit_code, 0) << home.log << home.output;
+  EXPECT_EQ(json::parse(home.output)["state"], "ready");
+  EXPECT_EQ(json::parse(home.output)["joints_rad"].size(), 4u);
+
+  serve();
+  ASSERT_TRUE(wait(30, [&] { return heard_ > 0; }));
+  meet(commands_);
+  ASSERT_TRUE(lead(1.2, 30, [&] { return std::abs(finger(3) - 1.2) < 0.02; })) << finger(3);
+  EXPECT_EQ(state_.joint().size(), 8u);
+  const Answer status = run("prehend-robot-tool", with_lab({"status", "--json"}), 30);
+  EXPECT_EQ(json::parse(status.output)["state"], "ready") << status.output;
+  const Answer second = run("prehend-robot-tool", with_lab({"check", "--set", settings()[0]}), 30);
+  EXPECT_EQ(second.exit_code, 3);
+  EXPECT_NE(second.log.find("another program uses the port"), std::string::npos) << second.log;
+
+  order(v1::ACTION_STOP, "test");
+  ASSERT_TRUE(wait(10, [&] { return gate_.stopped(); }));
+  const double where = finger(1);
+  EXPECT_FALSE(lead(0.2, 1, [&] { return std::abs(finger(1) - where) > 0.05; }));
+  const Answer stopped = run("prehend-robot-tool", with_lab({"status", "--json"}), 30);
+  EXPECT_EQ(stopped.exit_code, 1);
+  EXPECT_EQ(json::parse(stopped.output)["state"], "stopped") << stopped.output;
+  order(v1::ACTION_RELEASE, "the test goes on");
+  ASSERT_TRUE(wait(10, [&] { return !gate_.stopped(); }));
+  EXPECT_TRUE(lead(0.2, 20, [&] { return std::abs(finger(1) - 0.2) < 0.02; }));
+  EXPECT_EQ(service_->stop(seconds(10)).code, 0);
+}
+
+TEST_F(Robot, HomesByItselfWhereThatIsWanted) {
+  emulator_.emplace(emulate());
+  serve({"robot.home=true"});
+  EXPECT_TRUE(wait(30, [&] { return heard_ > 0; })) << status_.message();
+}
+
+TEST_F(Robot, WhatMustNotMoveDoesNotHome) {
+  emulator_.emplace(emulate());
+  serve({"robot.home=true", "safety.start_stopped=true"});
+  ASSERT_TRUE(wait(30, [&] { return says("configured, not homed") || says("stopped"); }));
+  EXPECT_FALSE(wait(1.5, [&] { return heard_ > 0; }));
+  meet(orders_);
+  order(v1::ACTION_RELEASE, "it may home");
+  EXPECT_TRUE(wait(30, [&] { return heard_ > 0; })) << status_.message();
+}
+
+TEST_F(Robot, ServosAreLedAndStopped) {
+  model_ = "parallel_jaw";
+  emulator_.emplace(emulate({"--device", "dynamixel", "--hand", model_}));
+  const Strings servos = settings({"robot.device=dynamixel", "mapping.hand=" + model_});
+  Strings check{"check", "--json"};
+  for (const std::string& set : servos) check.insert(check.end(), {"--set", set});
+  const Answer answer = run("prehend-robot-tool", with_lab(check), 30);
+  ASSERT_EQ(answer.exit_code, 0) << answer.log;
+  EXPECT_EQ(json::parse(answer.output)["state"], "ready");
+  EXPECT_EQ(json::parse(answer.output)["joints_rad"].size(), 1u);
+
+  service_.emplace(start("robot", servos));
+  ASSERT_TRUE(wait(30, [&] { return heard_ > 0; }));
+  meet(commands_);
+  ASSERT_TRUE(lead(0.02, 30, [&] { return std::abs(finger(0) - 0.02) < 5e-4; })) << finger(0);
+  order(v1::ACTION_STOP, "test");
+  ASSERT_TRUE(wait(10, [&] { return gate_.stopped(); }));
+  EXPECT_FALSE(lead(0.04, 1, [&] { return std::abs(finger(0) - 0.02) > 2e-3; }));
+  order(v1::ACTION_RELEASE, "the test goes on");
+  ASSERT_TRUE(wait(10, [&] { return !gate_.stopped(); }));
+  EXPECT_TRUE(lead(0.04, 20, [&] { return std::abs(finger(0) - 0.04) < 5e-4; })) << finger(0);
+  emulator_->stop(seconds(10));
+  ASSERT_TRUE(lead(0.01, 20, [&] { return gate_.stopped(); }));
+  EXPECT_EQ(gate_.stopped_by().to_string(), "the robot itself");
+}
+
+TEST_F(Robot, WithoutHomingItMovesNothing) {
+  emulator_.emplace(emulate());
+  serve();
+  ASSERT_TRUE(wait(30, [&] { return says("configured, not homed"); }));
+  meet(commands_);
+  EXPECT_TRUE(lead(1, 20, [&] { return dropped("the robot is not ready") > 0; }));
+  EXPECT_EQ(heard_, 0);
+}
+
+TEST_F(Robot, ACutCableStopsItUntilItIsReleased) {
+  start_ready({"--homed"});
+  emulator_->stop(seconds(10));
+  ASSERT_TRUE(lead(0.5, 20, [&] { return gate_.stopped(); }));
+  EXPECT_EQ(gate_.stopped_by().to_string(), "the robot itself");
+  emulator_.emplace(emulate({"--homed"}));
+  // It is back, and stays stopped.
+  const int before = heard_;
+  ASSERT_TRUE(wait(30, [&] { return heard_ > before + 10; })) << status_.message();
+  EXPECT_FALSE(lead(1.5, 1, [&] { return finger(1) > 0.1; })) << finger(1);
+  EXPECT_TRUE(gate_.stopped());
+  order(v1::ACTION_RELEASE, "the cable is in again");
+  EXPECT_TRUE(lead(1.5, 30, [&] { return finger(1) > 1.4; })) << finger(1);
+}
+
+TEST_F(Robot, GarbageIsCountedAndLeftOut) {
+  start_ready({"--homed", "--garbage", "0.03", "--drop-bytes", "0.03", "--late", "0.01",
+               "--late-by", "0.05"});
+  EXPECT_TRUE(lead(1.2, 30, [&] {
+    return dropped("garbled answer") + dropped("no answer") > 3 && finger(2) > 1.1;
+  })) << status_.message();
+}
+
+TEST_F(Robot, ARobotThatFallsSilentIsStopped) {
+  start_ready({"--homed"});
+  ::kill(emulator_->pid(), SIGSTOP);
+  EXPECT_TRUE(lead(0.5, 20, [&] { return gate_.stopped(); }));
+  EXPECT_NE(gate_.reason().to_string().find("the wire is lost"), std::string::npos);
+  ::kill(emulator_->pid(), SIGCONT);
+}
+
+TEST_F(Robot, AStuckJointIsNamed) {
+  emulator_.emplace(emulate({"--homed", "--stuck", "finger 2", "--stuck-for", "1000"}));
+  serve();
+  ASSERT_TRUE(wait(30, [&] { return heard_ > 0; }));
+  meet(commands_);
+  EXPECT_TRUE(lead(1.5, 30, [&] { return gate_.stopped(); }));
+  EXPECT_NE(gate_.reason().to_string().find("finger 2 is stuck"), std::string::npos)
+      << gate_.reason();
+}
+
+TEST_F(Robot, AHotRobotIsNotLed) {
+  emulator_.emplace(emulate({"--homed", "--hot", "0", "--hot-for", "1000"}));
+  serve();
+  EXPECT_TRUE(wait(30, [&] { return says("faulted: too hot"); })) << status_.message();
+  EXPECT_EQ(heard_, 0);
+}
+
+TEST_F(Robot, WrongUseIsOneLine) {
+  const auto refused = [&](const Strings& sets, const std::string& words) {
+    auto process = start("robot", sets);
+    const auto ended = process.wait(seconds(20));
+    ASSERT_TRUE(ended) << words;
+    EXPECT_EQ(ended->code, 2) << words;
+    EXPECT_NE(service::last_lines(process.log(), 3).find(words), std::string::npos) << words;
+  };
+  refused({}, "is no port");
+  refused(settings({"robot.device=nothing"}), "there is no driver");
+  refused({"robot.port=/dev/null", "robot.baud=1234"}, "bits per second");
+  const Answer nobody =
+      run("prehend-robot-tool", with_lab({"check", "--set", "robot.port=/nowhere"}), 30);
+  EXPECT_EQ(nobody.exit_code, 3);
+  EXPECT_NE(nobody.log.find("there is no such port"), std::string::npos) << nobody.log;
+  const Answer keyed = run(
+      "prehend-robot-tool",
+      with_lab({"emulate", "--device", "barrett", "--twin", "twin", "--set", "lab.keys=keys"}), 30);
+  EXPECT_EQ(keyed.exit_code, 2);
+  EXPECT_NE(keyed.log.find("joins no lab with keys"), std::string::npos) << keyed.log;
+}
+
+}  // namespace
+}  // namespace prehend::integration
