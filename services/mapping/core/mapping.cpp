@@ -14,12 +14,12 @@ constexpr Duration max_state_pause = std::chrono::milliseconds(500);
 // stops it nearer.
 constexpr double elsewhere = 0.05, turned_elsewhere = 0.2, fingers_elsewhere = 0.5;
 
-/// Two fingers of a hand at X_WB with this posture reach into the object.
+/// A finger of a hand at X_WB with this posture reaches into the object.
 bool closes_on(const FingerDistances& fingers, const Eigen::VectorXd& dof, const Pose& X_WB,
                const Detection& object) {
   const Eigen::VectorXd distances =
       fingers.distances(dof, object.shape, X_WB.inverse() * object.X_WO);
-  return (distances.array() < 0.002).count() >= 2;
+  return distances.minCoeff() < 0.002;
 }
 
 }  // namespace
