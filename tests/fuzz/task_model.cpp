@@ -25,7 +25,10 @@ int main(int argc, char** argv) {
       task.steps[i].X_RO = make_pose({0.1, 0.2, 0.05});
       if (i > 0) task.steps[i].after = {i - 1};
     }
-    fuzz::require(save_task(path, task).has_value(), "no seed");
+    ShownStep shown{.object = "object 0", .grasp = "tripod"};
+    shown.X_WR["object 1"] = make_pose({0.3, 0.2, 0.05});
+    const TaskRecord record{task, {{shown, shown}}, {{from_ns(7), "barrett", true, ""}}};
+    fuzz::require(save_record(path, record).has_value(), "no seed");
     fuzzer.seeds.push_back(fuzz::read_file(path.string()));
   }
   fuzzer.mutate = [](Random& random, std::string file) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "common/base/motion.hpp"
 #include "common/base/random.hpp"
 #include "common/model/human_hand.hpp"
 
@@ -12,12 +13,6 @@ using demonstration::SceneSample;
 using demonstration::Segment;
 
 namespace {
-
-/// Share of the way of a movement with the least jerk.
-double eased(double t) {
-  t = std::clamp(t, 0.0, 1.0);
-  return t * t * t * (10 - 15 * t + 6 * t * t);
-}
 
 /// A value that goes from place to place.
 template <class Value>
@@ -30,7 +25,7 @@ class Track {
     Value now = start_;
     for (const Move& move : moves_) {
       if (t < move.begin) break;
-      const double share = eased((t - move.begin) / (move.end - move.begin));
+      const double share = minimum_jerk((t - move.begin) / (move.end - move.begin));
       now = (1 - share) * now + share * move.to;
     }
     return now;

@@ -9,6 +9,7 @@
 #include "common/model/catalogue.hpp"
 #include "common/model/placement.hpp"
 #include "services/demonstration/core/reproduction/alike.hpp"
+#include "services/demonstration/tools/trials/trial.hpp"
 
 namespace prehend::demonstration {
 namespace {
@@ -95,6 +96,14 @@ TEST(TaskPerformer, FailsWhereTheObjectDoesNotComeAlong) {
                              resting(), {.max_tries = 1});
   ASSERT_FALSE(made);
   EXPECT_THAT(made.error().message(), HasSubstr("lift: was not lifted"));
+}
+
+TEST(TaskTrial, WhatWasShownOnceIsUnderstoodAndDoneElsewhere) {
+  const TaskTrial trial = try_task(barrett(), objects(), 1, 1);
+  EXPECT_TRUE(trial.understood) << trial.reason;
+  EXPECT_TRUE(trial.rehearsed) << trial.reason;
+  EXPECT_TRUE(trial.done) << trial.reason;
+  EXPECT_LT(trial.max_error, 0.02);
 }
 
 TEST(Alike, OfACylinderOnlyTheAxisShowsOfABoxHalfTurnsDoNot) {

@@ -186,6 +186,21 @@ TEST(Watcher, RefusesWhatCannotBe) {
   EXPECT_FALSE(watcher.see(SeenObject{start, "Talc", {}, Pose::Identity()})) << "no shape";
 }
 
+TEST(Watcher, KeepsNoMoreThanTheLongestDemonstration) {
+  Watcher watcher{WatcherOptions{.max_length = std::chrono::seconds(10)}};
+  ASSERT_TRUE(watcher.begin("TEA", start));
+  SeenHand hand{start + seconds(9), make_pose({0, 0, 0.2}), 1, {}};
+  SeenObject talc{hand.stamp, "Talc", catalogue().find("Talc")->shape, make_pose({0, 0, 0.05})};
+  EXPECT_TRUE(watcher.see(hand, ""));
+  EXPECT_TRUE(watcher.see(talc));
+  hand.stamp = talc.stamp = start + seconds(11);
+  talc.X_WO.translation().x() = 0.5;
+  EXPECT_THAT(watcher.see(hand, "").error().message(), HasSubstr("too long"));
+  EXPECT_THAT(watcher.see(talc).error().message(), HasSubstr("too long"));
+  hand.X_WH.translation().x() = 0.5;
+  ASSERT_TRUE(watcher.object_at(hand)) << "where things are now is known all the same";
+}
+
 TEST(GraspJudge, AnswersByObjectAndApproachAndFavoursWhatFits) {
   const auto taxonomy = model::GraspTaxonomy::of_the_house().value();
   GraspJudge judge(taxonomy, nullptr);
@@ -197,6 +212,9 @@ TEST(GraspJudge, AnswersByObjectAndApproachAndFavoursWhatFits) {
   EXPECT_NEAR(with.sum(), 1, 1e-9);
   EXPECT_NEAR(without.sum(), 1, 1e-9);
   EXPECT_GT(with.maxCoeff(), without.maxCoeff()) << "to know the object makes it surer";
+  const std::vector<double> fit = taxonomy.fit_to_object(talc.shape);
+  for (std::size_t k = 0; k < fit.size(); ++k)
+    EXPECT_EQ(with[static_cast<Eigen::Index>(k)] == 0, fit[k] == 0) << judge.kinds()[k];
 }
 
 }  // namespace

@@ -75,6 +75,18 @@ TEST(Segmenter, WithoutRestBetweenObjects) {
   EXPECT_GE(made.near_boundaries, 0.95 * made.boundaries) << made.worst;
 }
 
+TEST(Segmenter, AFilterThatStartsIsNoPhase) {
+  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+    auto shown = test::made_demonstration({.seed = seed});
+    for (std::size_t i = 0; i < 4; ++i)
+      shown.samples[i].p_WG.x() += 0.02 * static_cast<double>(4 - i);
+    const auto found = segment(shown.samples, {});
+    ASSERT_TRUE(found);
+    EXPECT_EQ(order_of(*found), order_of(shown.truth));
+    EXPECT_EQ(found->front().begin, shown.samples.front().t);
+  }
+}
+
 TEST(Segmenter, SegmentsFollowEachOtherWithoutGaps) {
   const auto shown = test::made_demonstration({.objects = 2});
   const auto found = segment(shown.samples, {});

@@ -145,5 +145,53 @@ TEST(TaskFile, ComesBackBitForBitAndDamageIsTold) {
   EXPECT_FALSE(save_task(file, nothing)) << "what is no task is not written";
 }
 
+TEST(TaskFile, KeepsWhatItWasLearntFromAndHowItWent) {
+  Random random(4);
+  const std::vector<ShownTask> shown{lay_the_table(random), lay_the_table(random)};
+  const TaskRecord record{*learn_task("lay", shown),
+                          shown,
+                          {{from_ns(5), "barrett", false, "step 1, Cup: lift: was not lifted"},
+                           {from_ns(6), "barrett", true, ""}}};
+  const auto file =
+      std::filesystem::path(testing::TempDir()) / ("r" + std::to_string(getpid()) + ".task");
+  ASSERT_TRUE(save_record(file, record));
+  const auto back = load_record(file);
+  std::filesystem::remove(file);
+  ASSERT_TRUE(back) << back.error().message();
+  // Learnt again from what was kept, it is the same task.
+  EXPECT_EQ(to_toml(*learn_task("lay", back->shown)), to_toml(record.task));
+  ASSERT_EQ(back->runs.size(), 2u);
+  EXPECT_EQ(back->runs[0].reason, record.runs[0].reason);
+  EXPECT_TRUE(back->runs[1].done);
+  EXPECT_EQ(back->runs[1].stamp, from_ns(6));
+}
+
+TEST(TaskFile, NamesAreNamesOfFiles) {
+  EXPECT_EQ(task_path("lay the table", "tasks")->string(), "tasks/lay the table.task");
+  EXPECT_EQ(task_path("some/where.task", "tasks")->string(), "some/where.task");
+  for (const char* name : {"", "../tea", "a/b", ".tea", "-tea", "tea\n"})
+    EXPECT_FALSE(task_path(name, "tasks")) << name;
+  EXPECT_FALSE(task_path("tea", "")) << "nowhere to look";
+}
+
+TEST(TaskToml, ComesBackAndSaysWhatIsWrong) {
+  Random random(4);
+  const auto task = learn_task("lay", {lay_the_table(random), lay_the_table(random)});
+  const std::string text = to_toml(*task);
+  const auto back = from_toml(text, "lay.toml");
+  ASSERT_TRUE(back) << back.error().message();
+  EXPECT_EQ(to_toml(*back), text);
+  const auto refused = [&](const std::string& what, const std::string& by) {
+    std::string other = text;
+    other.replace(other.find(what), what.size(), by);
+    const auto made = from_toml(other, "lay.toml");
+    return made ? std::string("taken") : made.error().message();
+  };
+  EXPECT_NE(refused("upright", "uprigth").find("uprigth"), std::string::npos);
+  EXPECT_NE(refused("position_m = [", "position_m = [nan, ").find("step 1"), std::string::npos);
+  EXPECT_NE(refused("after = []", "after = [9]").find("after step 9"), std::string::npos);
+  EXPECT_NE(refused("name = ", "name ").find("lay.toml"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace prehend::demonstration

@@ -31,6 +31,11 @@ GraspJudge::GraspJudge(const model::GraspTaxonomy& taxonomy, const Recogniser* r
     : taxonomy_(taxonomy),
       recogniser_(recogniser),
       kinds_(recogniser ? recogniser->classes() : names_of(taxonomy)) {
+  for (const std::string& kind : kinds_) {
+    const model::GraspClass* known = taxonomy.find(kind);
+    classes_.push_back(known ? std::optional<std::size_t>(known - taxonomy.classes().data())
+                             : std::nullopt);
+  }
   begin();
 }
 
@@ -45,8 +50,7 @@ Eigen::VectorXd GraspJudge::prior(const SeenObject* object) const {
   if (!object) return made;
   const std::vector<double> fit = taxonomy_.fit_to_object(object->shape);
   for (std::size_t k = 0; k < kinds_.size(); ++k)
-    for (std::size_t c = 0; c < fit.size(); ++c)
-      if (taxonomy_.classes()[c].name == kinds_[k]) made[static_cast<Eigen::Index>(k)] = fit[c];
+    if (classes_[k]) made[static_cast<Eigen::Index>(k)] = fit[*classes_[k]];
   // An object that is grasped in no way that we know says nothing.
   return made.sum() > 0 ? made : Eigen::VectorXd::Ones(made.size());
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <vector>
@@ -31,6 +32,7 @@ class GraspJudge {
   const model::GraspTaxonomy& taxonomy_;
   const Recogniser* recogniser_;
   std::vector<std::string> kinds_;
+  std::vector<std::optional<std::size_t>> classes_;  // of the taxonomy: which one each kind is
   std::optional<RecogniserStream> stream_;
   std::optional<SeenHand> first_, last_;
 };

@@ -1,7 +1,6 @@
 #include "services/demonstration/core/observation/shown_steps.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <optional>
 
@@ -42,10 +41,6 @@ std::size_t sample_at(const Seen& seen, double t) {
   std::size_t i = 0;
   while (i + 1 < seen.scene.size() && seen.scene[i].t < t) ++i;
   return i;
-}
-
-double tilt(const Pose& X_WO) {
-  return std::acos(std::clamp(X_WO.linear()(2, 2), -1.0, 1.0));
 }
 
 class Steps {

@@ -12,6 +12,7 @@ namespace {
 constexpr double look_period = 0.5;      // s
 constexpr std::size_t max_objects = 64;  // at once
 constexpr double max_distance = 10;      // m, of anything from the table's origin
+constexpr const char* too_long = "demonstration too long";
 
 Error missing_hand(double gap, double at) {
   return {fmt::format("the hand was not seen for {:.1f} s, {:.1f} s after the beginning", gap, at),
@@ -33,6 +34,7 @@ Expected<void> Watcher::see(const SeenObject& object) {
     return fail("too many objects at once");
   objects_[object.name] = object;
   if (!task_) return {};
+  if (object.stamp - begun_ > options_.max_length) return fail(too_long);
   auto at = std::find(names_.begin(), names_.end(), object.name) - names_.begin();
   if (at == static_cast<std::ptrdiff_t>(names_.size())) {
     names_.push_back(object.name);
@@ -73,7 +75,7 @@ Expected<void> Watcher::see(const SeenHand& hand, const std::string& kind) {
   last_hand_ = hand.stamp;
   last_aperture_ = aperture_of(hand);
   if (!task_ || hand.stamp < begun_) return {};
-  if (hand.stamp - begun_ > options_.max_length) return fail("demonstration too long");
+  if (hand.stamp - begun_ > options_.max_length) return fail(too_long);
   hands_.push_back({to_seconds(hand.stamp - begun_),
                     hand.X_WH * model::HumanHand(hand.scale).X_HG(), last_aperture_, kind,
                     places(hand.stamp)});
@@ -122,6 +124,7 @@ Expected<void> Watcher::check_gaps() const {
 }
 
 /// Hands at an even rate from `begin` on: between two frames that came the straight way is gone.
+/// Without what was seen of objects by themselves.
 Seen Watcher::evenly(std::size_t begin) const {
   std::vector<double> steps;
   for (std::size_t i = begin + 1; i < hands_.size(); ++i)
@@ -129,7 +132,7 @@ Seen Watcher::evenly(std::size_t begin) const {
   std::nth_element(steps.begin(), steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2),
                    steps.end());
   const double period = steps[steps.size() / 2];
-  Seen made{.objects = names_, .sightings = sightings_};
+  Seen made;
   std::size_t i = begin;
   for (int k = 0;; ++k) {
     const double t = hands_[begin].t + k * period;
@@ -165,8 +168,9 @@ std::vector<TimedSegment> Watcher::news() {
   const double now = looked_ = hands_.back().t;
   // Only from the last sure beginning on, so that a long demonstration costs no more than a short
   // one.
-  std::size_t begin = 0;
-  while (begin < hands_.size() && hands_[begin].t < window_begin_) ++begin;
+  const auto sure = std::lower_bound(hands_.begin(), hands_.end(), window_begin_,
+                                     [](const HandThen& hand, double t) { return hand.t < t; });
+  const auto begin = static_cast<std::size_t>(sure - hands_.begin());
   if (begin + 3 > hands_.size()) return made;
   const auto segments = segment(evenly(begin).scene, options_.segmenter);
   if (!segments) return made;  // it may become clear later
@@ -188,7 +192,9 @@ Expected<Demonstration> Watcher::end(Time now, std::vector<TimedSegment>& rest) 
     if (auto whole = check_gaps(); !whole) return tl::unexpected(whole.error());
     if (names_.empty())
       return fail("no object was recognised", {}, "does the camera see them? prehend status");
-    const Seen seen = evenly(0);
+    Seen seen = evenly(0);
+    seen.objects = names_;
+    seen.sightings = std::move(sightings_);
     const auto segments = segment(seen.scene, options_.segmenter);
     if (!segments) return tl::unexpected(segments.error());
     Demonstration made{.task = *task_};

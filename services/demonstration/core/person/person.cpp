@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "common/model/placement.hpp"
+#include "common/base/motion.hpp"
+#include "common/model/human_grasp.hpp"
 
 namespace prehend::demonstration {
 
@@ -18,18 +19,6 @@ constexpr double rest_back = 0.30, rest_above = 0.20;  // m
 constexpr double via = 0.15;                           // m, that an object is lifted
 constexpr double relaxed = 0.25;                       // closure of a hand that does nothing
 
-/// Share of a movement with the least jerk.
-double eased(double t) {
-  t = std::clamp(t, 0.0, 1.0);
-  return t * t * t * (10 - 15 * t + 6 * t * t);
-}
-
-Pose moved(const Pose& X, const Vector3d& by) {
-  Pose made = X;
-  made.pretranslate(by);
-  return made;
-}
-
 /// So far along a line with corners, by length.
 Pose along(const std::vector<Pose>& way, double share) {
   double length = 0;
@@ -42,21 +31,6 @@ Pose along(const std::vector<Pose>& way, double share) {
     left -= part;
   }
   return way.back();
-}
-
-/// How a person would come at an object before taking its size into account, X_OG.
-Pose intended(const model::Shape& shape, const Pose& X_WO, const model::Demonstrator& person) {
-  Matrix3d R_WG;
-  if (shape.kind == model::ShapeKind::box && shape.size.z() >= person.reach.clearance) {
-    const Vector3d depth = X_WO.linear().col(0);
-    const Vector3d closing =
-        Vector3d(depth.x(), depth.y(), 0).normalized() * (depth.y() < 0 ? -1.0 : 1.0);
-    R_WG = model::grasp_axes(-Vector3d::UnitZ(), closing);
-  } else {
-    const Vector3d toward(-std::cos(person.grasp_yaw), -std::sin(person.grasp_yaw), 0);
-    R_WG = model::grasp_axes(toward, toward.cross(Vector3d::UnitZ()));
-  }
-  return X_WO.inverse() * make_pose(X_WO.translation(), R_WG);
 }
 
 /// Where a hand comes from: behind the wrist.
@@ -84,8 +58,7 @@ Expected<void> Person::take(const Transfer& transfer, Random& random) {
     return fail("'" + transfer.object + "' is not in the scene", "person", "name one that is");
   const auto number = static_cast<std::size_t>(found - things_.begin());
   const Pose X_WO = objects(now_)[number].X_WO;
-  const auto X_OG = model::nearest_grasp(found->shape, intended(found->shape, X_WO, demonstrator_),
-                                         demonstrator_.reach);
+  const auto X_OG = model::human_grasp(found->shape, X_WO, demonstrator_);
   if (!X_OG) return fail("no hand can grasp '" + transfer.object + "'", "person", "choose another");
   const Pose X_WG = X_WO * *X_OG, X_WH = X_WG * hand_.X_HG().inverse();
   const auto closure = hand_.close_on(found->shape, X_WH.inverse() * X_WO);
@@ -150,10 +123,10 @@ Person::HandThen Person::hand(double t) const {
   made.closure.fill(relaxed);
   for (const Move& move : moves_)
     if (t >= move.begin)
-      made.X_WH = along(move.way, eased((t - move.begin) / (move.end - move.begin)));
+      made.X_WH = along(move.way, minimum_jerk((t - move.begin) / (move.end - move.begin)));
   for (const Squeeze& squeeze : squeezes_) {
     if (t < squeeze.begin) continue;
-    const double share = eased((t - squeeze.begin) / (squeeze.end - squeeze.begin));
+    const double share = minimum_jerk((t - squeeze.begin) / (squeeze.end - squeeze.begin));
     for (std::size_t f = 0; f < made.closure.size(); ++f)
       made.closure[f] = (1 - share) * squeeze.from[f] + share * squeeze.to[f];
   }

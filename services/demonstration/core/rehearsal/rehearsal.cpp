@@ -15,8 +15,10 @@ namespace {
 using Eigen::AngleAxisd;
 using Eigen::Vector3d;
 
-constexpr int steps_a_command = 5;                    // 100 Hz, as robot/state
-constexpr double max_step_time = 60;                  // s
+constexpr int steps_a_command = 5;    // 100 Hz, as robot/state
+constexpr double max_step_time = 60;  // s
+constexpr int more_tries = 2;         // once one grasp has done it, for a better one
+constexpr double sure = 0.5;          // of what is permitted: no other grasp needs to be tried
 constexpr double same_place = 0.01, same_turn = 0.1;  // m, rad: no other grasp
 
 Pose turned(double degrees, const Pose& X_OG) {
@@ -29,6 +31,62 @@ TaskModel alone(const TaskModel& task, std::size_t step) {
   TaskModel made{task.name, task.demonstrations, {task.steps[step]}};
   made.steps.front().after.clear();
   return made;
+}
+
+/// How much of what is permitted a verdict uses, of the worst; the world is never as it was
+/// thought.
+double used(const Verdict& verdict, const Step& step, const VerdictOptions& limits) {
+  const double tilt = step.upright ? verdict.max_tilt / limits.max_tilt : 0;
+  return std::max({verdict.error / limits.max_error, verdict.turn / limits.max_turn, tilt});
+}
+
+/// A step that was done in a copy of a world.
+struct Trial {
+  std::unique_ptr<grasping::World> world;
+  RobotGrasp grasp;
+  Verdict verdict;
+};
+
+/// One step, in a copy of the world. Fails if it cannot be tried, or is not done.
+Expected<Trial> try_step(const model::HandModel& hand, const TaskModel& task,
+                         const grasping::World& before, const Shapes& shapes,
+                         const RobotGrasp& grasp, const RehearsalOptions& options) {
+  Trial made{before.clone(), grasp, {}};
+  auto performer =
+      TaskPerformer::create(hand, task, shapes, places_of(*made.world), {grasp},
+                            {made.world->commanded_base(), made.world->commanded_dof()},
+                            options.performer, options.verdict);
+  if (!performer) return tl::unexpected(performer.error());
+  if (auto ok = perform_in(*made.world, *performer, max_step_time); !ok)
+    return tl::unexpected(ok.error());
+  made.verdict = performer->verdicts().front();
+  if (!made.verdict.done) return fail(made.verdict.reason);
+  return made;
+}
+
+/// The first grasp that does a step and leaves room for what may be otherwise, or else the one that
+/// leaves most.
+Expected<Trial> best_trial(const model::HandModel& hand, const TaskModel& task,
+                           const grasping::World& before, const Shapes& shapes,
+                           const RehearsalOptions& options, const std::function<void(int)>& tell) {
+  const Step& step = task.steps.front();
+  auto candidates = grasp_candidates(hand, shapes.at(step.object), step.X_OG);
+  if (static_cast<int>(candidates.size()) > options.max_tries)
+    candidates.resize(static_cast<std::size_t>(options.max_tries));
+  int left = more_tries;
+  Expected<Trial> best = fail("the hand cannot reach around it");
+  for (std::size_t k = 0; k < candidates.size() && left >= 0; ++k) {
+    tell(static_cast<int>(k));
+    auto trial = try_step(hand, task, before, shapes, candidates[k], options);
+    const bool better =
+        trial && best &&
+        used(trial->verdict, step, options.verdict) < used(best->verdict, step, options.verdict);
+    if (!best || better) best = std::move(trial);
+    if (!best) continue;
+    if (used(best->verdict, step, options.verdict) <= sure) break;
+    --left;
+  }
+  return best;
 }
 
 }  // namespace
@@ -100,33 +158,19 @@ Expected<Rehearsal> rehearse(const model::HandModel& hand, const TaskModel& task
                  std::vector<Verdict>(task.steps.size())};
   for (const std::size_t i : *order) {
     const Step& step = task.steps[i];
-    const auto shape = shapes.find(step.object);
-    if (shape == shapes.end())
+    if (!shapes.contains(step.object))
       return fail("is not in this lab", step.object, "the task " + task.name + " needs it");
-    std::string why = "the hand cannot reach around it";
-    const auto candidates = grasp_candidates(hand, shape->second, step.X_OG);
-    bool done = false;
-    for (int k = 0;
-         k < std::min<int>(options.max_tries, static_cast<int>(candidates.size())) && !done; ++k) {
-      options.tell(i, k);
-      auto other = world->clone();
-      const RobotGrasp& grasp = candidates[static_cast<std::size_t>(k)];
-      auto performer = TaskPerformer::create(
-          hand, alone(task, i), shapes, places_of(*other), {grasp},
-          {other->commanded_base(), other->commanded_dof()}, options.performer, options.verdict);
-      if (!performer) return tl::unexpected(performer.error());
-      const auto performed = perform_in(*other, *performer, max_step_time);
-      const Verdict& verdict = performer->verdicts().front();
-      why = performed ? verdict.reason : performed.error().what;
-      done = performed && verdict.done;
-      if (!done) continue;
-      world = std::move(other);
-      made.grasps[i] = grasp;
-      made.verdicts[i] = verdict;
-    }
-    if (!done)
-      return fail("no grasp does step " + std::to_string(i + 1) + " of " + task.name + ": " + why,
+    if (step.reference != the_table && !shapes.contains(step.reference))
+      return fail("is not in this lab", step.reference, "the task " + task.name + " needs it");
+    auto best = best_trial(hand, alone(task, i), *world, shapes, options,
+                           [&](int attempt) { options.tell(i, attempt); });
+    if (!best)
+      return fail("no grasp does step " + std::to_string(i + 1) + " of " + task.name + ": " +
+                      best.error().what,
                   step.object, "place the objects otherwise, or show another grasp");
+    world = std::move(best->world);
+    made.grasps[i] = best->grasp;
+    made.verdicts[i] = best->verdict;
   }
   return made;
 }

@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 
+#include "services/demonstration/core/tasks/task_model.hpp"
+
 namespace prehend::demonstration {
 
 namespace {
@@ -15,10 +17,6 @@ constexpr double arrived_at = 0.006, arrived_turn = 0.04;  // m, rad
 constexpr double stands_for = 0.3;  // s, that fingers stand when they have closed
 constexpr double opened = 0.05;     // rad
 constexpr double above = 0.002;     // m, over its place that an object is let go
-
-double tilt(const Pose& X_WO) {
-  return std::acos(std::clamp(X_WO.linear()(2, 2), -1.0, 1.0));
-}
 
 Pose at_height(const Pose& X, double z) {
   Pose made = X;
@@ -115,7 +113,7 @@ void StepPerformer::give_up(const std::string& why, const RobotNow& robot, const
 }
 
 void StepPerformer::next(const RobotNow& robot, const Pose& X_WO) {
-  if (part_ == StepPart::retract || (part_ == StepPart::lift && order_.only_lift)) {
+  if (part_ == StepPart::retract) {
     over_ = true;
     return;
   }

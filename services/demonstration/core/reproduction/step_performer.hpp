@@ -42,7 +42,6 @@ struct StepOrder {
   Pose X_WO_goal = Pose::Identity();
   double via_height = 0.1;  // m, above the higher one of start and end
   double travel = 0.4;      // m above W, of the base on its way from place to place
-  bool only_lift = false;   // ends when it is lifted: for a trial
 };
 
 struct PerformerOptions {

@@ -83,7 +83,7 @@ std::string TaskPerformer::reason() const {
   return {};
 }
 
-void TaskPerformer::begin(const RobotNow&) {
+void TaskPerformer::begin() {
   const Step& step = task_.steps[current()];
   before_ = places_;
   const Pose X_WR = step.reference == the_table ? Pose::Identity() : places_.at(step.reference);
@@ -129,7 +129,7 @@ void TaskPerformer::judge() {
 HandGoal TaskPerformer::step(const RobotNow& robot, const Places& places) {
   for (const auto& [name, X_WO] : places) places_[name] = X_WO;
   if (over()) return goal_;
-  if (!performer_) begin(robot);
+  if (!performer_) begin();
   if (!performer_->over()) {
     goal_ = performer_->step(robot, places_.at(task_.steps[current()].object));
     settled_ = robot.stamp + settling;

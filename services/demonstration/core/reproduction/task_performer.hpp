@@ -56,7 +56,7 @@ class TaskPerformer {
 
  private:
   TaskPerformer(const model::HandModel& hand) : hand_(&hand) {}
-  void begin(const RobotNow& robot);
+  void begin();
   void judge();
 
   const model::HandModel* hand_;

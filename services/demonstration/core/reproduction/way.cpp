@@ -2,17 +2,14 @@
 
 #include <algorithm>
 
+#include "common/base/motion.hpp"
+
 namespace prehend::demonstration {
 
 namespace {
 
 constexpr double short_way = 1e-4;  // m or rad: no movement
 constexpr double min_time = 0.15;   // s, of one movement
-
-double eased(double t) {
-  t = std::clamp(t, 0.0, 1.0);
-  return t * t * t * (10 - 15 * t + 6 * t * t);
-}
 
 }  // namespace
 
@@ -32,7 +29,7 @@ Pose Way::at(double t) const {
   for (std::size_t i = 1; i < poses_.size(); ++i) {
     if (t >= ends_[i]) continue;
     return interpolate(poses_[i - 1], poses_[i],
-                       eased((t - ends_[i - 1]) / (ends_[i] - ends_[i - 1])));
+                       minimum_jerk((t - ends_[i - 1]) / (ends_[i] - ends_[i - 1])));
   }
   return poses_.back();
 }

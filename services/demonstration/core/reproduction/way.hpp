@@ -15,7 +15,6 @@ class Way {
 
   Pose at(double t) const;  // s
   double duration() const { return ends_.empty() ? 0 : ends_.back(); }
-  const Pose& end() const { return poses_.back(); }
 
  private:
   std::vector<Pose> poses_;

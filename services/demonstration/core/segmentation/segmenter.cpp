@@ -244,6 +244,16 @@ Expected<void> check(const std::vector<SceneSample>& samples) {
   return {};
 }
 
+/// What is cut at the beginning may be short, but not so short as to be no phase at all: a filter
+/// that starts looks like a hand that moves. It belongs to the phase that follows.
+void join_short_beginning(std::vector<Stretch>& stretches, const SemiMarkovOptions& model) {
+  if (stretches.size() < 2) return;
+  const Stretch& first = stretches.front();
+  if (first.end - first.begin >= model.min_length[first.state]) return;
+  stretches[1].begin = first.begin;
+  stretches.erase(stretches.begin());
+}
+
 /// The object that was nearest most of the time.
 std::optional<std::size_t> object_of(const std::vector<Nearest>& nearest, const Stretch& stretch) {
   std::vector<int> counts;
@@ -265,9 +275,10 @@ Expected<std::vector<Segment>> segment(const std::vector<SceneSample>& samples,
   const double period =
       (samples.back().t - samples.front().t) / static_cast<double>(samples.size() - 1);
   const auto nearest = nearest_objects(samples);
-  const auto path = decode(Scores(options).of(signals_of(samples, nearest, options.window)),
-                           model_of(options, period));
+  const SemiMarkovOptions model = model_of(options, period);
+  auto path = decode(Scores(options).of(signals_of(samples, nearest, options.window)), model);
   if (!path) return tl::unexpected(path.error());
+  join_short_beginning(path->stretches, model);
   std::vector<Segment> made;
   for (const Stretch& stretch : path->stretches) {
     const Phase phase = phases[static_cast<std::size_t>(stretch.state)];

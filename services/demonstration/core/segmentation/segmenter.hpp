@@ -21,7 +21,7 @@ struct SceneSample {
 
 /// What segmentation knows of hands, and of how noisy they are seen.
 struct SegmenterOptions {
-  double still_speed = 0.008;   // m/s, standard deviation of a hand that is still
+  double still_speed = 0.008;  // m/s, standard deviation of a hand that is still
   double still_rate = 0.004;   // m/s, of an aperture that stays
   double closing_rate = 0.15;  // m/s, about how fast fingers close and open
   double moving_speed = 0.5;   // m/s, about how fast a hand moves

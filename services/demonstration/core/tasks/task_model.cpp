@@ -31,6 +31,10 @@ Expected<void> check_step(const Step& step, std::size_t count) {
 
 }  // namespace
 
+double tilt(const Pose& X_WO) {
+  return std::acos(std::clamp(X_WO.linear()(2, 2), -1.0, 1.0));
+}
+
 Expected<std::vector<std::size_t>> order_of(const TaskModel& task) {
   std::vector<bool> done(task.steps.size(), false);
   std::vector<std::size_t> order;

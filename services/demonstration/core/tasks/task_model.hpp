@@ -32,6 +32,9 @@ struct TaskModel {
   std::vector<Step> steps;         // in the order in which they were shown first
 };
 
+/// How far an object's z axis points from up, rad: what stays upright keeps it small.
+double tilt(const Pose& X_WO);
+
 /// What a task must be: a name, steps with objects, finite poses, a reference that is not the
 /// object itself, an order without circles. Errors name the step.
 Expected<void> check(const TaskModel& task);

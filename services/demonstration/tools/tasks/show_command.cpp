@@ -1,10 +1,11 @@
-// `prehend tasks show`.
+// `prehend tasks show` and `prehend tasks edit`.
 #include <fmt/format.h>
 
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "common/base/file_text.hpp"
 #include "services/demonstration/files/task_file.hpp"
 #include "services/demonstration/tools/tasks/commands.hpp"
 
@@ -48,7 +49,33 @@ int show(const Arguments& arguments) {
   return exit_done;
 }
 
+struct EditArguments {
+  std::string file, from;
+};
+
+/// What was shown stays in the file, but the next demonstration is learnt from with it anew.
+int edit(const EditArguments& arguments) {
+  auto record = load_record(arguments.file);
+  if (!record) return tool::complain(record.error());
+  const auto text = read_file(arguments.from);
+  if (!text) return tool::complain(text.error());
+  auto task = from_toml(*text, arguments.from);
+  if (!task) return tool::complain(task.error(), exit_no);
+  record->task = std::move(*task);
+  const auto saved = save_record(arguments.file, *record);
+  return saved ? exit_done : tool::complain(saved.error());
+}
+
 }  // namespace
+
+void add_edit(tool::Program& program) {
+  auto arguments = std::make_shared<EditArguments>();
+  CLI::App* command = program.app().add_subcommand(
+      "edit", "Takes a task as somebody has changed what `show` says. Exit code 1: it is no task.");
+  command->add_option("file", arguments->file, "NAME.task")->required();
+  command->add_option("--from", arguments->from, "the changed TOML")->required();
+  program.on(*command, [arguments] { return edit(*arguments); });
+}
 
 void add_show(tool::Program& program) {
   auto arguments = std::make_shared<Arguments>();

@@ -1,0 +1,149 @@
+// prehend-demonstrate: an operator says when a demonstration begins and ends.
+#include <fmt/format.h>
+#include <poll.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <iostream>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "common/base/log.hpp"
+#include "common/dds/topics.hpp"
+#include "common/service/arguments.hpp"
+#include "common/service/shell.hpp"
+
+namespace prehend::demonstration {
+namespace {
+
+constexpr Duration order_period = std::chrono::milliseconds(100);
+constexpr Duration patience = std::chrono::seconds(5);   // until the first answer
+constexpr Duration thinking = std::chrono::seconds(30);  // until a demonstration is understood
+
+struct Arguments {
+  service::LabArguments lab;
+  std::string name;
+  double seconds = 0;  // 0: until Enter is pressed
+  bool begin = false, end = false, json = false;
+};
+
+/// Gives the two orders, each until it is answered.
+class Session {
+ public:
+  Session(service::Shell& shell, const Arguments& arguments)
+      : shell_(shell),
+        arguments_(arguments),
+        orders_(shell.publish(dds::operator_command)),
+        step_(arguments.end ? Step::end : Step::begin),
+        since_(shell.now()) {
+    shell.subscribe(dds::operator_reply, std::function([this](const v1::OperatorReply& reply,
+                                                              const dds::SampleInfo& info) {
+                      if (!info.gone && reply.id().to_string() == id()) answered(reply);
+                    }));
+    shell.on_tick(order_period, [this](Time now) { tick(now); });
+    shell.status().running();
+  }
+
+  bool done() const { return done_; }
+  const std::string& message() const { return message_; }
+
+ private:
+  enum class Step { begin, watch, end };
+
+  std::string id() const {
+    return fmt::format("demonstrate-{}-{}-{}", ::getpid(), to_ns(since_) / 1000000,
+                       step_ == Step::begin ? "begin" : "end");
+  }
+
+  void tick(Time now) {
+    if (step_ == Step::watch) {
+      if (is_over(now)) go(Step::end, now);
+      return;
+    }
+    if (now - since_ > (step_ == Step::begin ? patience : thinking)) {
+      message_ = "nobody answers; is prehend-demonstration there? prehend status";
+      return shell_.stop();
+    }
+    v1::OperatorCommand order;
+    order.id(id());
+    order.stamp_ns(to_ns(now));
+    order.action(step_ == Step::begin ? v1::ACTION_START : v1::ACTION_STOP);
+    order.target("demonstration");
+    order.argument(arguments_.name);
+    orders_.publish(order);
+  }
+
+  void go(Step step, Time now) {
+    step_ = step;
+    since_ = now;
+  }
+
+  void answered(const v1::OperatorReply& reply) {
+    message_ = reply.message().to_string();
+    const bool last = step_ == Step::end || arguments_.begin;
+    if (!reply.done() || last) {
+      done_ = reply.done();
+      return shell_.stop();
+    }
+    if (step_ != Step::begin) return;
+    go(Step::watch, shell_.now());
+    if (arguments_.seconds <= 0) log::info("{}; press Enter when it is over", message_);
+  }
+
+  bool is_over(Time now) const {
+    if (arguments_.seconds > 0) return now - since_ > prehend::seconds(arguments_.seconds);
+    pollfd input{STDIN_FILENO, POLLIN, 0};
+    return ::poll(&input, 1, 0) > 0;
+  }
+
+  service::Shell& shell_;
+  const Arguments& arguments_;
+  service::Shell::Output<v1::OperatorCommand> orders_;
+  Step step_;
+  Time since_;
+  bool done_ = false;
+  std::string message_ = "interrupted; the demonstration goes on until prehend demonstrate --end";
+};
+
+int demonstrate(const Arguments& arguments) {
+  auto shell = service::Shell::create(
+      arguments.lab.for_service(),
+      {"demonstrate", "Begins and ends a demonstration.", "operator", false});
+  if (!shell) return service::complain(shell.error());
+  Session session(**shell, arguments);
+  if (const auto ended = (*shell)->run(); !ended) return service::complain(ended.error());
+  if (arguments.json)
+    std::cout << nlohmann::ordered_json{{"done", session.done()}, {"message", session.message()}}
+                     .dump(-1, ' ', false, nlohmann::json::error_handler_t::replace)
+              << "\n";
+  else if (session.done())
+    std::cout << session.message() << "\n";
+  else
+    service::complain(Error{session.message(), {}, {}, exit_no});
+  return session.done() ? exit_done : exit_no;
+}
+
+}  // namespace
+}  // namespace prehend::demonstration
+
+int main(int argc, char** argv) {
+  using namespace prehend;
+  CLI::App app{
+      "Shows the lab a task: it watches from now on until Enter is pressed, and says what it "
+      "understood.\nShown again under the same name, the task is refined. Exit code 1: it was not "
+      "understood, and\nnothing was changed.",
+      "prehend demonstrate"};
+  demonstration::Arguments arguments;
+  arguments.lab.add_to(app);
+  app.add_option("--name", arguments.name, "of the task");
+  app.add_option("--seconds", arguments.seconds, "ends by itself after so long")
+      ->check(CLI::Range(0.1, 600.0));
+  auto* begin = app.add_flag("--begin", arguments.begin, "only begins");
+  app.add_flag("--end", arguments.end, "only ends")->excludes(begin);
+  app.add_flag("--json", arguments.json, "one JSON document");
+  if (const auto code = service::parse(app, argc, argv)) return *code;
+  if (arguments.name.empty() && !arguments.end)
+    return service::complain(wrong_use("needs a name", "--name", "of the task").value(),
+                             exit_wrong_use);
+  return demonstration::demonstrate(arguments);
+}

@@ -1,0 +1,135 @@
+// Demonstrations over real DDS: a person who does not exist shows a task to real processes, which
+// learn it, keep it and do it again with a simulated hand; and what is wrong is said in one line,
+// before anything moves.
+#include <nlohmann/json.hpp>
+
+#include "common/base/file_text.hpp"
+#include "services/demonstration/files/task_file.hpp"
+#include "tests/integration/rig.hpp"
+
+namespace prehend::integration {
+namespace {
+
+using nlohmann::json;
+
+class DemonstrationLab : public Rig {
+ protected:
+  std::string tasks() const { return (folder_ / "tasks").string(); }
+  Strings sets() const { return {"demonstration.tasks=" + tasks(), "glove.device=topic"}; }
+
+  /// Until the service says of itself that it works.
+  void wait_for(const std::string& name) {
+    ASSERT_TRUE(hear<v1::ServiceStatus>(statuses_, 30, [&](const v1::ServiceStatus& status) {
+      return status.name().to_string() == name && status.state() == v1::STATE_RUNNING;
+    })) << name;
+  }
+
+  Answer demonstrate(Strings arguments) {
+    arguments.insert(arguments.begin(), "demonstrate");
+    return run("prehend", with_lab(arguments), 40);
+  }
+
+  Answer tasks_run(const std::string& task) {
+    Strings arguments = with_lab({"tasks", "run", task, "--json"});
+    arguments.insert(arguments.end(), {"--set", "demonstration.tasks=" + tasks()});
+    return run("prehend", arguments, 40);
+  }
+
+  dds::Reader<v1::ServiceStatus> statuses_ = reader(dds::service_status);
+};
+
+TEST_F(DemonstrationLab, AShownTaskIsUnderstoodToldAndKept) {
+  auto segments = reader(dds::demonstration_segment);
+  auto grasps = reader(dds::demonstration_grasp);
+  auto models = reader(dds::task_model);
+  Strings lab = sets();
+  lab.push_back("lab.scene=" + scene(3));
+  auto glove = start("glove", lab);
+  auto service = start("demonstration", lab);
+  wait_for("demonstration");
+  ASSERT_EQ(demonstrate({"--name", "TEA", "--begin"}).exit_code, 0);
+  // The object that the scene of this seed is about.
+  const std::string text = read_file(folder_ / "scene-3.toml").value();
+  const std::size_t at = text.find("target = \"") + 10;
+  const std::string target = text.substr(at, text.find('"', at) - at);
+  const Answer person = run(
+      "prehend-person",
+      [&] {
+        Strings arguments = with_lab({"--put", target + "=0.24,0.20"});
+        arguments.insert(arguments.end(), {"--set", lab.back()});
+        return arguments;
+      }(),
+      60);
+  ASSERT_EQ(person.exit_code, 0) << person.log;
+  const Answer end = demonstrate({"--end", "--json"});
+  ASSERT_EQ(end.exit_code, 0) << end.output << end.log;
+  EXPECT_EQ(json::parse(end.output)["done"], true);
+
+  const auto task = hear<v1::TaskModel>(models, 10, [](auto&) { return true; });
+  ASSERT_TRUE(task);
+  EXPECT_EQ(task->task().to_string(), "TEA");
+  ASSERT_EQ(task->steps().size(), 1u);
+  EXPECT_EQ(task->steps()[0].object().to_string(), target);
+  std::vector<v1::HandPhase> phases;
+  for (const auto& sample : segments.take()) phases.push_back(sample.data.phase());
+  EXPECT_EQ(phases,
+            (std::vector{v1::PHASE_REST, v1::PHASE_APPROACH, v1::PHASE_CLOSE, v1::PHASE_HOLD,
+                         v1::PHASE_RELEASE, v1::PHASE_RETRACT, v1::PHASE_REST}));
+  EXPECT_TRUE(hear<v1::DemonstratedGrasp>(grasps, 5, [](auto&) { return true; }));
+  const auto kept = demonstration::load_record(std::filesystem::path(tasks()) / "TEA.task");
+  ASSERT_TRUE(kept) << kept.error().message();
+  EXPECT_EQ(kept->shown.size(), 1u);
+}
+
+TEST_F(DemonstrationLab, WhatIsWrongIsSaidInOneLineAndNothingIsLost) {
+  auto service = start("demonstration", sets());
+  wait_for("demonstration");
+  const auto said = [&](const Strings& arguments) {
+    const Answer answer = demonstrate(arguments);
+    EXPECT_EQ(answer.exit_code, 1) << answer.log;
+    EXPECT_EQ(std::count(answer.log.begin(), answer.log.end(), '\n'), 1) << answer.log;
+    return answer.log;
+  };
+  EXPECT_NE(said({"--end"}).find("no demonstration has begun"), std::string::npos);
+  EXPECT_NE(said({"--name", "../TEA", "--begin"}).find("is no name of a task"), std::string::npos);
+  ASSERT_EQ(demonstrate({"--name", "TEA", "--begin"}).exit_code, 0);
+  EXPECT_NE(said({"--name", "COFFEE", "--begin"}).find("TEA: is being shown already"),
+            std::string::npos);
+  EXPECT_NE(said({"--end"}).find("no hand was seen"), std::string::npos);
+  EXPECT_FALSE(std::filesystem::exists(std::filesystem::path(tasks()) / "TEA.task"));
+}
+
+TEST_F(DemonstrationLab, ATaskThatCannotBeDoneMovesNothing) {
+  auto commands = reader(dds::robot_command);
+  std::filesystem::create_directories(tasks());
+  demonstration::TaskModel task{"TEA", 1, {{.object = "Teapot"}}};
+  ASSERT_TRUE(demonstration::save_task(tasks() + "/TEA.task", task));
+  auto simulation = start("simulation", {"lab.scene=" + scene(1)});
+  wait_for("simulation");
+  const Answer strange = tasks_run("TEA");
+  EXPECT_EQ(strange.exit_code, 1);
+  EXPECT_NE(strange.log.find("Teapot: is not in this lab"), std::string::npos) << strange.log;
+  ASSERT_TRUE(write_file(tasks() + "/BAD.task", "no task"));
+  const Answer damaged = tasks_run("BAD");
+  EXPECT_NE(damaged.exit_code, 0);
+  EXPECT_NE(damaged.log.find("BAD.task"), std::string::npos) << damaged.log;
+  EXPECT_TRUE(commands.take().empty());
+}
+
+TEST_F(DemonstrationLab, ShownOnceDoneAgainElsewhere) {
+  const Answer answer =
+      run("prehend",
+          {"demo", "--task", "pick-and-place", "--json", "--domain", std::to_string(domain_)}, 120);
+  ASSERT_EQ(answer.exit_code, 0) << answer.output << answer.log;
+  const json document = json::parse(answer.output);
+  EXPECT_EQ(document["task"]["done"], true);
+  ASSERT_EQ(document["task"]["steps"].size(), 1u);
+  EXPECT_LT(document["task"]["steps"][0]["error_m"].get<double>(), 0.02);
+  EXPECT_LT(document["task"]["steps"][0]["error_rad"].get<double>(), 0.1745);
+  EXPECT_EQ(document["object"]["name"], "Talc");
+  EXPECT_LT(document["object"]["position_error_m"].get<double>(), 0.01);
+  EXPECT_EQ(document["understood"]["phases"].size(), 7u);
+}
+
+}  // namespace
+}  // namespace prehend::integration
