@@ -1,0 +1,168 @@
+#include "services/console/core/documents.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+namespace prehend::console {
+
+Json to_time(std::int64_t ns) {
+  constexpr std::int64_t second = 1'000'000'000;
+  const std::int64_t whole = ns < 0 ? 0 : ns;
+  return {{"sec", whole / second}, {"nsec", whole % second}};
+}
+
+Json to_json(const Eigen::Vector3d& v) {
+  return {{"x", v.x()}, {"y", v.y()}, {"z", v.z()}};
+}
+
+namespace {
+
+Json rotation_of(const Pose& X) {
+  const Eigen::Quaterniond q(X.linear());
+  return {{"x", q.x()}, {"y", q.y()}, {"z", q.z()}, {"w", q.w()}};
+}
+
+}  // namespace
+
+Json to_json(const Pose& X) {
+  return {{"position", to_json(Eigen::Vector3d(X.translation()))}, {"orientation", rotation_of(X)}};
+}
+
+Json to_json(const Colour& colour) {
+  return {{"r", colour.r}, {"g", colour.g}, {"b", colour.b}, {"a", colour.a}};
+}
+
+Json transform(std::int64_t ns, std::string_view a, std::string_view b, const Pose& X_AB) {
+  return {{"timestamp", to_time(ns)},
+          {"parent_frame_id", a},
+          {"child_frame_id", b},
+          {"translation", to_json(Eigen::Vector3d(X_AB.translation()))},
+          {"rotation", rotation_of(X_AB)}};
+}
+
+Json entity(std::int64_t ns, std::string_view id, std::string_view frame) {
+  Json made{{"timestamp", to_time(ns)},
+            {"frame_id", frame},
+            {"id", id},
+            {"lifetime", to_time(0)},
+            {"frame_locked", true}};
+  for (const char* list : {"metadata", "arrows", "cubes", "spheres", "cylinders", "lines",
+                           "triangles", "texts", "models"})
+    made[list] = Json::array();
+  return made;
+}
+
+void add_shape(Json& entity, const model::Shape& shape, const Pose& X_ES, const Colour& colour) {
+  const Eigen::Vector3d size = 2 * model::half_extents(shape);
+  Json solid{{"pose", to_json(X_ES)}, {"size", to_json(size)}};
+  const char* list = "cubes";
+  if (shape.kind == model::ShapeKind::sphere) list = "spheres";
+  if (shape.kind == model::ShapeKind::cylinder) {
+    list = "cylinders";
+    solid["bottom_scale"] = 1.0;
+    solid["top_scale"] = 1.0;
+  }
+  solid["color"] = to_json(colour);
+  entity[list].push_back(std::move(solid));
+}
+
+void add_arrow(Json& entity, const Eigen::Vector3d& from, const Eigen::Vector3d& along,
+               double thickness, const Colour& colour) {
+  // An arrow points along x of its pose.
+  const Pose X = make_pose(
+      from, Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitX(), along).normalized());
+  const double length = along.norm(), head = std::min(0.01, length / 2);
+  entity["arrows"].push_back({{"pose", to_json(X)},
+                              {"shaft_length", length - head},
+                              {"shaft_diameter", thickness},
+                              {"head_length", head},
+                              {"head_diameter", 2.5 * thickness},
+                              {"color", to_json(colour)}});
+}
+
+void add_line(Json& entity, const std::vector<Eigen::Vector3d>& points, const Colour& colour) {
+  Json listed = Json::array();
+  for (const Eigen::Vector3d& point : points) listed.push_back(to_json(point));
+  entity["lines"].push_back({{"type", 0},  // a strip
+                             {"pose", to_json(Pose::Identity())},
+                             {"thickness", 0.003},
+                             {"scale_invariant", false},
+                             {"points", std::move(listed)},
+                             {"color", to_json(colour)},
+                             {"colors", Json::array()},
+                             {"indices", Json::array()}});
+}
+
+void add_cone(Json& entity, const Eigen::Vector3d& tip, const Eigen::Vector3d& axis, double angle,
+              const Colour& colour) {
+  constexpr double side = 0.025;  // m
+  constexpr int sides = 16;
+  const Eigen::Vector3d back = -axis.normalized();
+  const Eigen::Vector3d across = back.unitOrthogonal();
+  const auto rim = [&](int i) {
+    const Eigen::Vector3d out = Eigen::AngleAxisd(2 * EIGEN_PI * i / sides, back) * across;
+    return to_json(Eigen::Vector3d(tip + side * (std::cos(angle) * back + std::sin(angle) * out)));
+  };
+  Json points = Json::array();
+  for (int i = 0; i < sides; ++i)
+    for (const Json& corner : {to_json(tip), rim(i), rim(i + 1)}) points.push_back(corner);
+  entity["triangles"].push_back({{"pose", to_json(Pose::Identity())},
+                                 {"points", std::move(points)},
+                                 {"color", to_json(colour)},
+                                 {"colors", Json::array()},
+                                 {"indices", Json::array()}});
+}
+
+void add_text(Json& entity, const Eigen::Vector3d& at, std::string_view text,
+              const Colour& colour) {
+  entity["texts"].push_back({{"pose", to_json(make_pose(at))},
+                             {"billboard", true},
+                             {"font_size", 14.0},
+                             {"scale_invariant", true},
+                             {"color", to_json(colour)},
+                             {"text", text}});
+}
+
+Json scene_with(Json entity) {
+  return {{"deletions", Json::array()}, {"entities", Json::array({std::move(entity)})}};
+}
+
+Json scene_without(std::int64_t ns, std::string_view id) {
+  return {{"deletions", Json::array({{{"timestamp", to_time(ns)}, {"type", 0}, {"id", id}}})},
+          {"entities", Json::array()}};
+}
+
+Json log_line(std::int64_t ns, LogLevel level, std::string_view name, std::string_view message) {
+  return {{"timestamp", to_time(ns)},
+          {"level", static_cast<int>(level)},
+          {"message", message},
+          {"name", name},
+          {"file", ""},
+          {"line", 0}};
+}
+
+std::string base64(std::string_view bytes) {
+  static constexpr std::string_view digits =
+      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string text;
+  text.reserve((bytes.size() + 2) / 3 * 4);
+  for (std::size_t i = 0; i < bytes.size(); i += 3) {
+    const auto byte = [&](std::size_t at) -> unsigned {
+      return at < bytes.size() ? static_cast<unsigned char>(bytes[at]) : 0U;
+    };
+    const unsigned three = byte(i) << 16 | byte(i + 1) << 8 | byte(i + 2);
+    text += digits[three >> 18 & 63];
+    text += digits[three >> 12 & 63];
+    text += i + 1 < bytes.size() ? digits[three >> 6 & 63] : '=';
+    text += i + 2 < bytes.size() ? digits[three & 63] : '=';
+  }
+  return text;
+}
+
+std::string text_of(const Json& document) {
+  return document.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+}  // namespace prehend::console

@@ -1,0 +1,211 @@
+#include "services/console/core/hub.hpp"
+
+#include <fmt/format.h>
+
+#include <limits>
+#include <utility>
+
+namespace prehend::console {
+
+std::size_t Hub::Kept::put(Message message, std::size_t max) {
+  const bool replaces = by_key.contains(message.key);
+  erase(message.key);
+  messages.push_back(std::move(message));
+  by_key[messages.back().key] = std::prev(messages.end());
+  if (messages.size() <= max) return replaces ? 1 : 0;
+  erase(std::string(messages.front().key));
+  return 1;
+}
+
+void Hub::Kept::erase(const std::string& key) {
+  const auto found = by_key.find(key);
+  if (found == by_key.end()) return;
+  const auto at = found->second;
+  by_key.erase(found);
+  messages.erase(at);
+}
+
+Hub::Message Hub::Kept::take() {
+  Message message = std::move(messages.front());
+  by_key.erase(message.key);
+  messages.pop_front();
+  return message;
+}
+
+Hub::Hub(Options options) : options_(std::move(options)), kept_(options_.channels.size()) {
+  for (std::size_t i = 0; i < options_.channels.size(); ++i)
+    options_.channels[i].info.id = static_cast<std::uint32_t>(i);
+}
+
+std::size_t Hub::limit(std::uint32_t channel) const {
+  // Instances are bounded where they come from.
+  return options_.channels[channel].queued ? options_.max_queued
+                                           : std::numeric_limits<std::size_t>::max();
+}
+
+Hub::Client Hub::connect() {
+  const Client client = next_client_++;
+  State& state = clients_[client];
+  say(state, server_info(options_.name, options_.session, options_.recording));
+  std::vector<ChannelInfo> channels;
+  for (const Channel& channel : options_.channels) channels.push_back(channel.info);
+  say(state, advertisement(channels));
+  return client;
+}
+
+void Hub::disconnect(Client client) {
+  clients_.erase(client);
+}
+
+void Hub::hear(Client client, std::string_view text) {
+  const auto found = clients_.find(client);
+  if (found == clients_.end()) return;
+  std::visit([&](const auto& request) { obey(found->second, request); }, read_request(text));
+}
+
+void Hub::hear_bytes(Client client, std::string_view bytes) {
+  constexpr std::size_t max_requests = 64;  // between two ticks
+  const auto found = clients_.find(client);
+  if (found == clients_.end() || !options_.recording || requests_.size() >= max_requests) return;
+  auto request = read_playback(bytes);
+  if (!request) return;
+  found->second.leads = true;
+  requests_.push_back(std::move(*request));
+}
+
+std::vector<PlaybackRequest> Hub::take_requests() {
+  return std::exchange(requests_, {});
+}
+
+void Hub::say(State& client, std::string text, bool binary) {
+  if (client.control.size() >= options_.max_control) {
+    client.overflowed = true;
+    return;
+  }
+  client.control.push_back({binary, "", std::make_shared<const std::string>(std::move(text))});
+}
+
+void Hub::obey(State& client, const Subscribe& request) {
+  for (const auto& [subscription, channel] : request.all) {
+    if (channel >= options_.channels.size() ||
+        client.watching.size() >= options_.max_subscriptions) {
+      say(client, status_message(2, fmt::format("there is no channel {}", channel), "channel"));
+      continue;
+    }
+    Watching& watching = client.watching[channel];
+    watching.subscription = subscription;
+    for (const Message& message : kept_[channel].messages)
+      watching.waiting.put(message, limit(channel));
+  }
+}
+
+void Hub::obey(State& client, const Unsubscribe& request) {
+  for (const std::uint32_t subscription : request.subscriptions)
+    std::erase_if(client.watching,
+                  [&](const auto& entry) { return entry.second.subscription == subscription; });
+}
+
+void Hub::obey(State& client, const GetParameters& request) {
+  say(client, parameter_values(options_.parameters, request));
+}
+
+void Hub::obey(State& client, const WatchGraph& request) {
+  client.graph = request.wanted;
+  if (request.wanted) say(client, graph_update({}, graph_));
+}
+
+void Hub::obey(State& client, const Refused& request) {
+  if (!request.what.empty()) say(client, status_message(1, request.what, "request"));
+}
+
+void Hub::publish(std::uint32_t channel, const std::string& key, std::int64_t stamp_ns,
+                  Payload payload) {
+  const Message message{key, stamp_ns, std::move(payload)};
+  kept_[channel].put(message, limit(channel));
+  for (auto& [id, client] : clients_) {
+    const auto found = client.watching.find(channel);
+    if (found == client.watching.end()) continue;
+    const std::size_t lost = found->second.waiting.put(message, limit(channel));
+    found->second.dropped += lost;
+    dropped_ += lost;
+  }
+}
+
+void Hub::forget(std::uint32_t channel, const std::string& key) {
+  kept_[channel].erase(key);
+}
+
+void Hub::forget_all() {
+  for (Kept& kept : kept_) kept = {};
+  for (auto& [id, client] : clients_)
+    for (auto& [channel, watching] : client.watching) watching.waiting = {};
+}
+
+void Hub::tell_playback(const PlaybackState& state) {
+  const std::string message = playback_message(state);
+  // Who takes nothing is told the time later: that is no reason to let him go.
+  for (auto& [id, client] : clients_)
+    if (client.leads && (state.sought || client.control.size() < options_.max_control / 2))
+      say(client, message, true);
+}
+
+void Hub::set_graph(std::vector<TopicEnds> graph) {
+  const std::string update = graph_update(graph_, graph);
+  graph_ = std::move(graph);
+  for (auto& [id, client] : clients_)
+    if (client.graph) say(client, update);
+}
+
+void Hub::tell_losses() {
+  for (auto& [id, client] : clients_) {
+    std::string words;
+    for (auto& [channel, watching] : client.watching) {
+      if (watching.dropped == watching.told) continue;
+      watching.told = watching.dropped;
+      words += fmt::format("{}{} of {}", words.empty() ? "" : ", ", watching.dropped,
+                           options_.channels[channel].info.topic);
+    }
+    // What does not fit is said a second later: it is no reason to let a client go.
+    if (!words.empty() && client.control.size() < options_.max_control / 2)
+      say(client, status_message(1, "too slow for all messages; missed " + words, "missed"));
+  }
+}
+
+std::optional<Frame> Hub::next(Client id) {
+  const auto found = clients_.find(id);
+  if (found == clients_.end()) return std::nullopt;
+  State& client = found->second;
+  if (!client.control.empty()) {
+    Frame frame = std::move(client.control.front());
+    client.control.pop_front();
+    return frame;
+  }
+  // Channels take turns, so that one that never rests does not silence the others.
+  const auto serve = [&](auto from, auto to) -> std::optional<Frame> {
+    for (; from != to; ++from) {
+      Watching& watching = from->second;
+      if (watching.waiting.messages.empty()) continue;
+      client.turn = from->first;
+      Message message = watching.waiting.take();
+      return Frame{true, message_head(watching.subscription, message.stamp_ns),
+                   std::move(message.payload)};
+    }
+    return std::nullopt;
+  };
+  const auto behind = client.watching.upper_bound(client.turn);
+  if (auto frame = serve(behind, client.watching.end())) return frame;
+  return serve(client.watching.begin(), behind);
+}
+
+bool Hub::overflowed(Client client) const {
+  const auto found = clients_.find(client);
+  return found != clients_.end() && found->second.overflowed;
+}
+
+bool Hub::watched(std::uint32_t channel) const {
+  for (const auto& [id, client] : clients_)
+    if (client.watching.contains(channel)) return true;
+  return false;
+}
+
+}  // namespace prehend::console

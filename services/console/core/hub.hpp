@@ -1,0 +1,131 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <list>
+#include <map>
+#include <memory>
+#include <optional>
+#include <set>
+#include <string>
+#include <string_view>
+#include <unordered_map>
+#include <vector>
+
+#include "services/console/core/playback.hpp"
+#include "services/console/core/protocol.hpp"
+
+namespace prehend::console {
+
+/// Bytes that all clients share.
+using Payload = std::shared_ptr<const std::string>;
+
+/// What goes to a client next, in one message of the WebSocket.
+struct Frame {
+  bool binary = false;
+  std::string head;  // the client's own bytes
+  Payload payload;   // behind them; may be nothing
+};
+
+/// The server's side of the protocol for all clients: bytes in, frames out. A client that is slower
+/// than the lab gets the newest of what it watches, and is told how much it missed; it takes
+/// neither memory without bounds nor anything from the others. Pure.
+class Hub {
+ public:
+  struct Channel {
+    ChannelInfo info;
+    /// Each message counts. Else of each key the newest one alone does.
+    bool queued = false;
+  };
+  struct Options {
+    std::string name = "prehend", session;
+    std::vector<Channel> channels;  // numbered by their place
+    std::vector<Parameter> parameters;
+    std::optional<Span> recording;  // that clients may lead
+    std::size_t max_queued = 256;   // messages of a queued channel, kept and on their way
+    std::size_t max_control = 64;   // answers that a client has not taken; more: it is let go
+    std::size_t max_subscriptions = 256;
+  };
+  using Client = std::uint64_t;
+
+  explicit Hub(Options options);
+
+  Client connect();
+  void disconnect(Client client);
+  void hear(Client client, std::string_view text);
+  /// Bytes, where it does not speak in texts: how a recording is to be played.
+  void hear_bytes(Client client, std::string_view bytes);
+  /// What has been asked for since.
+  std::vector<PlaybackRequest> take_requests();
+
+  /// To all who watch the channel, now or later.
+  void publish(std::uint32_t channel, const std::string& key, std::int64_t stamp_ns,
+               Payload payload);
+  /// Later ones are not told of this key any more.
+  void forget(std::uint32_t channel, const std::string& key);
+  /// What was told is of another time: nobody is told it any more, whether he waits for it or not.
+  void forget_all();
+  /// To those who have asked; to others, as older viewers, such a message is an error.
+  void tell_playback(const PlaybackState& state);
+  void set_graph(std::vector<TopicEnds> graph);
+  /// Tells who has missed something since the last call. Once a second will do.
+  void tell_losses();
+
+  /// Nothing: it has all.
+  std::optional<Frame> next(Client client);
+  /// It does not take what it asked for, so it is to be let go.
+  bool overflowed(Client client) const;
+
+  std::size_t clients() const { return clients_.size(); }
+  /// Does anybody watch it?
+  bool watched(std::uint32_t channel) const;
+  /// Messages that slow clients have missed.
+  std::uint64_t dropped() const { return dropped_; }
+
+ private:
+  struct Message {
+    std::string key;
+    std::int64_t stamp_ns = 0;
+    Payload payload;
+  };
+  using Messages = std::list<Message>;
+  /// Messages of a channel, in order, found by their key.
+  struct Kept {
+    Messages messages;
+    std::unordered_map<std::string, Messages::iterator> by_key;
+    /// Returns how many gave way.
+    std::size_t put(Message message, std::size_t max);
+    void erase(const std::string& key);
+    Message take();
+  };
+  struct Watching {
+    std::uint32_t subscription = 0;
+    Kept waiting;
+    std::uint64_t dropped = 0, told = 0;
+  };
+  struct State {
+    std::deque<Frame> control;
+    bool overflowed = false, graph = false, leads = false;
+    std::map<std::uint32_t, Watching> watching;  // by channel
+    std::uint32_t turn = 0;                      // the channel that was served last
+  };
+
+  void say(State& client, std::string text, bool binary = false);
+  void obey(State& client, const Subscribe& request);
+  void obey(State& client, const Unsubscribe& request);
+  void obey(State& client, const GetParameters& request);
+  void obey(State& client, const WatchGraph& request);
+  void obey(State& client, const Refused& request);
+  std::size_t limit(std::uint32_t channel) const;
+
+  Options options_;
+  std::vector<Kept> kept_;  // by channel, for those who come later
+  std::vector<TopicEnds> graph_;
+  std::vector<PlaybackRequest> requests_;
+  std::map<Client, State> clients_;
+  Client next_client_ = 1;
+  std::uint64_t dropped_ = 0;
+};
+
+}  // namespace prehend::console

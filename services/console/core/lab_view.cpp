@@ -1,0 +1,457 @@
+#include "services/console/core/lab_view.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cmath>
+#include <utility>
+
+namespace prehend::console {
+namespace {
+
+constexpr std::string_view table = "table";
+constexpr Colour link_colour{0.62, 0.66, 0.72, 1};
+constexpr Colour object_colour{0.91, 0.58, 0.18, 1};
+constexpr Colour seen_colour{0.20, 0.60, 0.86, 0.25};
+constexpr Colour glove_colour{0.90, 0.72, 0.60, 0.8};
+constexpr Colour contact_colour{0.85, 0.15, 0.20, 1};
+constexpr Colour cone_colour{0.85, 0.15, 0.20, 0.25};
+constexpr Colour table_colour{0.55, 0.50, 0.45, 0.35};
+constexpr Colour white{1, 1, 1, 1};
+/// A status comes once a second. So a killed service is told within 3 s of its end.
+constexpr std::int64_t max_silence_ns = 2'900'000'000;
+constexpr std::size_t max_left = 256;
+
+std::string object_frame(const std::string& body) {
+  return "object/" + body;
+}
+
+std::int64_t stamp(View message) {
+  return message["stamp_ns"].integer();
+}
+
+model::Shape shape_of(View message) {
+  const std::string kind = message["shape"].text();
+  model::Shape shape{model::ShapeKind::unknown, message["size"].vector()};
+  if (kind == "SHAPE_CYLINDER") shape.kind = model::ShapeKind::cylinder;
+  if (kind == "SHAPE_BOX") shape.kind = model::ShapeKind::box;
+  if (kind == "SHAPE_SPHERE") shape.kind = model::ShapeKind::sphere;
+  return shape;
+}
+
+/// Of which joint angles a state tells, or nothing where its numbers do not fit the model.
+std::optional<Eigen::VectorXd> joints_of(View state, const model::HandModel& model) {
+  const auto take = [](const std::vector<double>& values) {
+    return Eigen::VectorXd(
+        Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size())));
+  };
+  Eigen::VectorXd joints;
+  if (const auto all = state["joint"].numbers(); all.size() == model.joints().size())
+    joints = take(all);
+  else if (const auto dof = state["dof"].numbers(); dof.size() == model.dofs().size())
+    joints = model.joint_angles(take(dof));
+  else
+    return std::nullopt;
+  if (!joints.allFinite()) return std::nullopt;
+  return joints;
+}
+
+}  // namespace
+
+Document LabView::scene(Json entity, const std::string& key, std::int64_t ns) {
+  return {Feed::scene, key, ns, text_of(scene_with(std::move(entity)))};
+}
+
+Document LabView::signals(std::int64_t ns, std::string_view group, const std::string& source,
+                          std::string_view unit, Json names, Json values) {
+  return {Feed::signals, fmt::format("{}/{}", group, source), ns,
+          text_of({{"timestamp", to_time(ns)},
+                   {"group", group},
+                   {"source", source},
+                   {"unit", unit},
+                   {"names", std::move(names)},
+                   {"values", std::move(values)}})};
+}
+
+Documents LabView::begin(std::int64_t now_ns) {
+  Documents made;
+  Json top = entity(now_ns, "table", table);
+  add_shape(top, {model::ShapeKind::box, {1.0, 1.2, 0.01}},
+            make_pose(Eigen::Vector3d(0, 0, -0.005)), table_colour);
+  made.push_back(scene(std::move(top), "table", now_ns));
+  const Json camera = transform(now_ns, table, options_.camera, options_.X_WC);
+  made.push_back(
+      {Feed::tf, options_.camera, now_ns, text_of({{"transforms", Json::array({camera})}})});
+  made.push_back(status(now_ns));
+  made.push_back(latency(now_ns));
+  made.push_back(annotations(now_ns));
+  return made;
+}
+
+Documents LabView::hear(std::string_view topic, const Value& value, std::int64_t now_ns) {
+  const View message(value);
+  if (topic == "robot/state") return robot_state(message);
+  if (topic == "robot/command") return robot_command(message);
+  if (topic == "object/state") return object_state(message);
+  if (topic == "scene/state") return scene_state(message);
+  if (topic == "hand/posture") return hand_posture(message);
+  if (topic == "camera/image") return camera_image(message);
+  if (topic == "object/detection") return object_detection(message);
+  if (topic == "grasp/report") return grasp_report(value);
+  if (topic == "service/status") return service_status(message, now_ns);
+  if (topic == "robot/gate") return robot_gate(message, now_ns);
+  if (topic == "operator/reply") return operator_reply(value);
+  if (topic == "operator/command") return operator_command(message);
+  return {};
+}
+
+Documents LabView::lose(std::string_view topic, const Value& last, std::int64_t now_ns) {
+  const View message(last);
+  const auto end = [&](const std::string& id) {
+    return Document{Feed::scene, id, now_ns, text_of(scene_without(now_ns, id)), true};
+  };
+  if (topic == "hand/posture") return {end("glove/" + message["glove"].text())};
+  if (topic == "robot/gate") {
+    gates_.erase(message["hand"].text());
+    return {status(now_ns)};
+  }
+  if (topic == "object/detection") {
+    const std::int64_t track = message["track"].integer();
+    detections_.erase(track);
+    return {end(fmt::format("seen/{}", track)), annotations(now_ns)};
+  }
+  if (topic == "service/status") {
+    const std::string service = message["service"].text();
+    services_.erase(service);
+    if (left_.size() < max_left) left_.insert(message["name"].text());
+    return {status(now_ns), latency(now_ns),
+            log(now_ns, LogLevel::warning, message["name"].text(), service + " has left")};
+  }
+  return {};
+}
+
+Documents LabView::wait(std::int64_t now_ns) {
+  Documents made;
+  for (auto& [key, service] : services_) {
+    if (service.silent || now_ns - service.heard_ns <= max_silence_ns) continue;
+    service.silent = true;
+    made.push_back(log(now_ns, LogLevel::error, service.name, key + " is silent"));
+  }
+  if (made.empty()) return made;
+  made.push_back(status(now_ns));
+  made.push_back(latency(now_ns));
+  return made;
+}
+
+Documents LabView::links_of(const std::string& hand, const model::HandModel& model,
+                            std::int64_t ns) {
+  Documents made;
+  for (const model::HandLink& link : model.links()) {
+    const std::string id = hand + "/" + link.name;
+    Json drawn = entity(ns, id, link.name);
+    for (const model::CollisionShape& shape : link.collision)
+      add_shape(drawn, shape.shape, shape.X_LS, link_colour);
+    made.push_back(scene(std::move(drawn), id, ns));
+  }
+  return made;
+}
+
+Documents LabView::robot_state(View message) {
+  const std::string hand = message["hand"].text(), kind = message["model"].text();
+  const model::HandModel* model = options_.hand(kind);
+  const auto X_WB = message["X_WB"].pose();
+  if (!model || !X_WB) return {};
+  const auto joints = joints_of(message, *model);
+  if (!joints) return {};
+  const std::int64_t ns = stamp(message);
+  Documents made;
+  if (std::string& drawn = drawn_hands_[hand]; drawn != kind) {
+    drawn = kind;
+    made = links_of(hand, *model, ns);
+  }
+  Json transforms = Json::array();
+  const auto poses = model->link_poses(*joints);
+  for (std::size_t i = 0; i < poses.size(); ++i)
+    transforms.push_back(transform(ns, table, model->links()[i].name, *X_WB * poses[i]));
+  made.push_back({Feed::tf, "hand/" + hand, ns, text_of({{"transforms", std::move(transforms)}})});
+  Json names = Json::array();
+  for (const model::HandJoint& joint : model->joints()) names.push_back(joint.name);
+  made.push_back(signals(ns, "joints", hand, "rad", std::move(names),
+                         std::vector<double>(joints->begin(), joints->end())));
+  return made;
+}
+
+Documents LabView::robot_command(View message) {
+  const double weight = message["weight"].number();
+  if (!std::isfinite(weight)) return {};
+  return {signals(stamp(message), "weight", message["hand"].text(), "",
+                  Json::array({"intelligent answer"}), Json::array({weight}))};
+}
+
+Documents LabView::object_state(View message) {
+  const auto X_WO = message["X_WO"].pose();
+  if (!X_WO) return {};
+  const std::string frame = object_frame(message["body"].text());
+  const std::int64_t ns = stamp(message);
+  return {{Feed::tf, frame, ns,
+           text_of({{"transforms", Json::array({transform(ns, table, frame, *X_WO)})}})}};
+}
+
+Documents LabView::scene_state(View message) {
+  const std::int64_t ns = stamp(message);
+  Documents made;
+  std::set<std::string> there;
+  for (const View& body : message["bodies"].elements()) {
+    const std::string frame = object_frame(body["name"].text());
+    const model::Shape shape = shape_of(body);
+    if (!model::is_valid(shape)) continue;
+    Json drawn = entity(ns, frame, frame);
+    add_shape(drawn, shape, Pose::Identity(), object_colour);
+    made.push_back(scene(std::move(drawn), frame, ns));
+    there.insert(frame);
+  }
+  std::set<std::string>& drawn = drawn_bodies_[message["scene"].text()];
+  for (const std::string& id : drawn)
+    if (!there.contains(id))
+      made.push_back({Feed::scene, id, ns, text_of(scene_without(ns, id)), true});
+  drawn = std::move(there);
+  return made;
+}
+
+Documents LabView::hand_posture(View message) {
+  const auto X_WH = message["X_WH"].pose();
+  if (!X_WH) return {};
+  const std::string id = "glove/" + message["glove"].text();
+  const std::int64_t ns = stamp(message);
+  Json drawn = entity(ns, id, table);
+  const Eigen::Vector3d back = X_WH->translation();
+  const auto ball = [&](const Eigen::Vector3d& at, double radius) {
+    add_shape(drawn, {model::ShapeKind::sphere, Eigen::Vector3d::Constant(radius)}, make_pose(at),
+              glove_colour);
+  };
+  ball(back, 0.012);
+  constexpr std::array fingers{"thumb", "index", "middle", "ring", "little"};
+  Json names = Json::array(), distances = Json::array();
+  std::size_t finger = 0;
+  for (const View& tip : message["fingertips"].elements()) {
+    const char* name = finger < fingers.size() ? fingers[finger++] : "";
+    const Eigen::Vector3d at = *X_WH * tip["p_HF"].vector();
+    if (!tip["valid"].flag() || !at.allFinite()) continue;
+    ball(at, 0.008);
+    add_line(drawn, {back, at}, glove_colour);
+    names.push_back(name);
+    distances.push_back((at - back).norm());
+  }
+  return {scene(std::move(drawn), id, ns),
+          signals(ns, "fingertips", message["glove"].text(), "m from the back of the hand",
+                  std::move(names), std::move(distances))};
+}
+
+Documents LabView::camera_image(View message) {
+  const std::int64_t ns = stamp(message);
+  const std::string camera = message["camera"].text();
+  return {{Feed::image, camera, ns,
+           text_of({{"timestamp", to_time(ns)},
+                    {"frame_id", camera},
+                    {"data", base64(message["data"].bytes())},
+                    {"format", message["encoding"].text()}})}};
+}
+
+Documents LabView::object_detection(View message) {
+  const std::int64_t track = message["track"].integer(), ns = stamp(message);
+  const View box = message["box"];
+  const Detection seen{message["name"].text(), message["probability"].number(),
+                       box["x"].number(),      box["y"].number(),
+                       box["width"].number(),  box["height"].number()};
+  if (std::isfinite(seen.x + seen.y + seen.width + seen.height + seen.probability))
+    detections_[track] = seen;
+  Documents made{annotations(ns)};
+  const auto X_WO = message["X_WO"].pose();
+  const model::Shape shape = shape_of(message);
+  if (!X_WO || !model::is_valid(shape)) return made;
+  const std::string id = fmt::format("seen/{}", track);
+  Json drawn = entity(ns, id, table);
+  add_shape(drawn, shape, *X_WO, seen_colour);
+  made.push_back(scene(std::move(drawn), id, ns));
+  return made;
+}
+
+Documents LabView::grasp_report(const Value& value) {
+  const View message(value);
+  const std::int64_t ns = stamp(message);
+  const std::string hand = message["hand"].text(), object = message["object"].text();
+  const double epsilon = message["epsilon"].number();
+  const bool held = message["held"].flag();
+  Documents made{{Feed::report, std::to_string(count_++), ns, text_of(to_json(value))}};
+  const std::string id = "contacts/" + hand;
+  Json drawn = entity(ns, id, object_frame(object));
+  for (const View& contact : message["contacts"].elements()) {
+    const Eigen::Vector3d at = contact["p_OC"].vector(), normal = contact["normal_O"].vector();
+    const double force = contact["force"].number();
+    if (!at.allFinite() || !normal.allFinite() || !std::isfinite(force) || normal.norm() < 1e-6)
+      continue;
+    const Eigen::Vector3d along = std::clamp(0.01 * force, 0.015, 0.1) * normal.normalized();
+    add_arrow(drawn, at - along, along, 0.003, contact_colour);
+    if (const double friction = contact["friction"].number(); friction > 0)
+      add_cone(drawn, at, normal, std::atan(friction), cone_colour);
+  }
+  const std::string verdict = held ? "held" : "dropped: " + message["reason"].text();
+  add_text(drawn, {0, 0, 0.15}, fmt::format("ε {:.3f}, {}", epsilon, verdict), white);
+  made.push_back(scene(std::move(drawn), id, ns));
+  made.push_back(log(ns, held ? LogLevel::info : LogLevel::warning, hand,
+                     fmt::format("{}: {} contacts, ε {:.3f}, {}", object,
+                                 message["contacts"].elements().size(), epsilon, verdict)));
+  return made;
+}
+
+Documents LabView::service_status(View message, std::int64_t now_ns) {
+  const std::int64_t ns = stamp(message);
+  const std::string key = message["service"].text();
+  Service now{.name = message["name"].text(),
+              .host = message["host"].text(),
+              .state = message["state"].text(),
+              .message = message["message"].text(),
+              .latency = Json::array(),
+              .heard_ns = now_ns};
+  if (now.state.starts_with("STATE_")) now.state.erase(0, 6);
+  std::transform(now.state.begin(), now.state.end(), now.state.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  for (const View& drop : message["drops"].elements()) now.dropped += drop["count"].integer();
+  for (const View& stage : message["latency"].elements())
+    now.latency.push_back({{"service", key},
+                           {"stage", stage["stage"].text()},
+                           {"p50_ms", 1e-3 * stage["p50_us"].number()},
+                           {"p99_ms", 1e-3 * stage["p99_us"].number()},
+                           {"max_ms", 1e-3 * stage["max_us"].number()},
+                           {"count", stage["count"].integer()}});
+  Documents made;
+  const auto before = services_.find(key);
+  if (before == services_.end() || before->second.silent || before->second.state != now.state ||
+      before->second.message != now.message)
+    made.push_back(log(ns, now.state == "degraded" ? LogLevel::warning : LogLevel::info, now.name,
+                       now.message.empty() ? now.state : now.state + ": " + now.message));
+  left_.erase(now.name);
+  // Who was killed comes again as another process: nobody waits for the first any more.
+  if (before == services_.end())
+    std::erase_if(services_, [&](const auto& entry) {
+      return entry.second.silent && entry.second.name == now.name;
+    });
+  services_[key] = std::move(now);
+  made.push_back(status(ns));
+  made.push_back(latency(ns));
+  return made;
+}
+
+Documents LabView::robot_gate(View message, std::int64_t now_ns) {
+  const std::string hand = message["hand"].text();
+  const Gate now{message["leader"].text(), message["stopped_by"].text(), message["reason"].text(),
+                 message["stopped"].flag(), message["consent"].flag()};
+  Documents made;
+  const auto before = gates_.find(hand);
+  if (before == gates_.end() ? now.stopped : before->second.stopped != now.stopped)
+    made.push_back(log(now_ns, now.stopped ? LogLevel::error : LogLevel::info, hand,
+                       now.stopped ? fmt::format("stopped by {}: {}", now.stopped_by, now.reason)
+                                   : "released: " + now.reason));
+  if (!now.leader.empty() && (before == gates_.end() || before->second.leader != now.leader))
+    made.push_back(log(now_ns, LogLevel::info, hand, now.leader + " leads"));
+  gates_[hand] = now;
+  made.push_back(status(now_ns));
+  return made;
+}
+
+Documents LabView::operator_reply(const Value& value) {
+  const View message(value);
+  const std::int64_t ns = stamp(message);
+  const bool done = message["done"].flag();
+  return {{Feed::reply, std::to_string(count_++), ns, text_of(to_json(value))},
+          log(ns, done ? LogLevel::info : LogLevel::warning, message["service"].text(),
+              message["message"].text())};
+}
+
+Documents LabView::operator_command(View message) {
+  const std::string argument = message["argument"].text();
+  return {log(stamp(message), LogLevel::info, "operator",
+              fmt::format("{} for {}{}", message["action"].text(), message["target"].text(),
+                          argument.empty() ? "" : ": " + argument))};
+}
+
+Document LabView::log(std::int64_t ns, LogLevel level, std::string_view name,
+                      std::string_view text) {
+  return {Feed::log, std::to_string(count_++), ns, text_of(log_line(ns, level, name, text))};
+}
+
+Document LabView::annotations(std::int64_t ns) const {
+  Json points = Json::array(), texts = Json::array();
+  constexpr Colour line{0.13, 0.85, 0.35, 1};
+  for (const auto& [track, seen] : detections_) {
+    const auto point = [](double x, double y) { return Json{{"x", x}, {"y", y}}; };
+    const double right = seen.x + seen.width, below = seen.y + seen.height;
+    points.push_back(
+        {{"timestamp", to_time(ns)},
+         {"type", 2},  // a closed line
+         {"points",
+          {point(seen.x, seen.y), point(right, seen.y), point(right, below), point(seen.x, below)}},
+         {"outline_color", to_json(line)},
+         {"outline_colors", Json::array()},
+         {"fill_color", to_json(Colour{0, 0, 0, 0})},
+         {"thickness", 2.0}});
+    texts.push_back({{"timestamp", to_time(ns)},
+                     {"position", point(seen.x, std::max(0.0, seen.y - 4))},
+                     {"text", fmt::format("{} {:.2f}", seen.name, seen.probability)},
+                     {"font_size", 14.0},
+                     {"text_color", to_json(white)},
+                     {"background_color", to_json(Colour{0, 0, 0, 0.6})}});
+  }
+  return {Feed::annotations, "", ns,
+          text_of({{"circles", Json::array()}, {"points", points}, {"texts", texts}})};
+}
+
+Document LabView::status(std::int64_t ns) const {
+  Json there = Json::array(), gates = Json::array();
+  for (const auto& [key, service] : services_)
+    if (!service.silent)
+      there.push_back({{"service", key},
+                       {"name", service.name},
+                       {"host", service.host},
+                       {"state", service.state},
+                       {"message", service.message},
+                       {"dropped", service.dropped}});
+  for (const auto& [hand, gate] : gates_)
+    gates.push_back({{"hand", hand},
+                     {"leader", gate.leader},
+                     {"stopped", gate.stopped},
+                     {"stopped_by", gate.stopped_by},
+                     {"reason", gate.reason},
+                     {"consent", gate.consent}});
+  return {Feed::status, "", ns,
+          text_of({{"services", there}, {"missing", missing()}, {"gates", gates}})};
+}
+
+Json LabView::missing() const {
+  Json all = Json::array();
+  std::set<std::string> known;
+  for (const auto& [key, service] : services_) {
+    known.insert(service.name);
+    if (service.silent)
+      all.push_back({{"name", service.name},
+                     {"reason", fmt::format("{} is silent for 3 s: killed, or cut off", key)}});
+  }
+  for (const std::string& name : options_.services)
+    if (!known.contains(name))
+      all.push_back(
+          {{"name", name},
+           {"reason", left_.contains(name) ? "has left" : "has not been heard since this began"}});
+  return all;
+}
+
+Document LabView::latency(std::int64_t ns) const {
+  Json stages = Json::array();
+  for (const auto& [key, service] : services_)
+    for (const Json& stage : service.latency)
+      if (!service.silent) stages.push_back(stage);
+  return {Feed::latency, "", ns, text_of({{"stages", stages}})};
+}
+
+}  // namespace prehend::console

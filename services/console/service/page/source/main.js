@@ -1,0 +1,98 @@
+// Prehend's console: what the lab says, drawn from the newest message at each frame.
+import { Connection } from "./connection.js";
+import { setUpOrders, showReply, showWhoObeys } from "./orders.js";
+import { setUpHand } from "./hand.js";
+import { forgetLists, showLag, showLatency, showLink, showLog, showReport, showStatus } from "./panels.js";
+import { Picture } from "./picture.js";
+import { Playback } from "./playback.js";
+import { Plots } from "./plots.js";
+import { keepReport, setUpSaving } from "./save.js";
+import { World } from "./world.js";
+
+let world;
+try {
+  world = new World(document.getElementById("view"));
+  world.canvas.where = (name) => world.where(name);
+} catch {
+  // Without WebGL the rest is still worth looking at.
+  document.getElementById("legend").textContent = "This browser draws nothing in three dimensions (WebGL).";
+}
+const picture = new Picture(document.getElementById("camera"));
+const plots = new Plots(document.getElementById("plots"));
+
+// Kept until the page is drawn, which a hidden one is not: the newest of each frame and entity.
+const transforms = new Map();
+const updates = new Map();
+let handStamp;
+let lag;
+
+function draw() {
+  if (world) {
+    if (transforms.size) world.transforms({ transforms: [...transforms.values()] });
+    for (const update of updates.values()) world.update(update);
+    transforms.clear();
+    updates.clear();
+    world.draw();
+    if (handStamp !== undefined) {
+      lag = Date.now() - handStamp;
+      world.canvas.dataset.lag = lag.toFixed(1);
+    }
+    handStamp = undefined;
+  }
+  picture.draw();
+  playback.draw();
+  requestAnimationFrame(draw);
+}
+
+const playback = new Playback(() => {
+  forgetLists();
+  transforms.clear();
+  updates.clear();
+  world?.clear();
+});
+
+const topics = {
+  "/tf": (message) => {
+    for (const t of message.transforms) transforms.set(t.child_frame_id, t);
+    if (message.transforms.length > 1) {
+      const { child_frame_id, timestamp: { sec, nsec } } = message.transforms[0];
+      if (world) world.hand = child_frame_id;
+      handStamp = sec * 1000 + nsec / 1e6;
+    }
+  },
+  "/scene": ({ deletions, entities }) => {
+    for (const gone of deletions) updates.set(gone.id, { deletions: [gone], entities: [] });
+    for (const entity of entities) updates.set(entity.id, { deletions: [], entities: [entity] });
+  },
+  "/camera/image": (message) => picture.show(message),
+  "/camera/annotations": (message) => picture.annotate(message),
+  "/grasp/report": (report) => {
+    showReport(report);
+    keepReport(report);
+  },
+  "/status": (status) => {
+    showStatus(status);
+    showWhoObeys(status);
+  },
+  "/latency": (message) => {
+    showLatency(message);
+    plots.latency(message);
+  },
+  "/signals": (message) => plots.show(message),
+  "/log": showLog,
+  "/operator/reply": showReply,
+};
+
+const scheme = location.protocol === "https:" ? "wss:" : "ws:";
+playback.connection = new Connection(`${scheme}//${location.host}/`, topics, (text, good, opened) => {
+  if (opened) forgetLists();
+  showLink(text, good);
+}, playback);
+// Where the clocks of lab and browser differ by hours, as in a recording, an age says nothing.
+setInterval(() => showLag(lag !== undefined && Math.abs(lag) < 60000 ? lag : undefined), 250);
+setUpOrders();
+setUpSaving(world && (() => world.draw()));
+for (const [id, look] of [["near", "lookNear"], ["all", "lookAtAll"]])
+  document.getElementById(id).onclick = () => world?.[look]();
+setUpHand(() => world?.anObject());
+requestAnimationFrame(draw);

@@ -1,0 +1,222 @@
+#include "services/console/service/show.hpp"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+#include <span>
+#include <utility>
+
+#include "common/base/clock.hpp"
+#include "common/base/file_text.hpp"
+#include "common/base/log.hpp"
+#include "common/base/log_format.hpp"
+#include "common/recording/types/idl.hpp"
+#include "common/recording/types/schema_text.hpp"
+#include "services/console/core/hand_line.hpp"
+#include "services/console/service/page/page.hpp"
+#include "services/console/service/setup.hpp"
+
+namespace prehend::console {
+namespace {
+
+constexpr std::uint64_t second = 60;  // ticks
+constexpr const char* recorded = "this is a recording: nobody is there to be ordered";
+
+/// A channel for each feed, then one for each topic of the lab.
+std::vector<Hub::Channel> channels_of(const recording::types::Library& types) {
+  std::vector<Hub::Channel> made;
+  for (const FeedInfo& feed : feeds)
+    made.push_back({{0, std::string(feed.topic), "json", std::string(feed.schema_name),
+                     "jsonschema", json_schema(feed.feed)},
+                    feed.queued});
+  for (const dds::TopicInfo& topic : dds::topic_table) {
+    const std::string name = topic.type_name();
+    const recording::types::Structure* type = types.find(name);
+    made.push_back({{0, std::string(topic.name), "cdr", recording::types::ros2_name(name),
+                     "ros2msg", type ? recording::types::ros2msg(*type) : ""},
+                    topic.qos.reader_depth == 0});
+  }
+  return made;
+}
+
+std::vector<Parameter> parameters_of(const service::Config& config) {
+  const std::string& hand = config.text("simulation.hand");
+  if (hand.empty()) return {};
+  auto urdf = read_file(model::hand_directory(hand) / "hand.urdf");
+  if (!urdf) {
+    log::warning(urdf.error());
+    return {};
+  }
+  return {{"/robot_description", std::move(*urdf)}};
+}
+
+web::Answer plain(int status, std::string text) {
+  return {status, "text/plain; charset=utf-8", std::move(text) + "\n", ""};
+}
+
+std::string text_of(const dds::Guid& guid) {
+  return {guid.begin(), guid.end()};
+}
+
+}  // namespace
+
+Show::Hands::Hands(const service::Config& config) {
+  for (const char* key : {"simulation.hand", "mapping.hand"}) {
+    if (config.text(key).empty()) continue;
+    auto model = model::HandModel::load(model::hand_directory(config.text(key)));
+    if (model)
+      known_.try_emplace(model->name(), std::move(*model));
+    else
+      log::warning(model.error());
+  }
+}
+
+const model::HandModel* Show::Hands::find(const std::string& name) {
+  auto known = known_.find(name);
+  if (known == known_.end()) {
+    if (known_.size() > 100) return nullptr;
+    auto model = model::named_hand(name).and_then(model::HandModel::load);
+    if (!model) log::warning(model.error());
+    known = known_.emplace(name, model ? std::optional(std::move(*model)) : std::nullopt).first;
+  }
+  return known->second ? &*known->second : nullptr;
+}
+
+Expected<std::unique_ptr<Show>> Show::create(const service::Config& config, Options options) {
+  auto types = recording::types::load_contract();
+  if (!types) return tl::unexpected(types.error());
+  const auto X_WC = pose_of(config, "camera.X_WC");
+  if (!X_WC) return tl::unexpected(X_WC.error());
+  auto hands = std::make_shared<Hands>(config);
+  LabView view({.services = config.names("lab.services"),
+                .camera = config.text("camera.name"),
+                .X_WC = *X_WC,
+                .hand = [raw = hands.get()](const std::string& name) { return raw->find(name); }});
+  Hub hub({.session = std::to_string(options.now_ns()),
+           .channels = channels_of(*types),
+           .parameters = parameters_of(config),
+           .recording = options.film ? std::optional(options.film->span()) : std::nullopt});
+  std::unique_ptr<Show> made(new Show(std::move(options), std::move(*types), std::move(view),
+                                      std::move(hub), std::move(hands)));
+  made->begin();
+  made->round_.tell(made->hub_);
+  return made;
+}
+
+Show::Show(Options options, recording::types::Library types, LabView view, Hub hub,
+           std::shared_ptr<Hands> hands)
+    : options_(std::move(options)),
+      types_(std::move(types)),
+      hands_(std::move(hands)),
+      fresh_(std::move(view)),
+      hub_(std::move(hub)) {}
+
+void Show::begin() {
+  round_ = {};
+  hub_.forget_all();
+  last_.clear();
+  view_ = fresh_;
+  publish(view_.begin(options_.now_ns()));
+}
+
+Verdict Show::judge(const Asked& asked) {
+  return console::judge(asked, options_.policy);
+}
+
+web::Answer Show::answer(const Verdict& verdict, std::string_view body) {
+  if (verdict.route == Route::order) return order(body);
+  if (verdict.route == Route::hand) return hand(body);
+  if (verdict.route == Route::tracking) return tracking(verdict.what);
+  if (verdict.route == Route::page)
+    return {200, "text/html; charset=utf-8",
+            page::html(options_.give ? options_.policy.order_token : "", options_.no_hand),
+            verdict.set_cookie ? options_.policy.access_token : ""};
+  if (verdict.route == Route::file) {
+    const page::File file = page::file(verdict.what);
+    return {200, std::string(file.type), std::string(file.text), ""};
+  }
+  return plain(verdict.status == 0 ? 404 : verdict.status, verdict.what);
+}
+
+web::Answer Show::order(std::string_view body) {
+  const auto order = read_order(body);
+  if (!order) return plain(400, order.error().message());
+  if (!options_.give) return plain(409, recorded);
+  const nlohmann::json said{{"id", options_.give(*order)}};
+  return {202, "application/json", said.dump(), ""};
+}
+
+web::Answer Show::hand(std::string_view body) {
+  if (!options_.hand) return plain(409, options_.no_hand);
+  const auto line = hand_line(body, to_ns(process_now()), options_.X_TW);
+  if (!line) return plain(400, line.error().message());
+  options_.hand(*line);
+  return plain(202, "sent");
+}
+
+/// Only what was fetched has a name here, so nobody reads another file by it.
+web::Answer Show::tracking(const std::string& name) const {
+  const std::string_view type = page::tracking_type(name);
+  if (type.empty()) return plain(404, "belongs to no hand tracking");
+  auto bytes = read_file(options_.tracking / name);
+  if (!bytes)
+    return plain(404, "is not installed: services/console/service/page/hand-tracking/fetch");
+  return {200, std::string(type), std::move(*bytes), ""};
+}
+
+void Show::tick() {
+  ++ticks_;
+  // Nobody looks: it is enough to keep up with what is to be kept.
+  if (hub_.clients() == 0 && ticks_ % second != 0) return;
+  Film* film = options_.film;
+  if (film)
+    for (const PlaybackRequest& request : hub_.take_requests()) film->obey(request);
+  const std::vector<Letter> letters = options_.letters();
+  if (const auto state = film ? film->news(process_now()) : std::nullopt) {
+    if (state->sought) begin();
+    hub_.tell_playback(*state);
+  }
+  for (const Letter& letter : letters) hand_on(letter);
+  publish(view_.wait(options_.now_ns()));
+  round_.tell(hub_);
+  if (ticks_ % second != 0) return;
+  hub_.tell_losses();
+  if (options_.graph)
+    if (auto graph = options_.graph()) hub_.set_graph(std::move(*graph));
+}
+
+void Show::hand_on(const Letter& letter) {
+  const dds::TopicInfo& topic = dds::topic_table[letter.topic];
+  const auto channel = static_cast<std::uint32_t>(feeds.size() + letter.topic);
+  const std::string key =
+      topic.qos.reader_depth == 0 ? std::to_string(queued_++) : text_of(letter.instance);
+  const std::pair instance{letter.topic, letter.instance};
+  const std::int64_t heard_ns = letter.heard_ns ? letter.heard_ns : options_.now_ns();
+  if (!letter.payload) {
+    round_.put(channel, key, 0, nullptr, true);
+    if (auto last = last_.extract(instance))
+      publish(view_.lose(topic.name, last.mapped(), heard_ns));
+    return;
+  }
+  round_.put(channel, key, letter.sent_ns, letter.payload, false);
+  const recording::types::Structure* type = types_.find(topic.type_name());
+  if (!type) return;
+  const std::string& bytes = *letter.payload;
+  auto value = recording::types::decode(
+      *type, {reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()});
+  if (!value) return;
+  publish(view_.hear(topic.name, *value, heard_ns));
+  // Pictures are large, and nothing is said of their end.
+  if (topic.qos.reader_depth != 0 && topic.name != dds::camera_image.name)
+    last_.insert_or_assign(instance, std::move(*value));
+}
+
+void Show::publish(const Documents& documents) {
+  for (const Document& document : documents) {
+    const auto channel = static_cast<std::uint32_t>(document.feed);
+    round_.put(channel, document.key, document.stamp_ns,
+               std::make_shared<const std::string>(document.text), document.last);
+  }
+}
+
+}  // namespace prehend::console

@@ -1,0 +1,68 @@
+#pragma once
+
+#include <condition_variable>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+
+#include "common/dds/participant.hpp"
+#include "common/dds/raw.hpp"
+#include "common/model/hand_model.hpp"
+#include "common/service/config.hpp"
+#include "services/ros/core/messages.hpp"
+
+namespace prehend::ros {
+
+/// Reads the hand and the objects of a lab, and tells nodes of ROS 2 in their own words. It is two
+/// participants: a viewer of the lab, and one without partition where nodes look for topics.
+class Teller {
+ public:
+  struct Options {
+    int domain = 0;                  // ROS_DOMAIN_ID
+    std::string network = "laptop";  // how nodes are reached
+    std::string hand;                // the robot hand that is told; empty: the first that is heard
+  };
+  static Expected<std::unique_ptr<Teller>> create(const service::Config& config,
+                                                  const Options& options);
+  ~Teller();
+  Teller(const Teller&) = delete;
+  Teller& operator=(const Teller&) = delete;
+
+  /// Tells what has come since, or waits for it as long as `limit`.
+  void tell(Duration limit);
+
+ private:
+  /// The newest of each, until it is told. Written by the threads that receive.
+  struct News {
+    std::map<std::string, v1::HandState> hands;
+    std::map<std::string, v1::ObjectState> objects;
+    bool empty() const { return hands.empty() && objects.empty(); }
+  };
+  struct Voices {
+    dds::RawWriter joint_states, description, tf, tf_static;
+  };
+
+  explicit Teller(Options options) : options_(std::move(options)) {}
+  Expected<void> join_lab(const service::Config& config);
+  Expected<void> join_nodes(const service::Config& config);
+  Expected<Voices> voices();
+  void tell(const v1::HandState& state);
+  void tell(const v1::ObjectState& state);
+  /// Nothing: it is not known.
+  const model::HandModel* introduce(const std::string& model);
+  void write(dds::RawWriter& writer, Bytes bytes);
+
+  Options options_;
+  std::string shown_;  // the model that nodes know
+  std::optional<model::HandModel> model_;
+  std::mutex mutex_;  // guards news_
+  std::condition_variable come_;
+  News news_;
+  std::optional<dds::Participant> nodes_, lab_;
+  std::optional<Voices> voices_;
+  std::unique_ptr<dds::RawReader> hands_, objects_;
+};
+
+}  // namespace prehend::ros

@@ -1,0 +1,255 @@
+// A recorded grasp goes through the view: what would be drawn is what was said.
+#include "services/console/core/lab_view.hpp"
+
+#include <gtest/gtest.h>
+
+#include <map>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "common/dds/topics.hpp"
+#include "common/recording/layout/layout.hpp"
+#include "common/recording/layout/older_types.hpp"
+#include "common/recording/mcap/reader.hpp"
+#include "common/recording/types/idl.hpp"
+
+namespace prehend::console {
+namespace {
+
+using nlohmann::json;
+
+const model::HandModel& barrett() {
+  static const model::HandModel hand =
+      model::HandModel::load(PREHEND_SOURCE "/common/models/hands/barrett").value();
+  return hand;
+}
+
+LabView view() {
+  return LabView({.services = {"glove", "simulation"}, .hand = [](const std::string& name) {
+                    return name == "barrett" ? &barrett() : nullptr;
+                  }});
+}
+
+/// Calls with every message of the sample recording.
+void play(const std::function<void(const std::string& topic, const Value&)>& each) {
+  const auto types = recording::types::load_idl(PREHEND_SOURCE "/idl").value();
+  auto reader =
+      recording::mcap::Reader::open(PREHEND_SOURCE "/deploy/samples/intelligent-grasp.mcap")
+          .value();
+  auto cursor = reader.messages();
+  while (auto next = cursor.next().value()) {
+    const auto stream = recording::to_stream(
+        *next->channel, reader.contents().schemas.at(next->channel->schema_id).name);
+    if (!stream || stream->kind != dds::RawSample::Kind::data) continue;
+    const std::string current(recording::current_type(stream->topic.type));
+    const auto* type = types.find(current);
+    ASSERT_TRUE(type) << current;
+    std::vector<std::uint8_t> bytes(next->message.data.begin(), next->message.data.end());
+    if (current != stream->topic.type) recording::make_current(bytes);
+    const auto value = recording::types::decode(*type, bytes);
+    ASSERT_TRUE(value) << value.error().message();
+    each(stream->topic.name, *value);
+  }
+}
+
+/// Names of who is missing; each is told with a reason.
+std::vector<std::string> missing(const json& status) {
+  std::vector<std::string> names;
+  for (const json& one : status["missing"]) {
+    EXPECT_FALSE(one["reason"].get<std::string>().empty());
+    names.push_back(one["name"]);
+  }
+  return names;
+}
+using Names = std::vector<std::string>;
+
+Pose pose_of(const json& t) {
+  const auto number = [&](const char* part, const char* name) {
+    return t[part][name].get<double>();
+  };
+  const auto p = [&](const char* name) { return number("translation", name); };
+  const auto q = [&](const char* name) { return number("rotation", name); };
+  return make_pose(Eigen::Vector3d(p("x"), p("y"), p("z")),
+                   Eigen::Quaterniond(q("w"), q("x"), q("y"), q("z")));
+}
+
+// Forward kinematics by hand: each joint's frame after its parent's, then its own motion.
+TEST(LabView, EachLinkIsWhereTheJointAnglesPutIt) {
+  LabView shown = view();
+  int compared = 0;
+  play([&](const std::string& topic, const Value& value) {
+    if (topic != "robot/state") return;
+    const View message(value);
+    const Pose X_WB = message["X_WB"].pose().value();
+    const auto joint = message["joint"].numbers();
+    std::map<std::string, Pose> expected{{barrett().links()[0].name, X_WB}};
+    for (std::size_t i = 0; i < joint.size(); ++i) {
+      const model::HandJoint& j = barrett().joints()[i];
+      const auto at = [&](int link) {
+        return barrett().links()[static_cast<std::size_t>(link)].name;
+      };
+      expected[at(j.child)] =
+          expected.at(at(j.parent)) * j.X_PJ * Pose(Eigen::AngleAxisd(joint[i], j.axis_J));
+    }
+    for (const Document& document : shown.hear(topic, value, 0)) {
+      if (document.feed != Feed::tf) continue;
+      EXPECT_EQ(document.stamp_ns, message["stamp_ns"].integer());
+      const json said = json::parse(document.text)["transforms"];
+      ASSERT_EQ(said.size(), expected.size());
+      for (const json& t : said) {
+        EXPECT_EQ(t["parent_frame_id"], "table");
+        // What is left is the last digits of sums and products of numbers around 1.
+        EXPECT_TRUE(pose_of(t).isApprox(expected.at(t["child_frame_id"].get<std::string>()), 1e-9));
+        ++compared;
+      }
+    }
+  });
+  EXPECT_GT(compared, 100);
+}
+
+TEST(LabView, AGraspIsDrawnWholeAndEveryDocumentIsWhatItsSchemaSays) {
+  LabView shown = view();
+  std::map<Feed, int> counts;
+  std::map<std::string, json> entities;
+  json status;
+  std::set<std::string> groups;
+  const auto take = [&](const Documents& documents) {
+    for (const Document& document : documents) {
+      ++counts[document.feed];
+      const json said = json::parse(document.text);
+      const FeedInfo& feed = feeds[static_cast<std::size_t>(document.feed)];
+      EXPECT_EQ(feed.feed, document.feed);
+      if (feed.schema_name.starts_with("foxglove.")) {
+        const json schema = json::parse(json_schema(feed.feed));
+        for (const auto& [name, type] : schema["properties"].items())
+          EXPECT_TRUE(said.contains(name)) << feed.topic << " lacks " << name;
+      }
+      if (document.feed == Feed::status) status = said;
+      if (document.feed == Feed::signals) {
+        EXPECT_EQ(said["names"].size(), said["values"].size());
+        groups.insert(said["group"]);
+      }
+      if (document.feed != Feed::scene) continue;
+      for (const json& gone : said["deletions"]) entities.erase(gone["id"]);
+      for (const json& entity : said["entities"]) entities[entity["id"]] = entity;
+    }
+  };
+  take(shown.begin(0));
+  EXPECT_EQ(missing(status), (Names{"glove", "simulation"}));
+  play([&](const std::string& topic, const Value& value) { take(shown.hear(topic, value, 0)); });
+  for (const Feed feed : {Feed::tf, Feed::scene, Feed::image, Feed::annotations, Feed::report,
+                          Feed::log, Feed::signals})
+    EXPECT_GT(counts[feed], 0) << feeds[static_cast<std::size_t>(feed)].topic;
+  EXPECT_EQ(groups, (std::set<std::string>{"fingertips", "joints", "weight"}));
+  EXPECT_TRUE(entities.contains("table"));
+  EXPECT_TRUE(entities.contains("hand/" + barrett().links()[0].name));
+  EXPECT_TRUE(entities.contains("glove/glove"));
+  ASSERT_TRUE(entities.contains("contacts/hand"));
+  EXPECT_GE(entities["contacts/hand"]["arrows"].size(), 2U);
+  EXPECT_EQ(entities["contacts/hand"]["triangles"].size(),
+            entities["contacts/hand"]["arrows"].size());
+  EXPECT_EQ(entities["contacts/hand"]["frame_id"].get<std::string>().substr(0, 7), "object/");
+  EXPECT_TRUE(entities.contains(entities["contacts/hand"]["frame_id"])) << "the object is drawn";
+}
+
+Value structure(std::vector<std::pair<std::string_view, Value>> fields) {
+  Value::Fields made;
+  for (auto& [name, value] : fields) made.push_back({name, std::move(value)});
+  return Value{std::move(made)};
+}
+
+TEST(LabView, WhatIsGoneIsNotShownAnyMore) {
+  LabView shown = view();
+  const Value status =
+      structure({{"service", Value{std::string("glove@lab/1")}},
+                 {"name", Value{std::string("glove")}},
+                 {"state", Value{recording::types::Enumerator{2, "STATE_DEGRADED"}}},
+                 {"message", Value{std::string("no tracker")}}});
+  auto documents = shown.hear("service/status", status, 7);
+  ASSERT_EQ(documents.size(), 3U);
+  EXPECT_EQ(documents[0].feed, Feed::log);
+  EXPECT_EQ(json::parse(documents[1].text)["services"][0]["state"], "degraded");
+  EXPECT_EQ(missing(json::parse(documents[1].text)), (Names{"simulation"}));
+  EXPECT_EQ(shown.hear("service/status", status, 8).size(), 2U) << "nothing new to log";
+  documents = shown.lose("service/status", status, 9);
+  EXPECT_EQ(missing(json::parse(documents[0].text)), (Names{"glove", "simulation"}));
+}
+
+constexpr std::int64_t second = 1'000'000'000;
+
+Value status_of(const std::string& name, int process) {
+  return structure({{"service", Value{name + "@lab/" + std::to_string(process)}},
+                    {"name", Value{name}},
+                    {"state", Value{recording::types::Enumerator{1, "STATE_RUNNING"}}},
+                    {"stamp_ns", Value{std::int64_t{-99 * second}}}});  // of a clock that is wrong
+}
+
+/// The last status among documents.
+json told(const Documents& documents) {
+  json last;
+  for (const Document& document : documents)
+    if (document.feed == Feed::status) last = json::parse(document.text);
+  return last;
+}
+
+// Who is killed says no farewell, and DDS tells its readers nothing either.
+TEST(LabView, WhoIsSilentIsMissingAndComesBackAlone) {
+  LabView shown = view();
+  shown.hear("service/status", status_of("glove", 1), 10 * second);
+  shown.hear("service/status", status_of("simulation", 2), 10 * second);
+  EXPECT_TRUE(shown.wait(12 * second).empty()) << "a status may come late";
+  json status = told(shown.hear("service/status", status_of("simulation", 2), 12 * second));
+  EXPECT_EQ(missing(status), Names{});
+  status = told(shown.wait(13 * second));
+  EXPECT_EQ(missing(status), (Names{"glove"}));
+  EXPECT_NE(status["missing"][0]["reason"].get<std::string>().find("glove@lab/1"),
+            std::string::npos);
+  EXPECT_EQ(status["services"].size(), 1U);
+  EXPECT_TRUE(shown.wait(14 * second).empty()) << "told once";
+  // The same process after a hole in the network.
+  const Documents again = shown.hear("service/status", status_of("glove", 1), 14 * second);
+  EXPECT_EQ(missing(told(again)), Names{});
+  EXPECT_EQ(again[0].feed, Feed::log) << "its return is told, too";
+}
+
+TEST(LabView, AnotherProcessOfThatNameTakesTheKilledOnesPlace) {
+  LabView shown = view();
+  shown.hear("service/status", status_of("simulation", 2), 0);
+  shown.hear("service/status", status_of("glove", 1), 0);
+  shown.hear("service/status", status_of("glove", 3), 0);
+  shown.hear("service/status", status_of("simulation", 2), 5 * second);
+  shown.hear("service/status", status_of("glove", 3), 5 * second);
+  EXPECT_EQ(missing(told(shown.wait(5 * second))), (Names{"glove"})) << "one of two";
+  json status = told(shown.hear("service/status", status_of("glove", 3), 6 * second));
+  EXPECT_EQ(missing(status), (Names{"glove"})) << "who was there before replaces nobody";
+  status = told(shown.hear("service/status", status_of("glove", 4), 6 * second));
+  EXPECT_EQ(missing(status), Names{});
+  EXPECT_EQ(status["services"].size(), 3U);
+}
+
+TEST(LabView, DamagedMessagesDrawNothing) {
+  LabView shown = view();
+  for (const dds::TopicInfo& topic : dds::topic_table) {
+    shown.hear(topic.name, Value{Value::Fields{}}, 0);
+    shown.hear(topic.name, Value{3.0}, 0);
+    shown.lose(topic.name, Value{Value::List{}}, 0);
+  }
+  const auto pose = [](double w) {
+    return structure(
+        {{"position", structure({{"x", Value{0.0}}, {"y", Value{0.0}}, {"z", Value{0.0}}})},
+         {"orientation",
+          structure({{"w", Value{w}}, {"x", Value{0.0}}, {"y", Value{0.0}}, {"z", Value{0.0}}})}});
+  };
+  const auto state = [&](double w, std::size_t joints) {
+    return structure({{"hand", Value{std::string("hand")}},
+                      {"model", Value{std::string("barrett")}},
+                      {"joint", Value{Value::List(joints, Value{0.1})}},
+                      {"X_WB", pose(w)}});
+  };
+  EXPECT_FALSE(shown.hear("robot/state", state(1, barrett().joints().size()), 0).empty());
+  EXPECT_TRUE(shown.hear("robot/state", state(0, barrett().joints().size()), 0).empty());
+  EXPECT_TRUE(shown.hear("robot/state", state(1, 3), 0).empty());
+}
+
+}  // namespace
+}  // namespace prehend::console
