@@ -23,17 +23,23 @@ enum class Role : std::uint16_t {
   replayer = 1 << 6,   // stands for any writer; also checks what others answer
   operator_ = 1 << 7,  // gives orders: `prehend teach`
   viewer = 1 << 8,     // reads everything, writes nothing
+  demonstration = 1 << 9,
+  performer = 1 << 10,  // does tasks: `prehend tasks run`
+  console = 1 << 11,    // reads everything, and gives the orders of its page
 };
-inline constexpr std::array<std::pair<Role, std::string_view>, 9> role_names{{
+inline constexpr std::array<std::pair<Role, std::string_view>, 12> role_names{{
     {Role::glove, "glove"},
     {Role::recognition, "recognition"},
     {Role::mapping, "mapping"},
     {Role::simulation, "simulation"},
+    {Role::demonstration, "demonstration"},
+    {Role::performer, "performer"},
     {Role::robot, "robot"},
     {Role::recorder, "recorder"},
     {Role::replayer, "replayer"},
     {Role::operator_, "operator"},
     {Role::viewer, "viewer"},
+    {Role::console, "console"},
 }};
 constexpr std::string_view name_of(Role role) {
   for (const auto& [each, name] : role_names)
@@ -58,8 +64,9 @@ constexpr Roles operator|(Role a, Role b) {
 }
 /// Every process with a shell.
 inline constexpr Roles services = Role::glove | Role::recognition | Role::mapping |
-                                  Role::simulation | Role::robot | Role::recorder | Role::replayer |
-                                  Role::operator_;
+                                  Role::simulation | Role::demonstration | Role::performer |
+                                  Role::robot | Role::recorder | Role::replayer | Role::operator_ |
+                                  Role::console;
 
 /// What both ends of a topic must agree on.
 struct TopicQos {
@@ -115,7 +122,7 @@ constexpr bool may_write(Role role, const TopicInfo& topic) {
 /// Beside its readers, who only looks reads every topic.
 constexpr bool may_read(Role role, const TopicInfo& topic) {
   return topic.readers.has(role) || topic.open ||
-         (Role::recorder | Role::replayer | Role::viewer).has(role);
+         (Role::recorder | Role::replayer | Role::viewer | Role::console).has(role);
 }
 
 /// Does what this role computes depend on the topic?

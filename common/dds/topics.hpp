@@ -7,6 +7,8 @@
 #include <type_traits>
 
 #include "common/dds/topic.hpp"
+#include "idl/ArmPubSubTypes.h"
+#include "idl/DemonstrationPubSubTypes.h"
 #include "idl/GlovePubSubTypes.h"
 #include "idl/OperationPubSubTypes.h"
 #include "idl/PerceptionPubSubTypes.h"
@@ -29,7 +31,7 @@ inline constexpr Topic<v1::HandPosturePubSubType> hand_posture{
     {.name = "hand/posture",
      .qos = {.writer_depth = 64, .reader_depth = 1},
      .writers = Role::glove,
-     .readers = Role::mapping | Role::operator_,
+     .readers = Role::mapping | Role::demonstration | Role::operator_,
      .rate = "as glove/frame"}};
 
 inline constexpr Topic<v1::CameraImagePubSubType> camera_image{{.name = "camera/image",
@@ -42,7 +44,7 @@ inline constexpr Topic<v1::ObjectDetectionPubSubType> object_detection{
     {.name = "object/detection",
      .qos = {.transient_local = true},
      .writers = Role::recognition,
-     .readers = Role::mapping | Role::simulation,
+     .readers = Role::mapping | Role::simulation | Role::demonstration,
      .rate = "as camera/image",
      .remark = "disposed when gone"}};
 
@@ -54,7 +56,7 @@ inline constexpr Topic<v2::HandCommandPubSubType> robot_command{
              .reader_depth = 1,
              .deadline = std::chrono::milliseconds(100),
              .lifespan = std::chrono::milliseconds(200)},
-     .writers = Role::mapping,
+     .writers = Role::mapping | Role::performer,
      .readers = Role::simulation | Role::robot,
      .rate = "as hand/posture, at least 50 Hz while holding"}};
 
@@ -62,7 +64,7 @@ inline constexpr Topic<v1::HandStatePubSubType> robot_state{
     {.name = "robot/state",
      .qos = {.reliable = false},
      .writers = Role::simulation | Role::robot,
-     .readers = Role::mapping | Role::replayer,
+     .readers = Role::mapping | Role::performer | Role::replayer,
      .open = true,
      .rate = "100 Hz"}};
 
@@ -70,11 +72,30 @@ inline constexpr Topic<v1::GateStatePubSubType> robot_gate{
     {.name = "robot/gate",
      .qos = {.transient_local = true},
      .writers = Role::simulation | Role::robot,
-     .readers = Role::mapping | Role::operator_,
+     .readers = Role::mapping | Role::performer | Role::operator_,
      .open = true,
      .content = Content::process,
      .rate = "on change, 1 Hz",
      .remark = "not in lockstep"}};
+
+/// What leads the arm stands behind the gate of the robot, beside it.
+inline constexpr Topic<v1::ArmCommandPubSubType> arm_command{
+    {.name = "arm/command",
+     .qos = {.writer_depth = 64,
+             .reader_depth = 1,
+             .deadline = std::chrono::milliseconds(100),
+             .lifespan = std::chrono::milliseconds(200)},
+     .writers = Role::simulation | Role::robot,
+     .readers = Role::robot,
+     .open = true,
+     .rate = "100 Hz, of a robot with an arm"}};
+
+inline constexpr Topic<v1::ArmStatePubSubType> arm_state{
+    {.name = "arm/state",
+     .qos = {.reliable = false},
+     .writers = Role::simulation | Role::robot,
+     .open = true,
+     .rate = "100 Hz, of a robot with an arm"}};
 
 inline constexpr Topic<v1::SceneStatePubSubType> scene_state{{.name = "scene/state",
                                                               .qos = {.transient_local = true},
@@ -82,11 +103,13 @@ inline constexpr Topic<v1::SceneStatePubSubType> scene_state{{.name = "scene/sta
                                                               .open = true,
                                                               .rate = "on change"}};
 
-inline constexpr Topic<v1::ObjectStatePubSubType> object_state{{.name = "object/state",
-                                                                .qos = {.reliable = false},
-                                                                .writers = Role::simulation,
-                                                                .open = true,
-                                                                .rate = "100 Hz"}};
+inline constexpr Topic<v1::ObjectStatePubSubType> object_state{
+    {.name = "object/state",
+     .qos = {.reliable = false},
+     .writers = Role::simulation,
+     .readers = Role::demonstration | Role::performer,
+     .open = true,
+     .rate = "100 Hz"}};
 
 inline constexpr Topic<v1::GraspReportPubSubType> grasp_report{
     {.name = "grasp/report",
@@ -95,18 +118,47 @@ inline constexpr Topic<v1::GraspReportPubSubType> grasp_report{
      .open = true,
      .rate = "a grasp"}};
 
+inline constexpr Topic<v1::DemonstratedGraspPubSubType> demonstration_grasp{
+    {.name = "demonstration/grasp",
+     .qos = {.writer_depth = 64, .reader_depth = 1},
+     .writers = Role::demonstration,
+     .open = true,
+     .rate = "as hand/posture"}};
+
+inline constexpr Topic<v1::DemonstratedSegmentPubSubType> demonstration_segment{
+    {.name = "demonstration/segment",
+     .qos = {.writer_depth = 64, .reader_depth = 64},
+     .writers = Role::demonstration,
+     .open = true,
+     .rate = "a phase"}};
+
+inline constexpr Topic<v1::TaskModelPubSubType> task_model{{.name = "task/model",
+                                                            .qos = {.transient_local = true},
+                                                            .writers = Role::demonstration,
+                                                            .open = true,
+                                                            .rate = "a demonstration"}};
+
+inline constexpr Topic<v1::TaskProgressPubSubType> task_progress{
+    {.name = "task/progress",
+     .qos = {.transient_local = true},
+     .writers = Role::performer,
+     .open = true,
+     .rate = "10 Hz while a task is done"}};
+
 inline constexpr Topic<v1::OperatorCommandPubSubType> operator_command{
     {.name = "operator/command",
      .qos = {.writer_depth = 0, .reader_depth = 0},
-     .writers = Role::operator_,
-     .readers = Role::mapping | Role::simulation | Role::robot | Role::recorder | Role::replayer,
+     .writers = Role::operator_ | Role::console,
+     .readers = Role::mapping | Role::simulation | Role::demonstration | Role::robot |
+                Role::recorder | Role::replayer,
      .content = Content::order,
      .rate = "on demand"}};
 
 inline constexpr Topic<v1::OperatorReplyPubSubType> operator_reply{
     {.name = "operator/reply",
      .qos = {.writer_depth = 0, .reader_depth = 0},
-     .writers = Role::mapping | Role::simulation | Role::robot | Role::recorder | Role::replayer,
+     .writers = Role::mapping | Role::simulation | Role::demonstration | Role::robot |
+                Role::recorder | Role::replayer,
      .readers = Role::operator_,
      .content = Content::order,
      .rate = "a command"}};
@@ -153,11 +205,18 @@ inline constexpr Topic<v1::ServiceStatusPubSubType> service_status{
 
 /// In the order of the table in idl/README.md. What is not here has no reader and no writer
 /// (a static_assert of Participant).
-inline constexpr std::tuple typed_topics{
-    glove_frame,      hand_posture,   camera_image,     object_detection, robot_command,
-    robot_state,      robot_gate,     scene_state,      object_state,     grasp_report,
-    operator_command, operator_reply, operator_consent, lab_clock,        lab_progress,
-    lab_beacon,       service_status};
+inline constexpr std::tuple typed_topics{glove_frame,         hand_posture,
+                                         camera_image,        object_detection,
+                                         robot_command,       robot_state,
+                                         robot_gate,          arm_command,
+                                         arm_state,           scene_state,
+                                         object_state,        grasp_report,
+                                         demonstration_grasp, demonstration_segment,
+                                         task_model,          task_progress,
+                                         operator_command,    operator_reply,
+                                         operator_consent,    lab_clock,
+                                         lab_progress,        lab_beacon,
+                                         service_status};
 
 template <class PubSub>
 inline constexpr bool is_listed = std::apply(

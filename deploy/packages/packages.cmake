@@ -15,7 +15,7 @@ foreach(units prehend- prehend@)
 endforeach()
 # Headers of these are compiled into the programs: no dependency names them, so the bill of materials
 # and their licences do.
-set(compiled_in libcli11-dev libeigen3-dev libexpected-dev nlohmann-json3-dev)
+set(compiled_in libboost-dev libcli11-dev libeigen3-dev libexpected-dev nlohmann-json3-dev)
 execute_process(COMMAND ${CMAKE_SOURCE_DIR}/deploy/sbom records ${compiled_in}
   OUTPUT_FILE ${CMAKE_BINARY_DIR}/compiled-in.tsv COMMAND_ERROR_IS_FATAL ANY)
 install(FILES ${CMAKE_BINARY_DIR}/compiled-in.tsv DESTINATION share/doc/prehend COMPONENT lab)

@@ -71,6 +71,7 @@ inline constexpr std::array common_edges{
     Edge{"common/robot", "common/model"},
     Edge{"common/robot", "common/service"},
     Edge{"common/robot", "idl"},
+    Edge{"common/serial", "common/base"},
     Edge{"common/service", "common/base"},
     Edge{"common/service", "common/clock"},
     Edge{"common/service", "common/dds"},

@@ -13,13 +13,14 @@ struct Listener::State {
   std::optional<dds::Reader<v1::ObjectDetection>> detections;
   std::optional<dds::Reader<v2::HandCommand>> commands;
   std::optional<dds::Reader<v1::GraspReport>> reports;
+  std::optional<dds::Reader<v1::ArmState>> arms;
   std::optional<dds::Reader<v1::ServiceStatus>> statuses;
 };
 
 Expected<Listener> Listener::create(const service::Config& config, bool everything) {
   auto participant = dds::Participant::create(service::membership(config, "prehend", "viewer"));
   if (!participant) return tl::unexpected(participant.error());
-  auto state = std::make_unique<State>(State{std::move(*participant), {}, {}, {}, {}, {}});
+  auto state = std::make_unique<State>(State{std::move(*participant), {}, {}, {}, {}, {}, {}});
   std::optional<Error> error;
   const auto open = [&](auto& reader, const auto& topic) {
     auto made = state->participant.reader(topic);
@@ -34,6 +35,7 @@ Expected<Listener> Listener::create(const service::Config& config, bool everythi
     open(state->detections, dds::object_detection);
     open(state->commands, dds::robot_command);
     open(state->reports, dds::grasp_report);
+    if (!config.text("robot.arm").empty()) open(state->arms, dds::arm_state);
   }
   if (error) return tl::unexpected(*error);
   return Listener(std::move(state));
@@ -59,6 +61,8 @@ void Listener::poll(Observer& observer) {
   take(state_->frames);
   take(state_->detections);
   take(state_->commands);
+  // What is heard of the arm ends with the report, so that comes last.
+  take(state_->arms);
   take(state_->reports);
 }
 

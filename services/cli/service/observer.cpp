@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "common/base/printable.hpp"
@@ -63,6 +64,23 @@ void Observer::hear(const v1::GraspReport& report) {
   if (!report_) report_ = report;
 }
 
+void Observer::expect_arm(const std::string& name, const std::vector<double>& speeds) {
+  arm_ = Outcome::Arm{name};
+  joint_speeds_ = speeds;
+}
+
+void Observer::hear(const v1::ArmState& state) {
+  if (!arm_ || report_) return;
+  for (std::size_t i = 0; i < std::min(joint_speeds_.size(), state.velocity().size()); ++i)
+    arm_->worst_joint_speed =
+        std::max(arm_->worst_joint_speed, std::abs(state.velocity()[i]) / joint_speeds_[i]);
+  ++arm_states_;
+  const v1::ArmHindrance why = state.hindrance();
+  hindered_states_ += why == v1::HINDRANCE_JOINT_LIMIT || why == v1::HINDRANCE_COLLISION ||
+                      why == v1::HINDRANCE_REACH;
+  arm_->out_of_reach = static_cast<double>(hindered_states_) / static_cast<double>(arm_states_);
+}
+
 void Observer::hear(const v1::ServiceStatus& status) {
   services_[status.service().to_string()] = status;
 }
@@ -83,6 +101,14 @@ const v1::ServiceStatus* Observer::service(std::string_view name) const {
 bool Observer::is_up(std::string_view name) const {
   const v1::ServiceStatus* status = service(name);
   return status && (status->state() == v1::STATE_RUNNING || status->state() == v1::STATE_DEGRADED);
+}
+
+bool Observer::has_counted(std::string_view name, std::string_view what) const {
+  const v1::ServiceStatus* status = service(name);
+  return status &&
+         std::any_of(status->rates().begin(), status->rates().end(), [&](const v1::Rate& rate) {
+           return rate.name().to_string() == what && rate.total() > 0;
+         });
 }
 
 bool Observer::commanded() const {
@@ -179,6 +205,7 @@ Outcome Observer::outcome() const {
     for (const v1::StageLatency& stage : simulation->latency())
       if (stage.stage().to_string() == stage_to_world && stage.count() > 0)
         result.latency = Outcome::Latency{stage.p50_us() / 1000, stage.p99_us() / 1000};
+  result.arm = arm_;
   result.device = device_;
   result.frames = frames_;
   if (const v1::ServiceStatus* glove = service("glove"))

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "common/model/scene.hpp"
+#include "idl/Arm.h"
 #include "idl/Glove.h"
 #include "idl/Operation.h"
 #include "idl/Perception.h"
@@ -22,15 +23,21 @@ class Observer {
   /// truth: what really stands on the table, where that is known.
   explicit Observer(std::optional<model::Scene> truth = std::nullopt);
 
+  /// An arm carries the hand; how fast each of its joints may turn, rad/s.
+  void expect_arm(const std::string& name, const std::vector<double>& speeds);
+
   void hear(const v1::GloveFrame& frame);
   void hear(const v1::ObjectDetection& detection);
   void hear(const v2::HandCommand& command);
   void hear(const v1::GraspReport& report);
+  void hear(const v1::ArmState& state);
   void hear(const v1::ServiceStatus& status);
   void lost_service(const std::string& key);
 
   /// The service says of itself that it works.
   bool is_up(std::string_view service) const;
+  /// It has counted at least one of these.
+  bool has_counted(std::string_view service, std::string_view what) const;
   /// A command that follows the hand (not: hold) has been heard.
   bool commanded() const;
   /// The first grasp has been judged.
@@ -53,6 +60,9 @@ class Observer {
   std::map<std::string, std::deque<v1::ObjectDetection>> detections_;  // by name, in order of stamp
   std::optional<v2::HandCommand> command_;
   std::optional<v1::GraspReport> report_;
+  std::optional<Outcome::Arm> arm_;
+  std::vector<double> joint_speeds_;  // that the arm may have
+  std::uint64_t arm_states_ = 0, hindered_states_ = 0;
   std::string device_;
   std::uint64_t frames_ = 0;
 };

@@ -66,7 +66,7 @@ std::string to_json(const Outcome& outcome) {
   if (outcome.latency) latency = {{"p50", outcome.latency->p50}, {"p99", outcome.latency->p99}};
   Json target;
   if (!outcome.target.empty()) target = outcome.target;
-  const Json document = {
+  Json document = {
       {"object", object},
       {"mapping",
        {{"mode", to_string(outcome.mode)},
@@ -86,6 +86,10 @@ std::string to_json(const Outcome& outcome) {
       {"target", target},
       {"duration_s", outcome.seconds},
   };
+  if (outcome.arm)
+    document["arm"] = {{"name", outcome.arm->name},
+                       {"worst_joint_speed", outcome.arm->worst_joint_speed},
+                       {"out_of_reach", outcome.arm->out_of_reach}};
   // Names come from outside: bytes that are no UTF-8 are replaced.
   return document.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
@@ -117,6 +121,11 @@ std::string to_table(const Outcome& outcome) {
   row("result", grasp.held ? std::string("held")
                            : fmt::format("{}: {}", outcome.judged ? "dropped" : "no grasp",
                                          grasp.reason.empty() ? "no reason given" : grasp.reason));
+  if (outcome.arm)
+    row("arm",
+        fmt::format("{}, joints at most at {:.0f} % of their speed, hindered {:.0f} % of the time",
+                    outcome.arm->name, 100 * outcome.arm->worst_joint_speed,
+                    100 * outcome.arm->out_of_reach));
   row("latency", outcome.latency ? fmt::format("glove to simulation p50 {:.2f} ms, p99 {:.2f} ms",
                                                outcome.latency->p50, outcome.latency->p99)
                                  : std::string("not measured"));

@@ -24,6 +24,11 @@ struct Outcome {
     bool held = false;
     std::string reason;  // why it was not held
   };
+  struct Arm {
+    std::string name;
+    double worst_joint_speed = 0;  // share of a joint's limit
+    double out_of_reach = 0;       // share of the time, for a limit, something in the way, or reach
+  };
   struct Latency {
     double p50 = 0, p99 = 0;  // ms, glove frame read until the world has accepted the command
   };
@@ -37,7 +42,8 @@ struct Outcome {
   bool judged = false;  // the simulation has reported a grasp
   Grasp grasp;
   std::optional<Latency> latency;
-  std::string device;  // of the glove
+  std::optional<Arm> arm;  // that carries the hand
+  std::string device;      // of the glove
   std::uint64_t frames = 0, rejected = 0;
   double seconds = 0;  // from the glove's start to the end
 };

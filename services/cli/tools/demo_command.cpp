@@ -10,12 +10,16 @@
 #include <iostream>
 #include <thread>
 
+#include "common/arm/mounting.hpp"
+#include "common/base/file_text.hpp"
 #include "common/base/log.hpp"
 #include "common/base/log_format.hpp"
+#include "common/model/arm_choice.hpp"
 #include "common/model/hand_model.hpp"
 #include "common/service/lab.hpp"
 #include "services/cli/service/listener.hpp"
 #include "services/cli/service/observer.hpp"
+#include "services/cli/tools/dispatch.hpp"
 #include "services/cli/tools/free_address.hpp"
 #include "services/cli/tools/rows.hpp"
 #include "services/cli/tools/series.hpp"
@@ -25,6 +29,10 @@ namespace prehend::cli {
 namespace {
 
 using Clock = std::chrono::steady_clock;
+
+/// The simulated hand of a robot that is emulated.
+constexpr const char* twin = "twin";
+constexpr const char* hand_is_twin = "simulation.hand_name=twin";
 
 volatile std::sig_atomic_t interrupted = 0;
 
@@ -54,13 +62,16 @@ bool in(const std::vector<std::string>& list, std::string_view entry) {
   return std::find(list.begin(), list.end(), entry) != list.end();
 }
 
+/// A hand that the console's page tracks comes as datagrams.
+constexpr const char* webcam = "landmarks:127.0.0.1:9870";
+
 /// One demonstration from start to end.
 class Demonstration {
  public:
   Demonstration(const DemoOptions& options, const Progress& progress)
       : options_(options),
         progress_(progress),
-        glove_(source_of(options.glove)),
+        glove_(source_of(options.glove == "webcam" ? webcam : options.glove)),
         camera_(source_of(options.camera)) {}
 
   tl::expected<Outcome, Failure> run() {
@@ -75,6 +86,11 @@ class Demonstration {
     if (!outcome.judged) outcome.grasp.reason = reason;
     if (outcome.device.empty()) outcome.device = glove_.kind;
     if (outcome.hand.empty()) outcome.hand = hand_;
+    if (options_.watch) {
+      options_.on_outcome(outcome);
+      while (!step("watching")) {
+      }
+    }
     return outcome;
   }
 
@@ -85,9 +101,24 @@ class Demonstration {
   Trouble broken(const Error& error) { return Failure{error, exit_broken}; }
 
   Trouble listen(const service::Config& config) {
+    if (const auto trouble = expect_arm(config)) return trouble;
     auto listener = Listener::create(config, true);
     if (!listener) return broken(listener.error());
     listener_.emplace(std::move(*listener));
+    return std::nullopt;
+  }
+
+  Trouble expect_arm(const service::Config& config) {
+    const std::string& name = config.text("robot.arm");
+    if (name.empty()) return std::nullopt;
+    const auto arm = model::load_arm(name);
+    if (!arm) return wrong(arm.error());
+    std::vector<double> speeds;
+    for (const model::ArmJoint& joint : arm->joints) speeds.push_back(joint.velocity);
+    observer_.expect_arm(arm->name, speeds);
+    const auto hand = model::HandModel::load(model::hand_directory(config.text("simulation.hand")));
+    if (!hand) return wrong(hand.error());
+    if (const auto fits = arm::check_fit(*arm, *hand); !fits) return wrong(fits.error());
     return std::nullopt;
   }
 
@@ -134,6 +165,11 @@ class Demonstration {
     return std::nullopt;
   }
 
+  /// Services may run in other folders.
+  std::string arm_setting() const {
+    return options_.arm.find('/') == std::string::npos ? options_.arm : absolute(options_.arm);
+  }
+
   bool plays_file() const { return glove_row_.line == "file"; }
 
   Trouble start_lab() {
@@ -147,11 +183,15 @@ class Demonstration {
       sets.push_back("simulation.hand=" + options_.hand);
       sets.push_back("mapping.model=");  // that of the hand
     }
+    if (!options_.arm.empty()) sets.push_back("robot.arm=" + arm_setting());
     if (options_.direct) sets.push_back("mapping.intelligent=false");
     sets.push_back("recognition.source=" + camera_.kind);
     if (!camera_.detail.empty()) sets.push_back("recognition.path=" + absolute(camera_.detail));
     sets.push_back("glove.device=" + glove_.kind);
     if (plays_file()) sets.push_back("glove.file=" + absolute(glove_.detail));
+    // The console sends there, too.
+    if (glove_row_.line == "udp" && !glove_.detail.empty())
+      sets.push_back("glove.port=" + glove_.detail);
 
     const std::string file = options_.lab.file();
     const auto config = service::Config::load(file, sets);
@@ -181,21 +221,67 @@ class Demonstration {
     const std::string truth = "lab.scene=" + scene_file.string();
     if (!options_.record.empty())
       if (const auto trouble = start_recorder(sets, truth)) return trouble;
-    for (const std::string service : {"recognition", "mapping", "simulation"}) {
-      if (in(options_.without, service)) continue;
-      // A real camera sees a table that nobody described: the world is built from what it sees.
-      const bool told = camera_row_.synthetic || service != "simulation";
-      const auto started = lab_->start_service(service, {told ? truth : std::string("lab.scene=")});
-      if (!started) return broken(started.error());
-      awaited_.push_back(service);
-    }
+    if (const auto trouble = start_services(sets, truth)) return trouble;
     // Nobody reaches before everyone looks.
     while (!std::all_of(awaited_.begin(), awaited_.end(),
-                        [&](const std::string& name) { return observer_.is_up(name); })) {
+                        [&](const std::string& name) { return is_ready(name); })) {
       if (const auto trouble = step("starting")) return trouble;
       if (Clock::now() >= end_) return broken({missing() + " did not come up", "demo", ""});
     }
     return in(options_.without, "glove") ? std::nullopt : start_glove(scene_file, truth);
+  }
+
+  /// A robot says something of its joints only when it is homed and follows.
+  bool is_ready(const std::string& name) const {
+    return observer_.is_up(name) && (name != "robot" || observer_.has_counted(name, "readings"));
+  }
+
+  /// The robot's driver takes the commands, and the emulated robot at the end of its wire moves the
+  /// simulated hand, which goes by another name.
+  Trouble start_robot(const std::vector<std::string>& sets) {
+    const Source robot = source_of(options_.robot);
+    if (robot.kind != "emulated" || robot.detail.empty())
+      return wrong({"is not emulated:DEVICE", "--robot " + options_.robot, ""});
+    const std::string port = (folder_->path() / "robot_port").string();
+    std::vector<std::string> arguments{
+        "emulate", "--device", robot.detail, "--hand",           hand_, "--link", port,
+        "--twin",  twin,       "--config",   options_.lab.file()};
+    for (const std::string& set : sets) arguments.insert(arguments.end(), {"--set", set});
+    const std::string name = "emulated " + robot.detail;
+    if (const auto started = lab_->start(name, "prehend-robot-tool", arguments); !started)
+      return broken(started.error());
+    if (const auto trouble = wait_for_port(port, name)) return trouble;
+    // Who emulates shares the processors with everybody, and may have to wait for them.
+    const auto started =
+        lab_->start_service("robot", {"robot.device=" + robot.detail, "robot.port=" + port,
+                                      "robot.home=true", "robot.lost_after=1"});
+    if (!started) return broken(started.error());
+    awaited_.push_back("robot");
+    return std::nullopt;
+  }
+
+  Trouble wait_for_port(const std::string& port, const std::string& name) {
+    while (!std::filesystem::exists(std::filesystem::symlink_status(port))) {
+      if (const auto trouble = step("starting the " + name)) return trouble;
+      if (Clock::now() >= end_) return broken({"did not open its port", name, ""});
+    }
+    return std::nullopt;
+  }
+
+  Trouble start_services(const std::vector<std::string>& sets, const std::string& truth) {
+    if (options_.watch)
+      if (const auto trouble = start_console(truth)) return trouble;
+    for (const std::string service : {"recognition", "mapping", "simulation"}) {
+      if (in(options_.without, service)) continue;
+      // A real camera sees a table that nobody described: the world is built from what it sees.
+      const bool told = camera_row_.synthetic || service != "simulation";
+      std::vector<std::string> own{told ? truth : std::string("lab.scene=")};
+      if (service == "simulation" && !options_.robot.empty()) own.push_back(hand_is_twin);
+      const auto started = lab_->start_service(service, own);
+      if (!started) return broken(started.error());
+      awaited_.push_back(service);
+    }
+    return options_.robot.empty() ? std::nullopt : start_robot(sets);
   }
 
   Trouble start_glove(const std::filesystem::path& scene_file, const std::string& truth) {
@@ -238,11 +324,7 @@ class Demonstration {
     for (const std::string& set : sets) arguments.insert(arguments.end(), {"--set", set});
     const auto started = lab_->start("emulated " + kind, "prehend-glove-tool", arguments);
     if (!started) return broken(started.error());
-    while (serial && !std::filesystem::exists(std::filesystem::symlink_status(port))) {
-      if (const auto trouble = step("starting the emulated " + kind)) return trouble;
-      if (Clock::now() >= end_) return broken({"did not open its port", "emulated " + kind, ""});
-    }
-    return std::nullopt;
+    return serial ? wait_for_port(port, "emulated " + kind) : std::nullopt;
   }
 
   static bool is_serial(const GloveRow& row) { return row.line == "serial"; }
@@ -263,10 +345,25 @@ class Demonstration {
     return std::nullopt;
   }
 
+  /// Up before the others, so that all can be watched. It says where, as its first line.
+  Trouble start_console(const std::string& truth) {
+    const auto started = lab_->start_service("console", {truth});
+    if (!started) return broken(started.error());
+    while (!observer_.is_up("console")) {
+      if (const auto trouble = step("starting")) return trouble;
+      if (Clock::now() >= end_) return broken({"did not come up", "console", ""});
+    }
+    const auto said = read_file(folder_->path() / "console.log");
+    const std::size_t at = said ? said->find("http") : std::string::npos;
+    if (at != std::string::npos)
+      log::info("watch it at {}; Ctrl-C ends it", said->substr(at, said->find('\n', at) - at));
+    return std::nullopt;
+  }
+
   std::string missing() const {
     std::string names;
     for (const std::string& name : awaited_)
-      if (!observer_.is_up(name)) names += (names.empty() ? "" : ", ") + name;
+      if (!is_ready(name)) names += (names.empty() ? "" : ", ") + name;
     return names;
   }
 
@@ -376,6 +473,41 @@ bool read_range(const std::string& text, SeriesOptions& series) {
   return first <= last && last - first < 10000;
 }
 
+/// Tasks are shown to other services, and judged otherwise: by a tool of those.
+bool is_about_task(const std::vector<std::string>& arguments) {
+  return std::any_of(arguments.begin(), arguments.end(), [](const std::string& argument) {
+    return argument == "--task" || argument.starts_with("--task=");
+  });
+}
+
+int demonstrate_task(const std::vector<std::string>& arguments) {
+  std::vector<std::string> command{"demo"};
+  command.insert(command.end(), arguments.begin(), arguments.end());
+  return become({"tasks", "prehend-tasks", ""}, command);
+}
+
+/// What measures, sees and moves.
+void add_devices(CLI::App& app, DemoOptions& demo) {
+  app.add_option(
+      "--glove", demo.glove,
+      "DEVICE[:PORT or FILE], see `prehend glove devices`: what has an emulator is\n"
+      "emulated unless a port is given, HOST:PORT for datagrams; webcam: your own hand, by\n"
+      "the page of --watch");
+  app.add_option("--camera", demo.camera, "SOURCE[:PATH], see `prehend camera sources`");
+  auto* robot =
+      app.add_option("--robot", demo.robot,
+                     "emulated:DEVICE, see `prehend robot emulate`: its driver moves the hand");
+  app.add_option("--arm", demo.arm, "the arm that carries the hand, a name or folder: puma560")
+      ->excludes(robot);
+}
+
+/// For the help: who uses it gets another one.
+void add_task(CLI::App& app) {
+  app.add_option("--task",
+                 "a task (pick-and-place), or a file of one: it is shown, and done again "
+                 "elsewhere;\nprehend demo --task pick-and-place --help tells more");
+}
+
 }  // namespace
 
 tl::expected<Outcome, Failure> demonstrate(const DemoOptions& options, const Progress& progress) {
@@ -383,7 +515,9 @@ tl::expected<Outcome, Failure> demonstrate(const DemoOptions& options, const Pro
   return Demonstration(options, progress).run();
 }
 
+// Long: one option after the other.
 int demo_command(const std::vector<std::string>& arguments) {
+  if (is_about_task(arguments)) return demonstrate_task(arguments);
   CLI::App app{
       "Starts glove, recognition, mapping and simulation as processes on this machine, plays a\n"
       "demonstration through them and says what was grasped and how well. Exit code 0: held,\n"
@@ -401,20 +535,20 @@ int demo_command(const std::vector<std::string>& arguments) {
       ->check(CLI::IsMember({"glove", "recognition", "mapping", "simulation"}))
       ->type_size(1)
       ->allow_extra_args(false);
-  app.add_option("--glove", demo.glove,
-                 "DEVICE[:PORT or FILE], see `prehend glove devices`: what has an emulator is\n"
-                 "emulated unless a port is given, HOST:PORT for datagrams");
-  app.add_option("--camera", demo.camera, "SOURCE[:PATH], see `prehend camera sources`");
+  add_devices(app, demo);
   app.add_option("--mode", mode, "direct: the mapping does not use what is recognised")
       ->check(CLI::IsMember({"direct", "intelligent"}));
   app.add_option("--timeout", demo.timeout, "s until it ends without a grasp")
       ->check(CLI::Range(1.0, 3600.0));
   app.add_option("--record", demo.record, "record all topics into this file");
-  app.add_flag("--attach", demo.attach, "start nothing, judge the lab that runs");
+  add_task(app);
+  auto* watch =
+      app.add_flag("--watch", demo.watch, "with a page that shows it (console.port), until Ctrl-C");
+  app.add_flag("--attach", demo.attach, "start nothing, judge the lab that runs")->excludes(watch);
   app.add_flag("--keep", demo.keep, "keep scene and logs");
   app.add_flag("--json", json, "one JSON document on standard output");
   app.add_flag("--quiet", quiet, "no progress");
-  app.add_option("--seeds", seeds, "A..B: a table over several seeds")->excludes(seed);
+  app.add_option("--seeds", seeds, "A..B: a table over several seeds")->excludes(seed, watch);
   app.add_flag("--compare-direct", series.compare_direct,
                "with --seeds: each once more with direct mapping");
   if (const auto code = parse(app, arguments)) return *code;
@@ -428,10 +562,15 @@ int demo_command(const std::vector<std::string>& arguments) {
       return complain({"must be A..B", "--seeds " + seeds, ""}, exit_wrong_use);
     return run_series(demo, series, progress);
   }
+  const auto show = [&](const Outcome& outcome) {
+    screen.clear();
+    std::cout << (json ? to_json(outcome) + "\n" : to_table(outcome)) << std::flush;
+  };
+  if (demo.watch) demo.on_outcome = show;
   const auto outcome = demonstrate(demo, progress);
   screen.clear();
   if (!outcome) return complain(outcome.error().error, outcome.error().exit_code);
-  std::cout << (json ? to_json(*outcome) + "\n" : to_table(*outcome)) << std::flush;
+  if (!demo.watch) show(*outcome);
   return outcome->grasp.held ? exit_done : exit_no;
 }
 

@@ -16,6 +16,8 @@ const std::vector<Tool>& tools() {
       {"replay", "prehend-replay", "a file back to topics"},
       {"check", "prehend-check", "do services still answer as recorded"},
       {"recording", "prehend-recording", "what is in recordings, parts of them, comparisons"},
+      {"console", "prehend-console", "the lab in a browser"},
+      {"ros", "prehend-ros", "tell nodes of ROS 2, without a bridge, what the hand does"},
       {"glove", "prehend-glove-tool", "calibrate, register and watch a glove; decode, emulate"},
       {"camera", "prehend-camera", "calibrate a camera with a chessboard"},
       {"objects", "prehend-objects", "train, detect and evaluate object models"},
@@ -23,10 +25,12 @@ const std::vector<Tool>& tools() {
       {"train", "prehend-train", "train a mapping model for a robot hand"},
       {"study", "prehend-study", "repeat the thesis's experiments and the grasp benchmark"},
       {"benchmark", "prehend-benchmark", "judge any mapping by the benchmark's takes"},
-      {"demonstration", "prehend-demonstration", "train and evaluate the recognition of grasps"},
-      {"tasks", "prehend-tasks", "tasks that were shown: list, show, check"},
+      {"demonstration", "prehend-demonstration-tool", "train and evaluate the recognition of grasps"},
+      {"demonstrate", "prehend-demonstrate", "show the lab a task"},
+      {"tasks", "prehend-tasks", "tasks that were shown: list, show, check, run"},
       {"hand", "prehend-hand", "is this URDF a usable hand; make it one"},
       {"arm", "prehend-arm", "is this URDF a usable arm; make it one; inverse kinematics"},
+      {"robot", "prehend-robot-tool", "a robot at the end of a wire: emulate, check, home, status"},
       {"grasp", "prehend-grasp", "plan grasps, export them, quality of given contacts"},
   };
   return table;

@@ -222,5 +222,30 @@ TEST(Observer, AServiceIsUpWhileItSaysSo) {
   EXPECT_FALSE(observer.is_up("mapping"));
 }
 
+v1::ArmState arm_state(double speed, v1::ArmHindrance hindrance) {
+  v1::ArmState message;
+  message.velocity({0.1, -speed});
+  message.hindrance(hindrance);
+  return message;
+}
+
+TEST(Observer, OfAnArmTellsTheFastestJointAndHowLongItWasHindered) {
+  Observer observer;
+  observer.hear(arm_state(1, v1::HINDRANCE_REACH));
+  EXPECT_FALSE(observer.outcome().arm) << "of which nobody told";
+  observer.expect_arm("puma560", {1, 2});
+  observer.hear(arm_state(0.5, v1::HINDRANCE_NONE));
+  observer.hear(arm_state(1.5, v1::HINDRANCE_ON_THE_WAY));
+  observer.hear(arm_state(1.0, v1::HINDRANCE_REACH));
+  observer.hear(arm_state(0.5, v1::HINDRANCE_NO_WISH));
+  observer.hear(report("Talc", true, 5));
+  observer.hear(arm_state(2, v1::HINDRANCE_COLLISION));  // another story
+  const auto arm = observer.outcome().arm;
+  ASSERT_TRUE(arm);
+  EXPECT_EQ(arm->name, "puma560");
+  EXPECT_EQ(arm->worst_joint_speed, 0.75);
+  EXPECT_EQ(arm->out_of_reach, 0.25);
+}
+
 }  // namespace
 }  // namespace prehend::cli

@@ -48,6 +48,15 @@ TEST(Outcome, DocumentOfAHeldObject) {
   EXPECT_EQ(document["glove"]["rejected"], 2);
 }
 
+TEST(Outcome, AnArmIsToldWhereThereIsOne) {
+  Outcome outcome = held();
+  EXPECT_FALSE(json::parse(to_json(outcome)).contains("arm"));
+  outcome.arm = {"puma560", 0.75, 0.125};
+  const json arm = json::parse(to_json(outcome))["arm"];
+  EXPECT_EQ(arm, json({{"name", "puma560"}, {"worst_joint_speed", 0.75}, {"out_of_reach", 0.125}}));
+  EXPECT_NE(to_table(outcome).find("puma560"), std::string::npos);
+}
+
 TEST(Outcome, UnknownIsNull) {
   Outcome outcome;
   const json nothing = json::parse(to_json(outcome));

@@ -130,10 +130,13 @@ TEST(Topics, WhatHasNoKeyKeepsAll) {
 }
 
 // What a stolen key must not be able to do.
-TEST(Topics, NobodyButMappingAndReplayersMovesTheRobot) {
+TEST(Topics, NobodyButMappingPerformersAndReplayersMovesTheRobot) {
   for (const auto& [role, name] : role_names)
-    EXPECT_EQ(may_write(role, robot_command), role == Role::mapping || role == Role::replayer)
+    EXPECT_EQ(may_write(role, robot_command),
+              role == Role::mapping || role == Role::performer || role == Role::replayer)
         << name;
+  // Who watches a demonstration moves nothing.
+  EXPECT_FALSE(may_write(Role::demonstration, robot_command));
   for (const TopicInfo& topic : topic_table)
     EXPECT_FALSE(may_write(Role::viewer, topic)) << topic.name;
   EXPECT_FALSE(may_write(Role::mapping, glove_frame));
@@ -141,7 +144,8 @@ TEST(Topics, NobodyButMappingAndReplayersMovesTheRobot) {
 
 // `check` feeds inputs and compares outputs: an output that nobody computes could not be compared.
 TEST(Topics, EveryServiceTurnsInputsIntoOutputs) {
-  for (const Role role : {Role::glove, Role::recognition, Role::mapping, Role::simulation}) {
+  for (const Role role :
+       {Role::glove, Role::recognition, Role::mapping, Role::simulation, Role::demonstration}) {
     const auto any = [&](auto is) {
       return std::ranges::any_of(topic_table,
                                  [&](const TopicInfo& topic) { return is(role, topic); });

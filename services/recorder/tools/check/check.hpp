@@ -17,7 +17,7 @@ namespace prehend::recorder {
 
 /// Roles that `check` runs and compares: services of ours whose answers follow from their inputs.
 inline constexpr std::array checkable{dds::Role::glove, dds::Role::recognition, dds::Role::mapping,
-                                      dds::Role::simulation};
+                                      dds::Role::simulation, dds::Role::demonstration};
 
 struct CheckOptions {
   std::filesystem::path file;
