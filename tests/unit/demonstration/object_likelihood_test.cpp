@@ -114,7 +114,7 @@ TEST(Judge, ErrorsAreFewerOnceTheObjectIsKnown) {
 }
 
 TEST(Judge, SaysWhatIsMissingWhereNoObjectIsKnown) {
-  const auto takes = test::made_takes({.people = 2, .trials = 2});
+  const auto takes = test::made_takes({.people = 3, .trials = 2});
   const auto results = judge(
       takes, nullptr, {}, 1, [](std::size_t, std::size_t) {}, true);
   ASSERT_TRUE(results[0].trouble);

@@ -20,9 +20,8 @@ constexpr int joints_a_finger = 4;
 constexpr int points_a_segment = 6;
 
 // How much a hand minds (standard deviations).
-constexpr double tip_error = 0.001;                      // m
-constexpr double joint_error = 0.35;                     // rad
-constexpr double place_error = 0.02, turn_error = 0.26;  // m, rad, of the object
+constexpr double tip_error = 0.001;   // m
+constexpr double joint_error = 0.35;  // rad
 constexpr int iterations = 15;
 constexpr double difference = 1e-5;  // rad or m, for derivatives
 constexpr double damping = 1e-3;
@@ -80,11 +79,11 @@ void wrap(const model::HumanHand& hand, model::Finger finger, const Bending& ben
 class Comfort {
  public:
   Comfort(const model::HumanHand& hand, const Held& comfortable,
-          const std::vector<TipPlace>& places, bool object_moves)
-      : hand_(hand), comfortable_(comfortable), places_(places), object_moves_(object_moves) {}
+          const std::vector<TipPlace>& places, const Slack& slack)
+      : hand_(hand), comfortable_(comfortable), places_(places), slack_(slack) {}
 
   Index joints() const { return joints_a_finger * static_cast<Index>(places_.size()); }
-  Index size() const { return joints() + (object_moves_ ? 6 : 0); }
+  Index size() const { return joints() + 6; }
 
   Held held(const VectorXd& x) const {
     Held made = comfortable_;
@@ -92,7 +91,6 @@ class Comfort {
       made.posture.segment<joints_a_finger>(first_joint(places_[i].finger)) +=
           x.segment<joints_a_finger>(joints_a_finger * static_cast<Index>(i));
     made.posture = hand_.clamp(made.posture);
-    if (!object_moves_) return made;
     const Vector3d turn = x.tail<3>();
     made.X_HO.pretranslate(x.segment<3>(joints()));
     if (turn.norm() > 1e-12) made.X_HO.rotate(Eigen::AngleAxisd(turn.norm(), turn.normalized()));
@@ -111,9 +109,8 @@ class Comfort {
       at += 3;
     }
     made.segment(at, joints()) = x.head(joints()) / joint_error;
-    if (!object_moves_) return made;
-    made.segment<3>(at + joints()) = x.segment<3>(joints()) / place_error;
-    made.tail<3>() = x.tail<3>() / turn_error;
+    made.segment<3>(at + joints()) = x.segment<3>(joints()).cwiseQuotient(slack_.place_H);
+    made.tail<3>() = x.tail<3>() / slack_.turn;
     return made;
   }
 
@@ -121,7 +118,7 @@ class Comfort {
   const model::HumanHand& hand_;
   const Held& comfortable_;
   const std::vector<TipPlace>& places_;
-  bool object_moves_;
+  const Slack& slack_;
 };
 
 }  // namespace
@@ -136,8 +133,8 @@ HumanPosture wrapped(const model::HumanHand& hand, const HumanPosture& from, con
 }
 
 Held pinched(const model::HumanHand& hand, const Held& comfortable,
-             const std::vector<TipPlace>& places, bool object_moves) {
-  const Comfort comfort(hand, comfortable, places, object_moves);
+             const std::vector<TipPlace>& places, const Slack& slack) {
+  const Comfort comfort(hand, comfortable, places, slack);
   VectorXd x = VectorXd::Zero(comfort.size());
   for (int n = 0; n < iterations; ++n) {
     const VectorXd now = comfort.minded(x);

@@ -29,10 +29,16 @@ struct Held {
   Pose X_HO = Pose::Identity();
 };
 
-/// Fingertips reach their places, as near to a comfortable posture as they can, and with the object
-/// as near to a comfortable place (if it moves at all): damped least squares. Joints keep their
-/// limits, so a tip may stay short of its place.
+/// How far an object readily is from where it is comfortable.
+struct Slack {
+  Eigen::Vector3d place_H = Eigen::Vector3d::Constant(0.02);  // m
+  double turn = 0.26;                                         // rad
+};
+
+/// Fingertips reach their places, as near to a comfortable posture and with the object as near to a
+/// comfortable place as they can: damped least squares. Joints keep their limits, so a tip may stay
+/// short of its place.
 Held pinched(const model::HumanHand& hand, const Held& comfortable,
-             const std::vector<TipPlace>& places, bool object_moves = true);
+             const std::vector<TipPlace>& places, const Slack& slack);
 
 }  // namespace prehend::demonstration

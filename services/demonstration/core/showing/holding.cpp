@@ -30,7 +30,12 @@ constexpr double spread_from = 0.04, spread_to = 0.12;  // m, widths
 constexpr std::array in_row{0.015, 0.030, 0.010, -0.010, -0.030};
 constexpr std::array around_four{0.0, 0.9, 0.3, -0.3, -0.9};
 constexpr std::array around_two{0.0, 0.5, -0.5, 0.0, 0.0};
+constexpr std::array around_palm{2.1, 0.75, 0.2, -0.35, -0.9};  // from the fingers' direction
+constexpr double beyond = 0.35;                                 // rad, the middle of a sphere
 constexpr std::array share_of_spread{0.0, 1.0, 0.1, -0.6, -1.2};
+
+/// What fills the palm slides along it, what the thumb presses on a finger along that.
+const Slack in_palm{{0.03, 0.015, 0.004}, 0.15}, on_finger{{0.015, 0.002, 0.015}, 0.15};
 
 double width_of(const Shape& shape) {
   return 2 * model::half_extents(shape).x();
@@ -52,11 +57,13 @@ HumanPosture preshaped(const HumanHand& hand, const GraspClass& kind, const Shap
   HumanPosture made = HumanHand::open_posture();
   HumanPosture idle = HumanHand::posture({0.3, manner.curl, manner.curl, manner.curl, manner.curl});
   if (kind.opposition == Opposition::side) made = idle;
-  if (kind.opposition == Opposition::pad) made = HumanHand::posture({0.4, 0.35, 0.35, 0.35, 0.35});
+  const bool around = kind.form == GraspForm::circular;
+  if (kind.opposition == Opposition::pad || around)
+    made = HumanHand::posture({0.4, 0.35, 0.35, 0.35, 0.35});
   for (int f = 1; f < model::finger_count; ++f) {
     const auto finger = static_cast<Finger>(f);
     if (!takes_part(kind, finger)) joints_of(made, finger) = joints_of(idle, finger);
-    if (kind.form == GraspForm::circular)
+    if (around)
       joints_of(made, finger)[0] = max_spread * spread_for(shape) * manner.row *
                                    share_of_spread[static_cast<std::size_t>(f)];
   }
@@ -72,14 +79,17 @@ Matrix3d bar_in_palm(double oblique) {
   return Eigen::AngleAxisd(-oblique, Vector3d::UnitZ()).toRotationMatrix() * R;
 }
 
-Held in_palm(const HumanHand& hand, const GraspClass& kind, const Shape& shape,
-             const Manner& manner) {
-  const bool bar = kind.form == GraspForm::prismatic;
-  const Vector3d half = model::half_extents(shape);
-  const double depth = bar ? half.y() : half.z();
-  const Matrix3d R = bar ? bar_in_palm(manner.oblique) : Matrix3d::Identity();
+/// Of an object that is so deep, half of it.
+Vector3d place_in_palm(const HumanHand& hand, double half_depth, const Manner& manner) {
   const Vector3d p = hand.scale() * Vector3d(palm_middle, -0.005, palm) + manner.place_H;
-  const Pose X_HO = make_pose(p - depth * Vector3d::UnitZ(), R);
+  return p - half_depth * Vector3d::UnitZ();
+}
+
+/// A bar.
+Held wrapped_in_palm(const HumanHand& hand, const GraspClass& kind, const Shape& shape,
+                     const Manner& manner) {
+  const Pose X_HO = make_pose(place_in_palm(hand, model::half_extents(shape).y(), manner),
+                              bar_in_palm(manner.oblique));
   return {wrapped(hand, preshaped(hand, kind, shape, manner), manner.bending, shape, X_HO), X_HO};
 }
 
@@ -119,7 +129,31 @@ Held at_fingertips(const HumanHand& hand, const GraspClass& kind, const Shape& s
     R_GO << 0, 1, 0, 1, 0, 0, 0, 0, -1;
   Pose X_HO = hand.X_HG() * Pose(Eigen::Quaterniond(R_GO));
   X_HO.pretranslate(manner.place_H);
-  return pinched(hand, {posture, X_HO}, places_on(hand, kind, shape, manner, R_GO));
+  return pinched(hand, {posture, X_HO}, places_on(hand, kind, shape, manner, R_GO), Slack{});
+}
+
+/// Fingertips and thumb stand around what fills the palm: on the rim of a disk, beyond the middle
+/// of a sphere, as deep on what is longer.
+Held around_in_palm(const HumanHand& hand, const GraspClass& kind, const Shape& shape,
+                    const Manner& manner) {
+  const double half = model::half_extents(shape).z(), radius = 0.5 * width_of(shape);
+  const Pose X_HO = make_pose(place_in_palm(hand, half, manner));
+  const double away = radius + pad * hand.scale();
+  const bool sphere = shape.kind == ShapeKind::sphere;
+  // How far the tips are below its middle.
+  const double depth = sphere
+                           ? away * std::sin(beyond)
+                           : std::clamp(radius * (1 + std::sin(beyond)) - half, -half, 0.5 * half);
+  const double out = sphere ? away * std::cos(beyond) : away;
+  std::vector<TipPlace> places;
+  for (int f = 0; f < model::finger_count; ++f) {
+    const double angle =
+        (f == 0 ? around_palm[0] : around_palm[static_cast<std::size_t>(f)] * manner.row) +
+        manner.reach_round;
+    places.push_back(
+        {static_cast<Finger>(f), {out * std::cos(angle), out * std::sin(angle), -depth}});
+  }
+  return pinched(hand, {preshaped(hand, kind, shape, manner), X_HO}, places, in_palm);
 }
 
 /// The thumb presses something flat on the side of the bent index finger.
@@ -136,7 +170,7 @@ Held at_the_side(const HumanHand& hand, const GraspClass& kind, const Shape& sha
   R_HO << 0, 0, 1, 1, 0, 0, 0, 1, 0;
   const Pose X_HO = make_pose(p_H, R_HO);
   const Vector3d thumb(0.5 * width_of(shape) + pad * hand.scale(), 0, 0);
-  return pinched(hand, {posture, X_HO}, {{Finger::thumb, thumb}}, false);
+  return pinched(hand, {posture, X_HO}, {{Finger::thumb, thumb}}, on_finger);
 }
 
 }  // namespace
@@ -150,7 +184,8 @@ Held holding(const HumanHand& hand, const GraspClass& kind, const Shape& shape,
              const Manner& manner) {
   switch (kind.opposition) {
     case Opposition::palm:
-      return in_palm(hand, kind, shape, manner);
+      return kind.form == GraspForm::circular ? around_in_palm(hand, kind, shape, manner)
+                                              : wrapped_in_palm(hand, kind, shape, manner);
     case Opposition::pad:
       return at_fingertips(hand, kind, shape, manner);
     case Opposition::side:
