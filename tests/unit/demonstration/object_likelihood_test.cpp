@@ -13,31 +13,8 @@ namespace {
 
 using model::ShapeKind;
 
-/// A hand whose thumb and fingers are so far apart.
-HandSample apart(double distance) {
-  HandSample made;
-  for (std::size_t f = 0; f < made.p_thumb_tip_W.size(); ++f)
-    made.p_thumb_tip_W[f] = {distance, 0.02 * static_cast<double>(f), 0.001};
-  return made;
-}
-
 model::Shape ball(double radius) {
   return {ShapeKind::sphere, Eigen::Vector3d::Constant(radius)};
-}
-
-/// Fingertips stand on balls («on») or around them, beyond their middle («around»); balls are of
-/// the same sizes.
-std::vector<Take> balls(Random& random, int count) {
-  std::vector<Take> made;
-  for (int n = 0; n < count; ++n) {
-    const double radius = random.uniform(0.02, 0.05);
-    const bool on = n % 2 == 0;
-    Take take{.user = "1", .task = "1", .label = on ? "on" : "around"};
-    take.samples.push_back(apart(radius * (on ? 2 : 1.2) * std::exp(random.normal(0.05))));
-    take.object = ball(radius);
-    made.push_back(take);
-  }
-  return made;
 }
 
 std::vector<const Take*> each_of(const std::vector<Take>& takes) {
@@ -46,50 +23,51 @@ std::vector<const Take*> each_of(const std::vector<Take>& takes) {
   return made;
 }
 
-TEST(ObjectLikelihood, OfAnObjectAloneIsHowOftenAndOfWhichSize) {
+/// Small and large balls, by turns.
+std::vector<Take> balls(int count) {
   Random random(1);
-  std::vector<Take> takes;
-  for (int n = 0; n < 40; ++n) {
-    takes.push_back({.label = n % 2 == 0 ? "small" : "large", .samples = {apart(0.05)}});
-    takes.back().object = ball(std::exp(random.normal(0.1)) * (n % 2 == 0 ? 0.01 : 0.05));
+  std::vector<Take> made;
+  for (int n = 0; n < count; ++n) {
+    made.push_back({.label = n % 2 == 0 ? "small" : "large", .samples = {}});
+    made.back().object = ball(std::exp(random.normal(0.1)) * (n % 2 == 0 ? 0.01 : 0.05));
   }
-  const auto made =
-      ObjectLikelihood::learn(each_of(takes), {"large", "never", "small"}, Beside::nothing);
+  return made;
+}
+
+TEST(ObjectLikelihood, IsHowOftenAKindGoesWithSuchAShapeAndSize) {
+  const auto takes = balls(40);
+  const auto made = ObjectLikelihood::learn(each_of(takes), {"large", "never", "small"});
   ASSERT_TRUE(made) << made.error().message();
-  const Eigen::VectorXd p = made->of(ball(0.011), apart(0.05));
+  const Eigen::VectorXd p = made->of(ball(0.011));
   EXPECT_GT(p[2], 20 * p[0]);
   EXPECT_GT(p.minCoeff(), 0) << "nothing is impossible";
-  const Eigen::VectorXd box = made->of({ShapeKind::box, {0.02, 0.03, 0.05}}, apart(0.05));
+  const Eigen::VectorXd box = made->of({ShapeKind::box, {0.02, 0.03, 0.05}});
   EXPECT_NEAR(box[0], box[2], 1e-12) << "nobody grasped one";
+  EXPECT_GT(box[1], box[0]) << "of what nobody showed everything is possible";
 }
 
-TEST(ObjectLikelihood, BesideAHandTellsKindsThatGoWithTheSameObjects) {
-  Random random(2);
-  const auto takes = balls(random, 100), others = balls(random, 100);
-  const auto right = [&](Beside beside) {
-    const auto made = ObjectLikelihood::learn(each_of(takes), {"around", "on"}, beside);
-    int count = 0;
-    for (const Take& take : others) {
-      const Eigen::VectorXd p = made->of(*take.object, take.samples.back());
-      count += (p[1] > p[0]) == (take.label == "on");
-    }
-    return count;
-  };
-  EXPECT_GE(right(Beside::hand), 97);
-  EXPECT_LE(right(Beside::nothing), 70);
+TEST(ObjectLikelihood, IsADensity) {
+  // Over all shapes and sizes that one kind may go with, the probabilities sum to 1.
+  const auto takes = balls(40);
+  const auto made = ObjectLikelihood::learn(each_of(takes), {"large", "small"});
+  double sum = 0;
+  const double step = 0.01;
+  for (double x = -15; x < 9; x += step) {
+    const double size = std::exp(x);
+    sum += step * made->of(ball(size))[0];
+  }
+  EXPECT_NEAR(sum, (20 + 0.5) / (20 + 1.5), 1e-3) << "the share of spheres";
 }
 
-TEST(ObjectLikelihood, NeedsObjectsAndBearsFewTakesAndUnknownNumbers) {
-  Random random(3);
-  auto takes = balls(random, 6);
-  takes[0].samples[0].p_thumb_tip_W[2].setConstant(unknown_number);
-  const auto few = ObjectLikelihood::learn(each_of(takes), {"around", "on"}, Beside::hand);
+TEST(ObjectLikelihood, NeedsObjectsAndBearsFewTakes) {
+  auto takes = balls(4);
+  const auto few = ObjectLikelihood::learn(each_of(takes), {"large", "small"});
   ASSERT_TRUE(few);
-  const Eigen::VectorXd p = few->of(ball(0.03), takes[0].samples[0]);
-  EXPECT_TRUE(p.allFinite());
+  const Eigen::VectorXd p = few->of(ball(0.03));
   EXPECT_GT(p.minCoeff(), 0);
+  EXPECT_NEAR(p[0], p[1], 1e-12) << "too few to say how large such objects are";
   for (Take& take : takes) take.object.reset();
-  const auto none = ObjectLikelihood::learn(each_of(takes), {"around", "on"}, Beside::hand);
+  const auto none = ObjectLikelihood::learn(each_of(takes), {"large", "small"});
   ASSERT_FALSE(none);
   EXPECT_FALSE(none.error().hint.empty());
 }
@@ -106,11 +84,9 @@ TEST(Judge, ErrorsAreFewerOnceTheObjectIsKnown) {
   ASSERT_FALSE(results[0].trouble);
   const double without = accuracy(results[0].methods.at(Method::posture));
   EXPECT_LT(without, 0.97) << "or there is nothing to mend";
-  for (const auto& [beside, answers] : results[0].with_object) {
-    EXPECT_EQ(answers.at(Method::posture).size(), takes.size());
-    EXPECT_GT(accuracy(answers.at(Method::posture)), without);
-  }
-  EXPECT_EQ(results[0].with_object.size(), 2u);
+  const auto& told = results[0].with_object.at(Method::posture);
+  EXPECT_EQ(told.size(), takes.size());
+  EXPECT_GT(accuracy(told), without);
 }
 
 TEST(Judge, SaysWhatIsMissingWhereNoObjectIsKnown) {

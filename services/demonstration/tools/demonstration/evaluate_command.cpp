@@ -85,15 +85,12 @@ Json document_of(const TaskResult& result, Method method, const std::vector<Judg
     if (bin.count > 0)
       made["reliability"].push_back({{"said", bin.said}, {"held", bin.held}, {"count", bin.count}});
   made["confusion"] = confusion(grasps, result.classes.size());
-  for (const auto& [beside, answers] : result.with_object) {
-    const auto& told = answers.at(method);
-    made["with_object"][beside == Beside::hand ? "beside_hand" : "alone"] = {
-        {"accuracy", accuracy(told)},
-        {"brier", brier(told)},
-        {"errors", errors_of(told)},
-        {"errors_without", errors_of(grasps)},
-        {"fewer_errors", fewer(grasps, told)}};
-  }
+  if (const auto told = result.with_object.find(method); told != result.with_object.end())
+    made["with_object"] = {{"accuracy", accuracy(told->second)},
+                           {"brier", brier(told->second)},
+                           {"errors", errors_of(told->second)},
+                           {"errors_without", errors_of(grasps)},
+                           {"fewer_errors", fewer(grasps, told->second)}};
   return made;
 }
 
@@ -145,17 +142,13 @@ void print_methods(const TaskResult& result, const std::string& families) {
 }
 
 void print_objects(const TaskResult& result) {
-  fmt::print(
-      "\n| object known | its shape and size | errors fewer | and how the hand closes on it | "
-      "errors fewer |\n|---|---|---|---|---|\n");
+  fmt::print("\n| object known | right | Brier | errors fewer |\n|---|---|---|---|\n");
   for (const Method method : methods) {
-    const auto without = result.methods.find(method);
-    if (without == result.methods.end()) continue;
-    fmt::print("| {} |", to_string(method));
-    for (const auto& [beside, answers] : result.with_object)
-      fmt::print(" {:.1f} % | {:.0f} % |", 100 * accuracy(answers.at(method)),
-                 100 * fewer(without->second, answers.at(method)));
-    fmt::print("\n");
+    const auto told = result.with_object.find(method);
+    if (told == result.with_object.end()) continue;
+    fmt::print("| {} | {:.1f} % | {:.3f} | {:.0f} % |\n", to_string(method),
+               100 * accuracy(told->second), brier(told->second),
+               100 * fewer(result.methods.at(method), told->second));
   }
 }
 

@@ -4,6 +4,7 @@
 #include <set>
 
 #include "common/base/workers.hpp"
+#include "services/demonstration/core/recognition/object_likelihood.hpp"
 
 namespace prehend::demonstration {
 
@@ -14,7 +15,7 @@ struct Job {
   std::size_t task = 0;  // index of the result
   std::vector<const Take*> training, judged;
   std::map<Method, std::vector<Judged>> methods;
-  std::map<Beside, std::map<Method, std::vector<Judged>>> with_object;
+  std::map<Method, std::vector<Judged>> with_object;
   std::optional<Error> trouble;
 };
 
@@ -56,20 +57,18 @@ std::vector<Judged> told_object(std::vector<Judged> judged, const std::vector<co
                                 const ObjectLikelihood& likelihood) {
   for (std::size_t i = 0; i < judged.size(); ++i) {
     const Take& take = *takes[i];
-    if (!take.object || take.samples.empty()) continue;
+    if (!take.object) continue;
     Distribution& answer = judged[i].answer;
-    answer = with_prior(answer, likelihood.of(*take.object, take.samples.back())).value_or(answer);
+    answer = with_prior(answer, likelihood.of(*take.object)).value_or(answer);
   }
   return judged;
 }
 
 Expected<void> tell_objects(Job& job, const std::vector<std::string>& classes) {
-  for (const Beside beside : {Beside::nothing, Beside::hand}) {
-    const auto likelihood = ObjectLikelihood::learn(job.training, classes, beside);
-    if (!likelihood) return tl::unexpected(likelihood.error());
-    for (const auto& [method, judged] : job.methods)
-      job.with_object[beside][method] = told_object(judged, job.judged, *likelihood);
-  }
+  const auto likelihood = ObjectLikelihood::learn(job.training, classes);
+  if (!likelihood) return tl::unexpected(likelihood.error());
+  for (const auto& [method, judged] : job.methods)
+    job.with_object[method] = told_object(judged, job.judged, *likelihood);
   return {};
 }
 
@@ -94,7 +93,7 @@ void collect(Job& job, TaskResult& result) {
   };
   if (job.trouble) result.trouble = job.trouble;
   append(job.methods, result.methods);
-  for (auto& [beside, judged] : job.with_object) append(judged, result.with_object[beside]);
+  append(job.with_object, result.with_object);
 }
 
 std::vector<std::string> classes_of(const std::vector<const Take*>& takes,

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "common/base/error.hpp"
-#include "services/demonstration/core/recognition/object_likelihood.hpp"
 #include "services/demonstration/core/recognition/recogniser.hpp"
 #include "services/demonstration/tools/evaluation/judged.hpp"
 #include "services/demonstration/tools/training/trainer.hpp"
@@ -19,8 +18,7 @@ struct TaskResult {
   std::string task;
   std::vector<std::string> classes;
   std::map<Method, std::vector<Judged>> methods;
-  /// The same takes, where the object is known; by what is looked at beside it.
-  std::map<Beside, std::map<Method, std::vector<Judged>>> with_object;
+  std::map<Method, std::vector<Judged>> with_object;  // the same takes, where the object is known
   std::optional<Error> trouble;  // why there are no answers
 };
 
