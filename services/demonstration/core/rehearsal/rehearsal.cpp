@@ -5,28 +5,16 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
-
-#include "common/model/placement.hpp"
 
 namespace prehend::demonstration {
 
 namespace {
 
-using Eigen::AngleAxisd;
-using Eigen::Vector3d;
-
 constexpr int steps_a_command = 5;    // 100 Hz, as robot/state
 constexpr double max_step_time = 60;  // s
 constexpr int more_tries = 2;         // once one grasp has done it, for a better one
-constexpr double sure = 0.5;          // of what is permitted: no other grasp needs to be tried
-constexpr double same_place = 0.01, same_turn = 0.1;  // m, rad: no other grasp
-constexpr double beside = 0.003, aslant = 0.035;      // m, rad (2°), that a hand may stand off
-
-Pose turned(double degrees, const Pose& X_OG) {
-  const AngleAxisd turn(degrees * std::numbers::pi / 180, Vector3d::UnitZ());
-  return Pose(turn) * X_OG;
-}
+constexpr double sure = 0.25;         // of what is permitted: no other grasp needs to be tried
+constexpr double beside = 0.003, aslant = 0.035;  // m, rad (2°), that a hand may stand off
 
 /// One step as a task of its own.
 TaskModel alone(const TaskModel& task, std::size_t step) {
@@ -124,32 +112,6 @@ Expected<Tried> best_trial(const model::HandModel& hand, const TaskModel& task,
 }
 
 }  // namespace
-
-std::vector<RobotGrasp> grasp_candidates(const model::HandModel& hand, const model::Shape& shape,
-                                         const Pose& X_OG) {
-  std::vector<Pose> found;
-  const auto offer = [&](const Pose& wanted) {
-    const auto made = model::nearest_grasp(shape, wanted, hand.reach());
-    if (!made || std::any_of(found.begin(), found.end(), [&](const Pose& other) {
-          return (other.translation() - made->translation()).norm() < same_place &&
-                 angle_between(other.linear(), made->linear()) < same_turn;
-        }))
-      return;
-    found.push_back(*made);
-  };
-  offer(X_OG);
-  for (const double turn : {30, -30, 60, -60, 90, -90, 180}) offer(turned(turn, X_OG));
-  const Vector3d y = X_OG.linear().col(1);
-  const Vector3d closing = Vector3d(y.x(), y.y(), 0).norm() > 1e-6
-                               ? Vector3d(y.x(), y.y(), 0).normalized()
-                               : Vector3d::UnitX().eval();
-  const Pose above = make_pose(Vector3d::Zero(), model::grasp_axes(-Vector3d::UnitZ(), closing));
-  for (const double turn : {0, 90, 45, -45}) offer(turned(turn, above));
-  std::vector<RobotGrasp> made;
-  for (const Pose& X : found)
-    made.push_back({X * hand.X_BG().inverse(), hand.postures().at("open")});
-  return made;
-}
 
 Places places_of(const grasping::World& world) {
   Places made;
