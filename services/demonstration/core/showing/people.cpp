@@ -52,7 +52,7 @@ constexpr double yaw_sigma = 0.26;      // rad, of takes
 constexpr double rate = 100;                       // Hz
 constexpr double median_time = 0.133;              // s, of real people's takes
 constexpr double time_sigma = 0.7, longest = 0.6;  // logarithm, s
-constexpr double max_open = 0.3;                  // of its way: a finger at first touch
+constexpr double max_open = 0.3;                   // of its way: a finger at first touch
 constexpr double usual_speed = 0.1, end_speed = 0.03, speed_sigma = 0.5;  // m/s, logarithm
 constexpr double sensor_place = 0.003;  // m, a sensor beside the fingertip
 constexpr double noise = 0.0015;        // m, of a fingertip

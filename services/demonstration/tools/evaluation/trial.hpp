@@ -19,7 +19,7 @@ struct TaskResult {
   std::vector<std::string> classes;
   std::map<Method, std::vector<Judged>> methods;
   std::map<Method, std::vector<Judged>> with_object;  // the same takes, where the object is known
-  std::optional<Error> trouble;  // why there are no answers
+  std::optional<Error> trouble;                       // why there are no answers
 };
 
 /// Takes by task, in order of name.
