@@ -1,0 +1,56 @@
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/model/hand_model.hpp"
+#include "services/recorder/core/dataset/episodes.hpp"
+
+namespace prehend::recorder::dataset {
+
+/// How an orientation is written: as a unit quaternion (w, x, y, z; its sign does not jump), or as
+/// the first two columns of its matrix, which no sign and no jump can spoil.
+enum class Turns { quaternion, columns };
+
+/// Whose a feature is.
+enum class About { robot, arm, human, object };
+
+using Table = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+/// Numbers of every row.
+struct Feature {
+  std::string name;
+  About about = About::robot;
+  std::vector<std::string> columns;
+  Table values;  // a row a moment
+};
+
+/// An episode at a fixed rate.
+struct Rows {
+  Eigen::Index count = 0;
+  /// Values of all DoFs and the pose of the hand's base, as they are and as they are commanded.
+  Feature state, action;
+  Table rate;    // of the state, a second
+  Table effort;  // of the drives, N m, and 0 for the base; no column: not known
+  std::vector<Feature> others;
+  /// By camera: which of its pictures is the newest in each row.
+  std::map<std::string, std::vector<std::size_t>> pictures;
+};
+
+struct RowOptions {
+  double rate = 30;  // Hz
+  Turns turns = Turns::quaternion;
+  const model::HandModel* hand = nullptr;  // where it is known: names, fingertips
+};
+
+/// A topic that begins later in an episode is not in it; others cut its beginning.
+inline constexpr Duration max_wait = std::chrono::seconds(1);
+
+/// The episode at a fixed rate, from the moment at which everything in it had been told. Fails on
+/// an episode without the hand's state, and on one of less than two rows.
+Expected<Rows> make_rows(const RecordingLog& log, const Episode& episode,
+                         const RowOptions& options);
+
+}  // namespace prehend::recorder::dataset
