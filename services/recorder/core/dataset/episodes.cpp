@@ -44,8 +44,7 @@ std::vector<Episode> of_judgements(const RecordingLog& log) {
     if (i + 1 < log.judgements.size()) end = std::min(end, log.judgements[i + 1].time);
     // Judged before anybody led the hand: what is transient local stands at the beginning.
     if (judgement.time <= begin) continue;
-    episodes.push_back(
-        {begin, end, "grasp " + judgement.object, judgement.object, judgement.held});
+    episodes.push_back({begin, end, "grasp " + judgement.object, judgement.object, judgement.held});
     begin = end;
   }
   return episodes;

@@ -65,8 +65,7 @@ Table scaled(const Table& values, const Statistics& range) {
   for (Eigen::Index column = 0; column < values.cols(); ++column) {
     const double low = range.min[column], width = range.max[column] - low;
     if (width <= 0) continue;
-    all.col(column) =
-        (2 * (values.col(column).array() - low) / width - 1).cwiseMax(-1).cwiseMin(1);
+    all.col(column) = (2 * (values.col(column).array() - low) / width - 1).cwiseMax(-1).cwiseMin(1);
   }
   return all;
 }

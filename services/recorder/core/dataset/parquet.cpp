@@ -169,8 +169,7 @@ void write_schema(ThriftWriter& footer, const std::vector<Column>& columns) {
   }
 }
 
-void write_chunk(ThriftWriter& footer, const Column& column, std::size_t offset,
-                 std::size_t size) {
+void write_chunk(ThriftWriter& footer, const Column& column, std::size_t offset, std::size_t size) {
   footer.element();
   footer.integer(2, static_cast<std::int64_t>(offset), true);
   footer.begin(3);

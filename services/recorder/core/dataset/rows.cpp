@@ -148,8 +148,8 @@ class RowMaker {
 
   void add(std::string name, About about, Columns columns, const Numbers& series) {
     if (width(series) == 0 || !there(series.times)) return;
-    rows_.others.push_back({std::move(name), about, std::move(columns),
-                            table([&](Time t) { return at(series, t); })});
+    rows_.others.push_back(
+        {std::move(name), about, std::move(columns), table([&](Time t) { return at(series, t); })});
   }
 
   /// In W, of the measured joints.
@@ -159,18 +159,18 @@ class RowMaker {
     Columns columns;
     for (const auto& tip : hand->fingertips())
       for (const char* axis : {".x", ".y", ".z"}) columns.push_back(tip.name + axis);
-    rows_.others.push_back(
-        {"fingertips", About::robot, columns, table([&](Time t) {
-           const auto X_BL = hand->link_poses(at(log_.joint, t));
-           const Pose X_WB = at(log_.X_WB, t);
-           Eigen::VectorXd all(static_cast<Eigen::Index>(columns.size()));
-           Eigen::Index i = 0;
-           for (const auto& tip : hand->fingertips()) {
-             all.segment<3>(i) = X_WB * X_BL[static_cast<std::size_t>(tip.link)] * tip.p_LT;
-             i += 3;
-           }
-           return all;
-         })});
+    rows_.others.push_back({"fingertips", About::robot, columns, table([&](Time t) {
+                              const auto X_BL = hand->link_poses(at(log_.joint, t));
+                              const Pose X_WB = at(log_.X_WB, t);
+                              Eigen::VectorXd all(static_cast<Eigen::Index>(columns.size()));
+                              Eigen::Index i = 0;
+                              for (const auto& tip : hand->fingertips()) {
+                                all.segment<3>(i) =
+                                    X_WB * X_BL[static_cast<std::size_t>(tip.link)] * tip.p_LT;
+                                i += 3;
+                              }
+                              return all;
+                            })});
   }
 
   /// The joint that leads each DoF, where that is known.
@@ -191,15 +191,15 @@ class RowMaker {
     const Eigen::Index last = rows_.count - 1;
     rows_.rate = Table::Zero(rows_.count, state.cols());
     for (Eigen::Index row = 0; row <= last; ++row) {
-      const Eigen::Index before = std::max<Eigen::Index>(row - 1, 0), after = std::min(row + 1, last);
+      const Eigen::Index before = std::max<Eigen::Index>(row - 1, 0),
+                         after = std::min(row + 1, last);
       rows_.rate.row(row) = (state.row(after) - state.row(before)) * options_.rate /
                             static_cast<double>(after - before);
     }
     const auto lead = leads(dofs);
     const auto fits = [&](const Numbers& series) {
-      return !lead.empty() && std::ranges::all_of(lead, [&](Eigen::Index joint) {
-        return joint < width(series);
-      });
+      return !lead.empty() &&
+             std::ranges::all_of(lead, [&](Eigen::Index joint) { return joint < width(series); });
     };
     const bool velocity = fits(log_.velocity), torque = fits(log_.torque);
     if (torque) rows_.effort = Table::Zero(rows_.count, state.cols());

@@ -14,16 +14,16 @@ constexpr auto precision = Hdf5File::Precision::single;
 
 /// Pictures as they were compressed, each row filled up with zeros to the longest. Returns their
 /// true lengths.
-Expected<std::vector<double>> compressed(const RecordedEpisode& recorded,
-                                         const std::string& camera, Hdf5File& file) {
+Expected<std::vector<double>> compressed(const RecordedEpisode& recorded, const std::string& camera,
+                                         Hdf5File& file) {
   std::map<std::size_t, std::vector<std::uint8_t>> pictures;  // by place
   std::size_t longest = 1;
-  auto read = read_pictures(recorded, camera,
-                            [&](std::size_t place, std::vector<std::uint8_t> bytes) {
-                              longest = std::max(longest, bytes.size());
-                              pictures[place] = std::move(bytes);
-                              return Expected<void>();
-                            });
+  auto read =
+      read_pictures(recorded, camera, [&](std::size_t place, std::vector<std::uint8_t> bytes) {
+        longest = std::max(longest, bytes.size());
+        pictures[place] = std::move(bytes);
+        return Expected<void>();
+      });
   if (!read) return tl::unexpected(read.error());
   if (pictures.empty()) return fail("no picture of " + camera, recorded.file.string());
   const auto& places = recorded.rows.pictures.at(camera);
@@ -67,11 +67,10 @@ Expected<void> write_pictures(const Dataset& dataset, const RecordedEpisode& rec
     }
     const auto lengths_of_camera = compressed(recorded, name, file);
     if (!lengths_of_camera) return tl::unexpected(lengths_of_camera.error());
-    lengths.row(camera++) = Eigen::Map<const Eigen::RowVectorXd>(lengths_of_camera->data(),
-                                                                 recorded.rows.count);
+    lengths.row(camera++) =
+        Eigen::Map<const Eigen::RowVectorXd>(lengths_of_camera->data(), recorded.rows.count);
   }
-  if (!dataset.sized && !dataset.cameras.empty())
-    file.write("/compress_len", lengths, precision);
+  if (!dataset.sized && !dataset.cameras.empty()) file.write("/compress_len", lengths, precision);
   return {};
 }
 
@@ -87,8 +86,7 @@ Expected<void> write_episode(const Dataset& dataset, const RecordedEpisode& reco
     file->write("/observations/" + feature.name, feature.values, precision);
   file->write("/action", rows.action.values, precision);
   if (auto done = write_pictures(dataset, recorded, *file); !done) return done;
-  // Whose world it was is not recorded; what is simulated tells where everything is.
-  file->attribute("/", "sim", false);
+  file->attribute("/", "sim", recorded.simulated);
   file->attribute("/", "compress", !dataset.sized && !dataset.cameras.empty());
   file->attribute("/", "task", recorded.episode.task);
   file->attribute("/", "recording", recorded.file.filename().string());

@@ -55,11 +55,11 @@ class Gatherer {
     std::size_t made = 0;
     for (Episode& episode : episodes) {
       if (!episode.object.empty()) episode.object = as_name(episode.object);
-      auto rows = make_rows(log, episode,
-                            {.rate = options_.rate,
-                             .turns = options_.turns == "columns" ? Turns::columns
-                                                                  : Turns::quaternion,
-                             .hand = hand_ ? &*hand_ : nullptr});
+      auto rows =
+          make_rows(log, episode,
+                    {.rate = options_.rate,
+                     .turns = options_.turns == "columns" ? Turns::columns : Turns::quaternion,
+                     .hand = hand_ ? &*hand_ : nullptr});
       if (!options_.task.empty()) episode.task = options_.task;
       if (!rows) {
         gathered_.passed_by.push_back({rows.error().what, file.string(), "", exit_no});
@@ -96,7 +96,7 @@ class Gatherer {
 
   void keep(const std::filesystem::path& file, const RecordingLog& log, Episode episode,
             Rows rows) {
-    RecordedEpisode kept{file, std::move(episode), std::move(rows), {}};
+    RecordedEpisode kept{file, std::move(episode), std::move(rows), {}, log.simulated};
     for (const auto& [name, camera] : log.cameras) {
       kept.picture_times[name] = camera.times;
       gathered_.dataset.cameras.emplace(name, Size{camera.width, camera.height});

@@ -70,8 +70,7 @@ struct Hdf5File::State {
     const Handle groups(H5Pcreate(H5P_LINK_CREATE), H5Pclose);
     H5Pset_create_intermediate_group(groups, 1);
     const Handle space = space_of(dimensions);
-    Handle made(H5Dcreate2(file, dataset.c_str(), type, space, groups, how, H5P_DEFAULT),
-                H5Dclose);
+    Handle made(H5Dcreate2(file, dataset.c_str(), type, space, groups, how, H5P_DEFAULT), H5Dclose);
     check(made >= 0);
     return made;
   }
@@ -89,8 +88,8 @@ struct Hdf5File::State {
   void attribute(const std::string& group, const std::string& key, hid_t type, const Handle& space,
                  const void* value) {
     if (failed) return;
-    const Handle made(H5Acreate_by_name(file, group.c_str(), key.c_str(), type, space,
-                                        H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
+    const Handle made(H5Acreate_by_name(file, group.c_str(), key.c_str(), type, space, H5P_DEFAULT,
+                                        H5P_DEFAULT, H5P_DEFAULT),
                       H5Aclose);
     check(made >= 0 && H5Awrite(made, type, value) >= 0);
   }
@@ -100,8 +99,7 @@ Expected<Hdf5File> Hdf5File::create(const std::filesystem::path& path) {
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // what goes wrong is said by our errors
   auto state = std::make_unique<State>();
   state->name = path.string();
-  state->file =
-      Handle(H5Fcreate(path.c_str(), H5F_ACC_EXCL, H5P_DEFAULT, H5P_DEFAULT), H5Fclose);
+  state->file = Handle(H5Fcreate(path.c_str(), H5F_ACC_EXCL, H5P_DEFAULT, H5P_DEFAULT), H5Fclose);
   if (state->file < 0) return fail("cannot be written", path.string());
   return Hdf5File(std::move(state));
 }
@@ -112,13 +110,11 @@ Hdf5File& Hdf5File::operator=(Hdf5File&&) noexcept = default;
 Hdf5File::~Hdf5File() = default;
 
 void Hdf5File::write(const std::string& name, const Table& values, Precision precision) {
-  state_->numbers(name,
-                  {static_cast<hsize_t>(values.rows()), static_cast<hsize_t>(values.cols())},
+  state_->numbers(name, {static_cast<hsize_t>(values.rows()), static_cast<hsize_t>(values.cols())},
                   values.data(), precision);
 }
 
-void Hdf5File::write(const std::string& name, const Eigen::VectorXd& values,
-                     Precision precision) {
+void Hdf5File::write(const std::string& name, const Eigen::VectorXd& values, Precision precision) {
   state_->numbers(name, {static_cast<hsize_t>(values.size())}, values.data(), precision);
 }
 
@@ -132,8 +128,7 @@ void Hdf5File::write(const std::string& name, const std::vector<std::string>& te
   H5Tset_size(type, length);
   H5Tset_strpad(type, H5T_STR_NULLPAD);
   const Handle made = state_->create(name, type, {texts.size()}, H5P_DEFAULT);
-  state_->check(made >= 0 &&
-                H5Dwrite(made, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, all.data()) >= 0);
+  state_->check(made >= 0 && H5Dwrite(made, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, all.data()) >= 0);
 }
 
 void Hdf5File::begin_bytes(const std::string& name, const std::vector<std::size_t>& shape,

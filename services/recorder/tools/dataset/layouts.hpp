@@ -20,9 +20,10 @@ Expected<void> write_robomimic(const Dataset& dataset, const std::filesystem::pa
 Expected<void> write_aloha(const Dataset& dataset, const std::filesystem::path& folder,
                            const Written& written);
 
-enum class LerobotVersion { v21, v30 };
-/// A folder of Parquet, mp4 and JSON.
+/// A folder of Parquet, mp4 and JSON: many episodes a file, or as version 2.1 wants it, one.
 Expected<void> write_lerobot(const Dataset& dataset, const std::filesystem::path& folder,
-                             LerobotVersion version, const Written& written);
+                             const Written& written);
+Expected<void> write_lerobot_v21(const Dataset& dataset, const std::filesystem::path& folder,
+                                 const Written& written);
 
 }  // namespace prehend::recorder::dataset

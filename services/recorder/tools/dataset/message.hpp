@@ -22,7 +22,8 @@ std::optional<Eigen::VectorXd> numbers(const Value& message, std::string_view fi
 std::optional<Eigen::Vector3d> vector(const Value& message, std::string_view field);
 std::optional<Pose> pose(const Value& message, std::string_view field);
 
-/// Keys of topics become names of columns, groups and files: what cannot stand in all of these is «_».
+/// Keys of topics become names of columns, groups and files: what cannot stand in all of these is
+/// «_».
 std::string as_name(std::string key);
 
 }  // namespace prehend::recorder::dataset

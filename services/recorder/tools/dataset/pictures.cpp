@@ -74,12 +74,12 @@ Expected<void> read_pictures(
   const auto log_time = [&](std::size_t place) {
     return static_cast<std::uint64_t>(to_ns(times[place]));
   };
-  auto cursor = reader->messages(
-      {log_time(places.front()), log_time(places.back()),
-       [&](const recording::mcap::Channel& channel) {
-         const auto topic = recording::recorded_topic(channel, reader->contents());
-         return topic.end.empty() && topic.name == "camera/image";
-       }});
+  auto cursor = reader->messages({log_time(places.front()), log_time(places.back()),
+                                  [&](const recording::mcap::Channel& channel) {
+                                    const auto topic =
+                                        recording::recorded_topic(channel, reader->contents());
+                                    return topic.end.empty() && topic.name == "camera/image";
+                                  }});
   std::size_t done = 0;  // places that were taken, or are behind
   while (true) {
     const auto next = cursor.next();
@@ -90,8 +90,8 @@ Expected<void> read_pictures(
     const auto value = type ? recording::types::decode(*type, message.data)
                             : Expected<Value>(fail("its type is not described"));
     if (!value || as_name(text(*value, "camera")) != camera) continue;
-    const auto time = std::ranges::lower_bound(
-        times, from_ns(static_cast<std::int64_t>(message.log_time)));
+    const auto time =
+        std::ranges::lower_bound(times, from_ns(static_cast<std::int64_t>(message.log_time)));
     const auto place = static_cast<std::size_t>(time - times.begin());
     if (place < done || !std::ranges::binary_search(places, place)) continue;
     done = place + 1;
@@ -111,8 +111,7 @@ Expected<void> read_rows(const RecordedEpisode& episode, const std::string& came
   // Rows before the picture show the one before it.
   const auto write_until = [&](std::size_t place) -> Expected<void> {
     for (; row < places.size() && places[row] < place; ++row) {
-      if (!now)
-        return fail("no picture of " + camera + " can be decoded", episode.file.string());
+      if (!now) return fail("no picture of " + camera + " can be decoded", episode.file.string());
       if (auto taken = take(*now); !taken) return taken;
     }
     return {};

@@ -31,11 +31,11 @@ class LogTaker {
   using Take = bool (LogTaker::*)(const Value&, Time);
   static const std::map<std::string, Take, std::less<>>& topics() {
     static const std::map<std::string, Take, std::less<>> table{
-        {"robot/command", &LogTaker::command},     {"robot/state", &LogTaker::state},
-        {"arm/state", &LogTaker::arm},             {"hand/posture", &LogTaker::posture},
-        {"object/state", &LogTaker::body},         {"object/detection", &LogTaker::detection},
-        {"camera/image", &LogTaker::image},        {"grasp/report", &LogTaker::report},
-        {"task/progress", &LogTaker::progress},    {"operator/command", &LogTaker::order}};
+        {"robot/command", &LogTaker::command},  {"robot/state", &LogTaker::state},
+        {"arm/state", &LogTaker::arm},          {"hand/posture", &LogTaker::posture},
+        {"object/state", &LogTaker::body},      {"object/detection", &LogTaker::detection},
+        {"camera/image", &LogTaker::image},     {"grasp/report", &LogTaker::report},
+        {"task/progress", &LogTaker::progress}, {"operator/command", &LogTaker::order}};
     return table;
   }
 
@@ -88,8 +88,7 @@ class LogTaker {
     if (arm_.empty()) arm_ = name;
     if (arm_ != name) return true;
     const auto joint = numbers(message, "joint"), velocity = numbers(message, "velocity");
-    if (!joint || !velocity || !fits(log_.arm_joint, *joint) ||
-        !fits(log_.arm_velocity, *velocity))
+    if (!joint || !velocity || !fits(log_.arm_joint, *joint) || !fits(log_.arm_velocity, *velocity))
       return false;
     log_.arm_joint.add(time, *joint);
     log_.arm_velocity.add(time, *velocity);
@@ -122,7 +121,10 @@ class LogTaker {
     objects[as_name(text(message, name))].add(time, *X_WO);
     return true;
   }
-  bool body(const Value& message, Time time) { return place(log_.objects, message, "body", time); }
+  bool body(const Value& message, Time time) {
+    log_.simulated = true;
+    return place(log_.objects, message, "body", time);
+  }
   bool detection(const Value& message, Time time) { return place(seen_, message, "name", time); }
 
   bool image(const Value& message, Time time) {
@@ -218,14 +220,13 @@ class Messages {
 };
 
 /// The hand that is meant: the given one, or the only one that got commands.
-Expected<std::string> hand_of(Reader& reader, const std::string& file,
-                              const std::string& wanted) {
+Expected<std::string> hand_of(Reader& reader, const std::string& file, const std::string& wanted) {
   std::set<std::string> hands;
   Messages(reader).read([](const std::string& topic) { return topic == "robot/command"; },
-                [&](const std::string&, const Value& message, Time) {
-                  hands.insert(text(message, "hand"));
-                  return true;
-                });
+                        [&](const std::string&, const Value& message, Time) {
+                          hands.insert(text(message, "hand"));
+                          return true;
+                        });
   std::string names;
   for (const std::string& hand : hands) names += (names.empty() ? "" : ", ") + printable(hand);
   if (hands.empty())
@@ -248,11 +249,10 @@ Expected<ReadLog> read_log(const std::filesystem::path& file, const std::string&
 
   Messages messages(*reader);
   LogTaker taker(*name);
-  messages.read(
-      [](const std::string& topic) { return LogTaker::topics().contains(topic); },
-      [&](const std::string& topic, const Value& message, Time time) {
-        return (taker.*LogTaker::topics().find(topic)->second)(message, time);
-      });
+  messages.read([](const std::string& topic) { return LogTaker::topics().contains(topic); },
+                [&](const std::string& topic, const Value& message, Time time) {
+                  return (taker.*LogTaker::topics().find(topic)->second)(message, time);
+                });
   ReadLog read{taker.finish(), reader->contents().damage};
   for (Error& error : messages.damage()) read.damage.push_back(std::move(error));
   if (read.log.command_dof.empty())

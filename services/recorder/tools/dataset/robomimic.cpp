@@ -92,10 +92,10 @@ class RobomimicWriter {
                           const std::string& name, bool next) {
     const Size size = dataset_.cameras.at(camera);
     const auto count = static_cast<std::size_t>(recorded.rows.count);
-    file_.begin_bytes(name,
-                      {count, static_cast<std::size_t>(size.height),
-                       static_cast<std::size_t>(size.width), 3},
-                      true);
+    file_.begin_bytes(
+        name,
+        {count, static_cast<std::size_t>(size.height), static_cast<std::size_t>(size.width), 3},
+        true);
     std::size_t row = 0;
     auto read = read_rows(recorded, camera, size, [&](const Rgb& picture) -> Expected<void> {
       if (!next || row > 0) file_.add_bytes(picture.bytes);
@@ -111,10 +111,7 @@ class RobomimicWriter {
   /// (2: an environment in Gym's manner), its description says `env_type`.
   std::string environment() const {
     const Json arguments{{"hand", dataset_.hand}, {"rate", dataset_.rate}};
-    return Json{{"env_name", "prehend"},
-                {"type", 2},
-                {"env_type", 2},
-                {"env_kwargs", arguments}}
+    return Json{{"env_name", "prehend"}, {"type", 2}, {"env_type", 2}, {"env_kwargs", arguments}}
         .dump();
   }
 

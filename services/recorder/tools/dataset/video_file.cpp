@@ -46,8 +46,7 @@ Expected<void> VideoFile::State::begin(Size size, int rate) {
   encoder->gop_size = 2;
   encoder->max_b_frames = 0;
   encoder->thread_count = 1;  // the same bytes on every machine
-  if (container->oformat->flags & AVFMT_GLOBALHEADER)
-    encoder->flags |= AV_CODEC_FLAG_GLOBAL_HEADER;
+  if (container->oformat->flags & AVFMT_GLOBALHEADER) encoder->flags |= AV_CODEC_FLAG_GLOBAL_HEADER;
   av_opt_set(encoder->priv_data, "preset", "veryfast", 0);
   av_opt_set(encoder->priv_data, "crf", "20", 0);
   if (done = avcodec_open2(encoder.get(), codec, nullptr); done < 0)

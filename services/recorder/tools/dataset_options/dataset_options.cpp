@@ -8,7 +8,7 @@
 namespace prehend::recorder {
 namespace {
 
-constexpr double min_rate = 1, max_rate = 1000;  // Hz
+constexpr double min_rate = 1, max_rate = 1000;    // Hz
 constexpr int min_extent = 16, max_extent = 4096;  // px
 
 }  // namespace
@@ -33,9 +33,9 @@ void add_dataset_options(CLI::App& app, DatasetOptions& options) {
 }
 
 std::vector<std::string> to_arguments(const DatasetOptions& options) {
-  std::vector<std::string> all{"--format", options.format, "--output", options.output,
-                               "--rate",   fmt::format("{}", options.rate),
-                               "--turns",  options.turns};
+  std::vector<std::string> all{"--format",     options.format, "--output",
+                               options.output, "--rate",       fmt::format("{}", options.rate),
+                               "--turns",      options.turns};
   const auto add = [&](const char* name, const std::string& value) {
     if (!value.empty()) all.insert(all.end(), {name, value});
   };
