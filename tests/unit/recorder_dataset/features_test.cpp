@@ -32,8 +32,9 @@ TEST(Features, StatisticsOfPartsAreThoseOfTheWhole) {
   std::srand(1);
   const Table all = Table::Random(100, 3) * 5;
   const Statistics whole = statistics(all);
-  const Statistics parts = together({statistics(all.topRows(10)), statistics(all.middleRows(10, 60)),
-                                     statistics(all.bottomRows(30))});
+  const Statistics parts =
+      together({statistics(all.topRows(10)), statistics(all.middleRows(10, 60)),
+                statistics(all.bottomRows(30))});
   EXPECT_EQ(parts.count, 100u);
   EXPECT_TRUE(parts.min.isApprox(whole.min));
   EXPECT_TRUE(parts.max.isApprox(whole.max));

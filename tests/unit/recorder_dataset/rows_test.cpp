@@ -41,9 +41,8 @@ TEST(Rows, StateAndActionHaveTheSameColumns) {
   const auto rows = make_rows(lead_for(500), episode_of(0, 500), {.rate = 50});
   ASSERT_TRUE(rows);
   EXPECT_EQ(rows->state.columns, rows->action.columns);
-  EXPECT_THAT(rows->state.columns,
-              ElementsAre("dof0", "dof1", "base.x", "base.y", "base.z", "base.qw", "base.qx",
-                          "base.qy", "base.qz"));
+  EXPECT_THAT(rows->state.columns, ElementsAre("dof0", "dof1", "base.x", "base.y", "base.z",
+                                               "base.qw", "base.qx", "base.qy", "base.qz"));
   EXPECT_EQ(rows->state.values.cols(), 9);
   EXPECT_EQ(rows->rate.cols(), 9);
 }
@@ -75,8 +74,9 @@ TEST(Rows, SignsOfQuaternionsDoNotJump) {
   RecordingLog log = lead_for(4000);
   log.X_WB = {};
   for (int t = 0; t <= 4000; t += 20)
-    log.X_WB.add(ms(t), make_pose({0, 0, 0}, Eigen::AngleAxisd(t * 2e-3, Eigen::Vector3d::UnitZ())
-                                                 .toRotationMatrix()));
+    log.X_WB.add(
+        ms(t), make_pose({0, 0, 0},
+                         Eigen::AngleAxisd(t * 2e-3, Eigen::Vector3d::UnitZ()).toRotationMatrix()));
   const auto rows = make_rows(log, episode_of(0, 4000), {.rate = 50});
   ASSERT_TRUE(rows);
   // cos and sin of half the angle all the way, past half a turn, where Eigen's own sign jumps.
@@ -90,8 +90,9 @@ TEST(Rows, SignsOfQuaternionsDoNotJump) {
 TEST(Rows, TurnsAsColumns) {
   RecordingLog log = lead_for(500);
   log.X_WB = {};
-  log.X_WB.add(ms(0), make_pose({0, 0, 0}, Eigen::AngleAxisd(0.5, Eigen::Vector3d::UnitZ())
-                                               .toRotationMatrix()));
+  log.X_WB.add(
+      ms(0),
+      make_pose({0, 0, 0}, Eigen::AngleAxisd(0.5, Eigen::Vector3d::UnitZ()).toRotationMatrix()));
   const auto rows = make_rows(log, episode_of(0, 500), {.rate = 10, .turns = Turns::columns});
   ASSERT_TRUE(rows);
   ASSERT_EQ(rows->state.values.cols(), 11);
@@ -115,11 +116,12 @@ TEST(Rows, RatesOfWhatNobodyMeasuresAreDifferences) {
 TEST(Rows, KnowAHandByItsModel) {
   const model::HandModel& hand = test::hand("barrett");
   RecordingLog log;
-  const Eigen::VectorXd dof = 0.5 * hand.postures().at("open") + Eigen::VectorXd::Constant(
-      static_cast<Eigen::Index>(hand.dofs().size()), 0.3);
+  const Eigen::VectorXd dof =
+      0.5 * hand.postures().at("open") +
+      Eigen::VectorXd::Constant(static_cast<Eigen::Index>(hand.dofs().size()), 0.3);
   const Eigen::VectorXd joint = hand.joint_angles(hand.clamp(dof));
-  const Pose X_WB = make_pose({0.1, 0.2, 0.3}, Eigen::AngleAxisd(1, Eigen::Vector3d::UnitX())
-                                                   .toRotationMatrix());
+  const Pose X_WB =
+      make_pose({0.1, 0.2, 0.3}, Eigen::AngleAxisd(1, Eigen::Vector3d::UnitX()).toRotationMatrix());
   Eigen::VectorXd torque = Eigen::VectorXd::LinSpaced(joint.size(), 1, 2);
   for (int t = 0; t <= 500; t += 50) {
     log.command_dof.add(ms(t), hand.clamp(dof));

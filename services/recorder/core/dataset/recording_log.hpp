@@ -40,9 +40,10 @@ struct RecordingLog {
   Numbers dof, joint, velocity, torque;
   Poses X_WB;
   Numbers arm_joint, arm_velocity;
-  Numbers human_fingertips;              // m, in W: x, y, z of thumb to little finger
-  std::map<std::string, Poses> objects;  // X_WO by name
-  bool simulated = false;                // a world said where they are
+  std::vector<std::string> human_fingers;  // that the glove measures
+  Numbers human_fingertips;                // m, in W: x, y, z of each of them
+  std::map<std::string, Poses> objects;    // X_WO by name
+  bool simulated = false;                  // a world said where they are
   std::map<std::string, Camera> cameras;
   std::vector<Judgement> judgements;
   std::vector<Attempt> runs;   // by the robot

@@ -61,6 +61,7 @@ class RowMaker {
     const double duration = to_seconds(episode_.end - begin_);
     rows_.count = static_cast<Eigen::Index>(std::floor(duration * options_.rate + 1e-6)) + 1;
     if (duration <= 0 || rows_.count < 2) return fail("an episode is shorter than two rows");
+    rows_.begin = begin_;
     hand();
     around();
     for (const auto& [name, camera] : log_.cameras) {
@@ -216,8 +217,8 @@ class RowMaker {
     add("arm_position", About::arm, names("arm", width(log_.arm_joint)), log_.arm_joint);
     add("arm_velocity", About::arm, names("arm", width(log_.arm_velocity)), log_.arm_velocity);
     Columns tips;
-    for (const char* finger : {"thumb", "index", "middle", "ring", "little"})
-      for (const char* axis : {".x", ".y", ".z"}) tips.push_back(std::string(finger) + axis);
+    for (const std::string& finger : log_.human_fingers)
+      for (const char* axis : {".x", ".y", ".z"}) tips.push_back(finger + axis);
     add("human_fingertips", About::human, tips, log_.human_fingertips);
     if (const auto found = log_.objects.find(episode_.object); found != log_.objects.end())
       add_object("object", found->second);

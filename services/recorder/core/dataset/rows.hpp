@@ -29,6 +29,7 @@ struct Feature {
 
 /// An episode at a fixed rate.
 struct Rows {
+  Time begin;  // of the first row
   Eigen::Index count = 0;
   /// Values of all DoFs and the pose of the hand's base, as they are and as they are commanded.
   Feature state, action;

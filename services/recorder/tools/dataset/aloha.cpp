@@ -90,6 +90,8 @@ Expected<void> write_episode(const Dataset& dataset, const RecordedEpisode& reco
   file->attribute("/", "compress", !dataset.sized && !dataset.cameras.empty());
   file->attribute("/", "task", recorded.episode.task);
   file->attribute("/", "recording", recorded.file.filename().string());
+  file->attribute("/", "begin_ns", static_cast<std::int64_t>(to_ns(rows.begin)));
+  file->attribute("/", "rate", Eigen::VectorXd::Constant(1, dataset.rate));
   if (recorded.episode.success) file->attribute("/", "success", *recorded.episode.success);
   return file->close();
 }

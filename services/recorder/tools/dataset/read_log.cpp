@@ -7,6 +7,7 @@
 #include <set>
 
 #include "common/base/printable.hpp"
+#include "common/model/human_hand.hpp"
 #include "common/recording/compare/recorded_topic.hpp"
 #include "services/recorder/tools/dataset/message.hpp"
 
@@ -95,22 +96,29 @@ class LogTaker {
     return true;
   }
 
-  /// Of the first glove that is heard, where all five fingertips are known.
+  /// Of the first glove that is heard; the fingers that it measures at first, whenever it does.
   bool posture(const Value& message, Time time) {
     const std::string glove = text(message, "glove");
     if (glove_.empty()) glove_ = glove;
     const auto X_WH = pose(message, "X_WH");
     const Value* tips = message.find("fingertips");
     const auto* list = tips ? std::get_if<Value::List>(&tips->content) : nullptr;
-    if (!X_WH || !list || list->size() != 5) return false;
+    if (!X_WH || !list || list->size() != model::finger_count) return false;
     if (glove_ != glove) return true;
-    Eigen::VectorXd all(15);
-    for (std::size_t i = 0; i < 5; ++i) {
+    std::vector<std::string> fingers;
+    std::vector<double> numbers;
+    for (std::size_t i = 0; i < list->size(); ++i) {
       const auto p_HF = vector((*list)[i], "p_HF");
-      if (!flag((*list)[i], "valid") || !p_HF) return true;
-      all.segment<3>(static_cast<Eigen::Index>(3 * i)) = *X_WH * *p_HF;
+      if (!flag((*list)[i], "valid") || !p_HF) continue;
+      fingers.emplace_back(model::finger_names.name(static_cast<model::Finger>(i)));
+      const Eigen::Vector3d p_WF = *X_WH * *p_HF;
+      numbers.insert(numbers.end(), p_WF.begin(), p_WF.end());
     }
-    log_.human_fingertips.add(time, all);
+    if (log_.human_fingertips.empty()) log_.human_fingers = fingers;
+    if (fingers == log_.human_fingers && !fingers.empty())
+      log_.human_fingertips.add(
+          time, Eigen::Map<const Eigen::VectorXd>(numbers.data(),
+                                                  static_cast<Eigen::Index>(numbers.size())));
     return true;
   }
 

@@ -76,6 +76,7 @@ class RobomimicWriter {
     file_.attribute(group, "task", recorded.episode.task);
     file_.attribute(group, "ep_meta", Json{{"lang", recorded.episode.task}}.dump());
     file_.attribute(group, "recording", recorded.file.filename().string());
+    file_.attribute(group, "begin_ns", static_cast<std::int64_t>(to_ns(rows.begin)));
     if (recorded.episode.success) {
       file_.attribute(group, "success", success);
       masks_[success ? "success" : "failure"].push_back(name);
