@@ -29,8 +29,8 @@ TEST(Episodes, OneAJudgedGrasp) {
   const auto episodes = find_episodes(log);
   ASSERT_EQ(episodes.size(), 3u);
   EXPECT_EQ(episodes[0].begin, ms(0));
-  EXPECT_EQ(episodes[0].end, ms(2600));  // the next judgement comes before the tail is over
-  EXPECT_EQ(episodes[1].begin, ms(2600));
+  EXPECT_EQ(episodes[0].end, ms(2300));  // the next judgement comes before the tail is over
+  EXPECT_EQ(episodes[1].begin, ms(2300));
   EXPECT_EQ(episodes[1].end, ms(3600));
   EXPECT_EQ(episodes[2].begin, ms(3600));
   EXPECT_EQ(episodes[2].end, ms(8000));

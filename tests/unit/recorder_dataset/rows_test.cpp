@@ -67,7 +67,7 @@ TEST(Rows, ShowTheNewestPicture) {
   for (int t = 0; t <= 1000; t += 100) log.cameras["front"].times.push_back(ms(t));
   const auto rows = make_rows(log, episode_of(0, 330), {.rate = 30});
   ASSERT_TRUE(rows);
-  EXPECT_THAT(rows->pictures.at("front"), ElementsAre(0, 0, 0, 1, 1, 1, 2, 2, 2, 2));
+  EXPECT_THAT(rows->pictures.at("front"), ElementsAre(0, 0, 0, 1, 1, 1, 2, 2, 2, 3));
 }
 
 TEST(Rows, SignsOfQuaternionsDoNotJump) {
@@ -156,6 +156,8 @@ TEST(Rows, RefuseWhatIsNoEpisode) {
   RecordingLog log = lead_for(1000);
   EXPECT_FALSE(make_rows(log, episode_of(900, 910), {.rate = 30}));
   EXPECT_FALSE(make_rows(log, episode_of(900, 800), {.rate = 30}));
+  log.command_dof.add(ms(2'000'000'000), Eigen::Vector2d(0, 0));
+  EXPECT_FALSE(make_rows(log, episode_of(0, 2'000'000'000), {.rate = 30}));
   log.dof = {};
   const auto without = make_rows(log, episode_of(0, 1000), {.rate = 30});
   ASSERT_FALSE(without);

@@ -41,9 +41,11 @@ std::vector<Episode> of_judgements(const RecordingLog& log) {
   for (std::size_t i = 0; i < log.judgements.size(); ++i) {
     const Judgement& judgement = log.judgements[i];
     Time end = judgement.time + tail;
-    if (i + 1 < log.judgements.size()) end = std::min(end, log.judgements[i + 1].time);
+    // The other half of the time belongs to the next one.
+    if (i + 1 < log.judgements.size())
+      end = std::min(end, judgement.time + (log.judgements[i + 1].time - judgement.time) / 2);
     // Judged before anybody led the hand: what is transient local stands at the beginning.
-    if (judgement.time <= begin) continue;
+    if (judgement.time <= log.command_dof.times.front()) continue;
     episodes.push_back({begin, end, "grasp " + judgement.object, judgement.object, judgement.held});
     begin = end;
   }

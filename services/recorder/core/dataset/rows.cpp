@@ -61,6 +61,8 @@ class RowMaker {
     const double duration = to_seconds(episode_.end - begin_);
     rows_.count = static_cast<Eigen::Index>(std::floor(duration * options_.rate + 1e-6)) + 1;
     if (duration <= 0 || rows_.count < 2) return fail("an episode is shorter than two rows");
+    if (rows_.count > max_rows)
+      return fail("an episode is of more than a million rows", "", "are its times right?");
     rows_.begin = begin_;
     hand();
     around();

@@ -49,8 +49,11 @@ struct RowOptions {
 /// A topic that begins later in an episode is not in it; others cut its beginning.
 inline constexpr Duration max_wait = std::chrono::seconds(1);
 
+/// Nine hours at 30 Hz: who leads a hand for longer has a clock that jumped.
+inline constexpr Eigen::Index max_rows = 1'000'000;
+
 /// The episode at a fixed rate, from the moment at which everything in it had been told. Fails on
-/// an episode without the hand's state, and on one of less than two rows.
+/// an episode without the hand's state, and on one of less than two rows or more than max_rows.
 Expected<Rows> make_rows(const RecordingLog& log, const Episode& episode,
                          const RowOptions& options);
 

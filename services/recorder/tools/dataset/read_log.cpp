@@ -17,6 +17,8 @@ namespace {
 using recording::mcap::Channel;
 using recording::mcap::Reader;
 
+/// In the year 2223; sums of later times would not be numbers any more.
+constexpr std::uint64_t max_log_time = 8'000'000'000'000'000'000;
 constexpr std::string_view demonstration = "demonstration";  // whom the operator's marks are for
 
 /// Sizes must not change in the middle of a recording.
@@ -208,7 +210,7 @@ class Messages {
       const auto value = type ? recording::types::decode(*type, message.data)
                               : Expected<Value>(fail("its type is not described"));
       const Time time = from_ns(static_cast<std::int64_t>(message.log_time));
-      if (!value || !take(topic, *value, time)) ++unused_[topic];
+      if (message.log_time > max_log_time || !value || !take(topic, *value, time)) ++unused_[topic];
     }
   }
 
