@@ -11,13 +11,11 @@
 namespace prehend::recorder::dataset {
 namespace {
 
-/// A place beside the output; what is left of it when this ends is gone.
+/// A place beside the output, which was not there; what is left of it when this ends is gone.
 class Unfinished {
  public:
-  explicit Unfinished(std::filesystem::path to) : to_(std::move(to)), path_(to_) {
-    path_ += ".unfinished";
-    remove();
-  }
+  explicit Unfinished(std::filesystem::path to) : to_(std::move(to)), path_(of(to_)) {}
+  static std::filesystem::path of(std::filesystem::path to) { return to += ".unfinished"; }
   ~Unfinished() { remove(); }
   Unfinished(const Unfinished&) = delete;
   Unfinished& operator=(const Unfinished&) = delete;
@@ -45,6 +43,9 @@ Expected<void> write(const Dataset& dataset, const DatasetOptions& options) {
   std::error_code problem;
   if (!to.parent_path().empty()) std::filesystem::create_directories(to.parent_path(), problem);
   if (problem) return fail(problem.message(), to.parent_path().string());
+  if (std::filesystem::exists(Unfinished::of(to), problem))
+    return fail("is there already", Unfinished::of(to).string(),
+                "of an export that was killed? remove it", exit_wrong_use);
   Unfinished unfinished(to);
   Progress progress("writing episodes");
   std::size_t done = 0;

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "common/base/log.hpp"
+#include "common/base/printable.hpp"
 #include "common/base/progress.hpp"
 #include "services/recorder/tools/dataset/message.hpp"
 #include "services/recorder/tools/dataset/read_log.hpp"
@@ -89,8 +91,8 @@ class Gatherer {
     if (auto hand = folder ? model::HandModel::load(*folder) : tl::unexpected(folder.error()))
       hand_ = std::move(*hand);
     else
-      gathered_.passed_by.push_back(
-          {"its hand " + model + " is not known: fingertips are left out", file.string(), ""});
+      log::warning("{}: its hand {} is not known here: fingertips are left out", file.string(),
+                   printable(model));
     return {};
   }
 

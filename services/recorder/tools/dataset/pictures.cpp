@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "common/recording/compare/recorded_topic.hpp"
+#include "common/recording/mcap/reader.hpp"
 #include "services/recorder/tools/dataset/ffmpeg.hpp"
 #include "services/recorder/tools/dataset/message.hpp"
 

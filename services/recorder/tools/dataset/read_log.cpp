@@ -1,6 +1,7 @@
 #include "services/recorder/tools/dataset/read_log.hpp"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <functional>
@@ -9,6 +10,7 @@
 #include "common/base/printable.hpp"
 #include "common/model/human_hand.hpp"
 #include "common/recording/compare/recorded_topic.hpp"
+#include "common/recording/mcap/reader.hpp"
 #include "services/recorder/tools/dataset/message.hpp"
 
 namespace prehend::recorder::dataset {
@@ -253,7 +255,11 @@ Expected<std::string> hand_of(Reader& reader, const std::string& file, const std
 
 Expected<ReadLog> read_log(const std::filesystem::path& file, const std::string& hand) {
   auto reader = Reader::open(file);
-  if (!reader) return tl::unexpected(reader.error());
+  if (!reader) {
+    Error error = reader.error();
+    error.exit = ::access(file.c_str(), R_OK) == 0 ? exit_no : exit_broken;
+    return tl::unexpected(std::move(error));
+  }
   const auto name = hand_of(*reader, file.string(), hand);
   if (!name) return tl::unexpected(name.error());
 
