@@ -6,6 +6,8 @@
 #include <gtest/gtest.h>
 
 #include <limits>
+#include <map>
+#include <optional>
 
 #include "services/recorder/service/describe.hpp"
 #include "services/recorder/service/recording_file.hpp"
@@ -25,9 +27,9 @@ Time ms(int t) {
 class ReadLogTest : public ::testing::Test {
  protected:
   void SetUp() override {
-    const Heading heading{{{"lab.rig", "lab"}}, "", describe_types("ros2msg").value()};
+    heading_ = {{{"lab.rig", "lab"}}, "", describe_types("ros2msg").value()};
     file_.emplace(
-        RecordingFile::create(path_, heading, recording::mcap::Compression::zstd).value());
+        RecordingFile::create(path_, heading_, recording::mcap::Compression::zstd).value());
   }
 
   template <class Topic, class Message>
@@ -39,7 +41,10 @@ class ReadLogTest : public ::testing::Test {
     sample.writer[0] = 7;
     sample.sequence = ++sequence_;
     sample.sent = ms(t);
-    ASSERT_TRUE(file_->write(Source{dds::raw_topic(topic), "lab"}, sample, ms(t)));
+    const dds::RawTopic raw = dds::raw_topic(topic);
+    // A source's address stands for it.
+    const Source& source = sources_.try_emplace(raw.name, Source{raw, "lab"}).first->second;
+    ASSERT_TRUE(file_->write(source, sample, ms(t)));
   }
 
   void command(int t, const std::string& hand, std::vector<double> dof,
@@ -63,6 +68,8 @@ class ReadLogTest : public ::testing::Test {
 
   const testing::Scratch scratch_;
   const std::filesystem::path path_ = scratch_ / "a.mcap";
+  Heading heading_;
+  std::map<std::string, Source> sources_;
   std::optional<RecordingFile> file_;
   std::uint64_t sequence_ = 0;
 };

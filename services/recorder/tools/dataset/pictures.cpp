@@ -25,7 +25,7 @@ struct PictureDecoder::State {
 };
 
 PictureDecoder::PictureDecoder() : state_(std::make_unique<State>()) {
-  av_log_set_level(AV_LOG_FATAL);  // what goes wrong is said by our errors
+  av_log_set_level(AV_LOG_QUIET);  // what goes wrong is said by our errors
 }
 PictureDecoder::~PictureDecoder() = default;
 

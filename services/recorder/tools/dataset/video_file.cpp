@@ -82,7 +82,7 @@ Expected<void> VideoFile::State::write_packets() {
 }
 
 Expected<VideoFile> VideoFile::create(const std::filesystem::path& path, Size size, int rate) {
-  av_log_set_level(AV_LOG_FATAL);
+  av_log_set_level(AV_LOG_QUIET);
   auto state = std::make_unique<State>();
   state->name = path.string();
   if (auto begun = state->begin(size, rate); !begun) return tl::unexpected(begun.error());
