@@ -6,12 +6,9 @@
 #include <gtest/gtest.h>
 
 #include <limits>
-#include <map>
 #include <optional>
 
-#include "services/recorder/service/describe.hpp"
-#include "services/recorder/service/recording_file.hpp"
-#include "tests/unit/recording/scratch.hpp"
+#include "tests/unit/recorder_dataset_files/written_recording.hpp"
 
 namespace prehend::recorder::dataset {
 namespace {
@@ -19,59 +16,28 @@ namespace {
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
-constexpr std::int64_t begin_ns = 1'700'000'000'000'000'000;
-Time ms(int t) {
-  return from_ns(begin_ns + t * 1'000'000ll);
-}
-
 class ReadLogTest : public ::testing::Test {
  protected:
-  void SetUp() override {
-    heading_ = {{{"lab.rig", "lab"}}, "", describe_types("ros2msg").value()};
-    file_.emplace(
-        RecordingFile::create(path_, heading_, recording::mcap::Compression::zstd).value());
-  }
+  void SetUp() override { file_.emplace(path_); }
 
   template <class Topic, class Message>
   void write(const Topic& topic, int t, const Message& message) {
-    dds::RawSample sample;
-    sample.kind = dds::RawSample::Kind::data;
-    sample.payload = dds::encode(topic, message);
-    sample.instance[15] = 1;
-    sample.writer[0] = 7;
-    sample.sequence = ++sequence_;
-    sample.sent = ms(t);
-    const dds::RawTopic raw = dds::raw_topic(topic);
-    // A source's address stands for it.
-    const Source& source = sources_.try_emplace(raw.name, Source{raw, "lab"}).first->second;
-    ASSERT_TRUE(file_->write(source, sample, ms(t)));
+    file_->write(topic, t, message);
   }
-
   void command(int t, const std::string& hand, std::vector<double> dof,
                const std::string& model = "barrett") {
-    v2::HandCommand message;
-    message.hand(hand);
-    message.model(model);
-    message.dof(std::move(dof));
-    message.X_WB().orientation().w(1);
-    message.object("Wood cube");
-    write(dds::robot_command, t, message);
+    file_->command(t, hand, std::move(dof), model);
   }
 
   Expected<ReadLog> read(const std::string& hand = "") {
-    if (file_) {
-      EXPECT_TRUE(file_->close());
-      file_.reset();
-    }
+    if (file_) file_->close();
+    file_.reset();
     return read_log(path_, hand);
   }
 
   const testing::Scratch scratch_;
   const std::filesystem::path path_ = scratch_ / "a.mcap";
-  Heading heading_;
-  std::map<std::string, Source> sources_;
-  std::optional<RecordingFile> file_;
-  std::uint64_t sequence_ = 0;
+  std::optional<WrittenRecording> file_;
 };
 
 TEST_F(ReadLogTest, CommandsAndStates) {

@@ -11,7 +11,7 @@
 namespace prehend::recorder::dataset {
 
 /// How an orientation is written: as a unit quaternion (w, x, y, z; its sign does not jump), or as
-/// the first two columns of its matrix, which no sign and no jump can spoil.
+/// the first two columns of its matrix [Zhou2019], which no sign and no jump can spoil.
 enum class Turns { quaternion, columns };
 
 /// Whose a feature is.

@@ -6,7 +6,7 @@
 #include "services/recorder/tools/dataset/layouts.hpp"
 #include "services/recorder/tools/dataset/pictures.hpp"
 
-// The layout: record_episodes.py of https://github.com/tonyzhaozh/aloha
+// [Zhao2023]; the layout: record_episodes.py of https://github.com/tonyzhaozh/aloha
 namespace prehend::recorder::dataset {
 namespace {
 

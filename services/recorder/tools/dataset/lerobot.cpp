@@ -4,7 +4,8 @@
 #include "services/recorder/tools/dataset/lerobot_meta.hpp"
 #include "services/recorder/tools/dataset/lerobot_videos.hpp"
 
-// The layout: LeRobotDataset v3.0, https://huggingface.co/docs/lerobot/lerobot-dataset-v3
+// [Cadene2024]; the layout: LeRobotDataset v3.0,
+// https://huggingface.co/docs/lerobot/lerobot-dataset-v3
 namespace prehend::recorder::dataset {
 namespace {
 

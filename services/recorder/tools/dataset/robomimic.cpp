@@ -6,7 +6,7 @@
 #include "services/recorder/tools/dataset/layouts.hpp"
 #include "services/recorder/tools/dataset/pictures.hpp"
 
-// The layout: https://robomimic.github.io/docs/datasets/overview.html
+// [Mandlekar2021]; the layout: https://robomimic.github.io/docs/datasets/overview.html
 namespace prehend::recorder::dataset {
 namespace {
 
