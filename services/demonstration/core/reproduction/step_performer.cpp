@@ -82,8 +82,11 @@ void StepPerformer::enter(StepPart part, const RobotNow& robot, const Pose& X_WO
       goal_.dof = order_.grasp.preshape;
       return go({raised(goal_.X_WB), raised(before), before, X_WB}, options_.speed, robot);
     }
-    case StepPart::close:
     case StepPart::release:
+      // All let go of their squeeze at once: the last one to do so would push the object away.
+      goal_.dof = hand_.clamp(motors(robot));
+      return;
+    case StepPart::close:
       still_since_ = robot.stamp;
       stood_ = motors(robot);
       return;
