@@ -79,5 +79,5 @@ bool target(const std::string& bytes) {
 
 int main(int argc, char** argv) {
   const std::vector<std::string> seeds{plain("direct-grasp.mcap"), plain("intelligent-grasp.mcap")};
-  return fuzz::run({seeds, fuzz::mutate_bytes, target, 20'000}, argc, argv);
+  return fuzz::run({seeds, fuzz::mutate_bytes, target, 10'000}, argc, argv);
 }
