@@ -4,12 +4,10 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/unit/recorder_dataset/lead.hpp"
+
 namespace prehend::recorder::dataset {
 namespace {
-
-Time ms(int t) {
-  return from_ns(1'700'000'000'000'000'000) + std::chrono::milliseconds(t);
-}
 
 TEST(Series, IsStraightBetweenSamples) {
   Numbers series;
