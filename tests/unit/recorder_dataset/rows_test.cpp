@@ -62,6 +62,20 @@ TEST(Rows, BeginWhenEverythingHasBeenTold) {
   EXPECT_EQ(find(*rows, "object")->values, find(*rows, "object_Cup")->values);
 }
 
+// A person who showed a task is not there any more when the robot does it.
+TEST(Rows, AreWithoutWhatFellSilentBefore) {
+  RecordingLog log = lead_for(5000);
+  for (const int t : {0, 1000}) log.objects["Gone"].add(ms(t), Pose::Identity());
+  for (const int t : {0, 1500}) log.objects["Still"].add(ms(t), Pose::Identity());
+  for (const int t : {0, 2700}) log.objects["Back"].add(ms(t), Pose::Identity());
+  const auto rows = make_rows(log, episode_of(2100, 5000), {.rate = 10});
+  ASSERT_TRUE(rows);
+  EXPECT_EQ(find(*rows, "object_Gone"), nullptr);
+  EXPECT_NE(find(*rows, "object_Still"), nullptr);
+  EXPECT_NE(find(*rows, "object_Back"), nullptr);
+  EXPECT_NEAR(rows->action.values(0, 0), 2.7, 1e-7);
+}
+
 TEST(Rows, ShowTheNewestPicture) {
   RecordingLog log = lead_for(1000);
   for (int t = 0; t <= 1000; t += 100) log.cameras["front"].times.push_back(ms(t));

@@ -1,8 +1,9 @@
 #include "services/recorder/core/dataset/rows.hpp"
 
-#include <array>
+#include <algorithm>
 #include <cmath>
 #include <functional>
+#include <optional>
 
 namespace prehend::recorder::dataset {
 namespace {
@@ -79,15 +80,22 @@ class RowMaker {
     return begin_ + seconds(static_cast<double>(row) / options_.rate);
   }
 
-  // Against where commands and state begin, whatever else is waited for.
-  bool there(const std::vector<Time>& times) const {
-    return !times.empty() && times.front() <= earliest_ + max_wait;
+  /// From when on it is known what a topic says: at once where it was heard shortly before the
+  /// commands and states begin. Nothing: not in this episode.
+  std::optional<Time> known_from(const std::vector<Time>& times) const {
+    if (times.empty()) return std::nullopt;
+    const Time before = times[newest(times, earliest_)];
+    if (before <= earliest_ && before >= earliest_ - max_wait) return earliest_;
+    const auto later = std::ranges::upper_bound(times, earliest_);
+    if (later == times.end() || *later > earliest_ + max_wait) return std::nullopt;
+    return *later;
   }
+  bool there(const std::vector<Time>& times) const { return known_from(times).has_value(); }
 
   void wait_for_others() {
     earliest_ = begin_;
     const auto wait = [&](const std::vector<Time>& times) {
-      if (there(times)) begin_ = std::max(begin_, times.front());
+      begin_ = std::max(begin_, known_from(times).value_or(begin_));
     };
     for (const Numbers* series : {&log_.human_fingertips, &log_.arm_joint}) wait(series->times);
     for (const auto& [name, poses] : log_.objects) wait(poses.times);

@@ -46,7 +46,8 @@ struct RowOptions {
   const model::HandModel* hand = nullptr;  // where it is known: names, fingertips
 };
 
-/// A topic that begins later in an episode is not in it; others cut its beginning.
+/// A topic of which nothing is heard for so long before and after an episode begins is not in it;
+/// one that is heard only then cuts its beginning.
 inline constexpr Duration max_wait = std::chrono::seconds(1);
 
 /// Nine hours at 30 Hz: who leads a hand for longer has a clock that jumped.
