@@ -43,10 +43,11 @@ Expected<Trial> try_step(const model::HandModel& hand, const TaskModel& task,
                          const grasping::World& before, const Shapes& shapes,
                          const RobotGrasp& grasp, const RehearsalOptions& options) {
   Trial made{before.clone(), grasp, {}};
-  auto performer =
-      TaskPerformer::create(hand, task, shapes, places_of(*made.world), {grasp},
-                            {made.world->commanded_base(), made.world->commanded_dof()},
-                            options.performer, options.verdict);
+  PerformerOptions once = options.performer;
+  once.retries = 0;  // a grasp that does it at the first attempt is looked for
+  auto performer = TaskPerformer::create(
+      hand, task, shapes, places_of(*made.world), {grasp},
+      {made.world->commanded_base(), made.world->commanded_dof()}, once, options.verdict);
   if (!performer) return tl::unexpected(performer.error());
   if (auto ok = perform_in(*made.world, *performer, max_step_time); !ok)
     return tl::unexpected(ok.error());
