@@ -20,6 +20,7 @@ constexpr Row rows[]{
     {"stop", OrderKind::stop, "gate", false},
     {"release", OrderKind::release, "gate", true},
     {"record", OrderKind::start, "recorder", true},
+    {"replay", OrderKind::start, "replayer", true},
     {"mode", OrderKind::set_mode, "mapping", true},
     {"show", OrderKind::start, "demonstration", true},
     {"shown", OrderKind::stop, "demonstration", false},
@@ -55,7 +56,7 @@ Expected<Order> read_order(std::string_view body) {
     if (!(std::hypot(made.x, made.y) <= off_table)) return wrong("is for a place beside the table");
     return made;
   }
-  return wrong("is none of stop, release, record, mode, show, shown, lead, place");
+  return wrong("is none of stop, release, record, replay, mode, show, shown, lead, place");
 }
 
 }  // namespace prehend::console

@@ -13,6 +13,9 @@ TEST(Orders, AreThoseOfThePagesButtons) {
   EXPECT_EQ(release->target, "gate");
   EXPECT_EQ(release->argument, "nobody is near");
   EXPECT_TRUE(read_order(R"({"action":"stop"})"));
+  const auto replay = read_order(R"({"action":"replay","argument":"rate 0.5"})");
+  ASSERT_TRUE(replay);
+  EXPECT_EQ(replay->target, "replayer");
   EXPECT_FALSE(read_order(R"({"action":"release"})")) << "it must say why";
   EXPECT_FALSE(read_order(R"({"action":"move","argument":"hand"})"));
   EXPECT_FALSE(read_order(R"({"action":"stop","argument":"a\nb"})"));

@@ -54,7 +54,7 @@ export function showReply(reply) {
 }
 
 // An order that nobody would obey is greyed, and says why. A stop is always given.
-const obeyedBy = { record: "recorder", mode: "mapping", place: "simulation", show: "demonstration" };
+const obeyedBy = { record: "recorder", replay: "replayer", mode: "mapping", place: "simulation", show: "demonstration" };
 export function showWhoObeys({ services }) {
   for (const [action, name] of Object.entries(obeyedBy)) {
     const there = services.some((one) => one.name === name);
@@ -70,7 +70,7 @@ export function setUpOrders() {
   document.getElementById("orders").hidden = false;
   document.getElementById("stop").onclick = () => give("stop", "by the console");
   document.getElementById("shown").onclick = () => give("shown", "");
-  for (const action of ["release", "record", "mode", "place", "show", "lead"])
+  for (const action of ["release", "record", "replay", "mode", "place", "show", "lead"])
     document.getElementById(action).onsubmit = (event) => {
       event.preventDefault();
       const { argument, ...rest } = Object.fromEntries(new FormData(event.target));
