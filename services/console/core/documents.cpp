@@ -130,6 +130,13 @@ void add_shape(Json& entity, const model::Shape& shape, const Pose& X_ES, const 
   entity[list].push_back(std::move(solid));
 }
 
+void add_ellipsoid(Json& entity, const Eigen::Vector3d& half, const Pose& X_ES,
+                   const Colour& colour) {
+  entity["spheres"].push_back({{"pose", to_json(X_ES)},
+                               {"size", to_json(Eigen::Vector3d(2 * half))},
+                               {"color", to_json(colour)}});
+}
+
 void add_arrow(Json& entity, const Eigen::Vector3d& from, const Eigen::Vector3d& along,
                double thickness, const Colour& colour) {
   // An arrow points along x of its pose.

@@ -78,6 +78,9 @@ void add_transform(std::string& list, std::int64_t ns, std::string_view a, std::
 Json entity(std::int64_t ns, std::string_view id, std::string_view frame);
 /// Adds a solid to an entity. E: the entity's frame, S: the shape's.
 void add_shape(Json& entity, const model::Shape& shape, const Pose& X_ES, const Colour& colour);
+/// half: its axes, in its own frame S.
+void add_ellipsoid(Json& entity, const Eigen::Vector3d& half, const Pose& X_ES,
+                   const Colour& colour);
 void add_arrow(Json& entity, const Eigen::Vector3d& from, const Eigen::Vector3d& along,
                double thickness, const Colour& colour);
 void add_line(Json& entity, const std::vector<Eigen::Vector3d>& points, const Colour& colour);

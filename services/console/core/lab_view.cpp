@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -18,6 +19,7 @@ constexpr Colour glove_colour{0.90, 0.72, 0.60, 0.8};
 constexpr Colour contact_colour{0.85, 0.15, 0.20, 1};
 constexpr Colour cone_colour{0.85, 0.15, 0.20, 0.25};
 constexpr Colour table_colour{0.55, 0.50, 0.45, 0.35};
+constexpr Colour doubt_colour{0.20, 0.60, 0.86, 0.35};
 constexpr Colour white{1, 1, 1, 1};
 
 std::string object_frame(const std::string& body) {
@@ -35,6 +37,29 @@ model::Shape shape_of(View message) {
   if (kind == "SHAPE_BOX") shape.kind = model::ShapeKind::box;
   if (kind == "SHAPE_SPHERE") shape.kind = model::ShapeKind::sphere;
   return shape;
+}
+
+/// Where it may be: two standard deviations to each side. Nothing where that is not known.
+void add_doubt(Json& drawn, const std::vector<double>& covariance, const Eigen::Vector3d& at) {
+  constexpr double thinnest = 1e-4, widest = 1;  // m
+  if (covariance.size() != 16) return;
+  const Eigen::Matrix3d of_place =
+      Eigen::Map<const Eigen::Matrix4d>(covariance.data()).topLeftCorner<3, 3>();
+  if (!of_place.allFinite()) return;
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solved(of_place);
+  const Eigen::Vector3d half = 2 * solved.eigenvalues().cwiseMax(0).cwiseSqrt();
+  if (!half.allFinite() || half.maxCoeff() < thinnest || half.maxCoeff() > widest) return;
+  Eigen::Matrix3d axes = solved.eigenvectors();
+  if (axes.determinant() < 0) axes.col(0) *= -1;
+  add_ellipsoid(drawn, half.cwiseMax(thinnest), make_pose(at, axes), doubt_colour);
+}
+
+/// The axes of a frame, as red, green and blue arrows.
+void add_axes(Json& drawn, const Pose& X) {
+  constexpr double length = 0.04, thickness = 0.002;  // m
+  for (int i = 0; i < 3; ++i)
+    add_arrow(drawn, X.translation(), length * X.linear().col(i), thickness,
+              {i == 0 ? 0.85 : 0.1, i == 1 ? 0.7 : 0.1, i == 2 ? 0.9 : 0.1, 1});
 }
 
 /// Of which joint angles a state tells, or nothing where its numbers do not fit the model.
@@ -148,6 +173,10 @@ Documents LabView::links_of(const std::string& hand, const model::HandModel& mod
       add_shape(drawn, shape.shape, shape.X_LS, link_colour);
     made.push_back(scene(std::move(drawn), id, ns));
   }
+  const std::string id = hand + "/grasp frame";
+  Json drawn = entity(ns, id, model.links()[0].name);
+  add_axes(drawn, model.X_BG());
+  made.push_back(scene(std::move(drawn), id, ns));
   return made;
 }
 
@@ -265,6 +294,7 @@ Documents LabView::object_detection(View message) {
   const std::string id = fmt::format("seen/{}", track);
   Json drawn = entity(ns, id, table);
   add_shape(drawn, shape, *X_WO, seen_colour);
+  add_doubt(drawn, message["covariance"].numbers(), X_WO->translation());
   made.push_back(scene(std::move(drawn), id, ns));
   return made;
 }

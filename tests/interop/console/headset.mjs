@@ -25,7 +25,7 @@ await page.until("document.getElementById('link').textContent === 'connected'", 
 await page.until("!document.getElementById('headset').hidden", "the headset is seen");
 
 // The newest posture: fingertips on the table, m.
-let tips;
+let tips, heard = 0;
 const client = new protocol.FoxgloveClient({ ws: new WebSocket(address.replace("http", "ws"), ["foxglove.sdk.v1"]) });
 let reader;
 client.on("advertise", (all) => {
@@ -39,18 +39,21 @@ function rotate({ w, x, y, z }, p) {
   return p.map((c, k) => c + w * t[k] + u[k]);
 }
 client.on("message", ({ data }) => {
+  ++heard;
   const { x_wh: { position: o, orientation }, fingertips } = reader.readMessage(data);
   tips = fingertips.map(({ p_hf: { x, y, z } }) => rotate(orientation, [x, y, z]).map((c, k) => c + [o.x, o.y, o.z][k]));
 });
 const distance = (a, b) => Math.hypot(...a.map((x, k) => x - b[k]));
-// Filters have settled: nothing has moved for half a second.
+// Filters have settled: three times in a row nothing has moved for half a second, in which postures came.
 async function settled() {
-  for (let before, i = 0; i < 60; ++i) {
+  for (let before, had = 0, still = 0, i = 0; i < 80; ++i) {
     await new Promise((later) => setTimeout(later, 500));
-    if (before && tips?.every((tip, f) => distance(tip, before[f]) < 5e-4)) return tips;
-    before = tips;
+    const rests = before && heard >= had + 2 && tips.every((tip, f) => distance(tip, before[f]) < 5e-4);
+    still = rests ? still + 1 : 0;
+    if (still === 3) return tips;
+    [before, had] = [tips, heard];
   }
-  throw new Error(`the posture does not come to rest: ${JSON.stringify(tips)}, ${await page.evaluate("document.getElementById('hand-state').textContent")}`);
+  throw new Error(`the posture does not come to rest, ${heard} heard: ${JSON.stringify(tips)}, ${await page.evaluate("document.getElementById('hand-state').textContent")}`);
 }
 
 await page.evaluate("document.getElementById('headset-switch').click()");
@@ -67,7 +70,8 @@ const pinch = (hand, value) => page.evaluate(`headset.hands.${hand}.updatePinchV
 
 const first = await settled();
 await move(0.05, 0, 0);
-for (const [f, tip] of (await settled()).entries()) assert.ok(distance(tip, first[f]) < 5e-3, "without the other hand's pinch it stays");
+const second = await settled();
+assert.ok(second.every((tip, f) => distance(tip, first[f]) < 5e-3), `without the other hand's pinch it stays: ${JSON.stringify([first, second])}`);
 await pinch("left", 1);
 await page.until("document.getElementById('clutch').getAttribute('aria-pressed') === 'true'", "the pinch is seen");
 const before = await settled();

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -151,6 +152,7 @@ TEST(LabView, AGraspIsDrawnWholeAndEveryDocumentIsWhatItsSchemaSays) {
   EXPECT_TRUE(entities.contains("table"));
   EXPECT_TRUE(entities.contains("hand/" + barrett().links()[0].name));
   EXPECT_TRUE(entities.contains("glove/glove"));
+  EXPECT_EQ(entities["hand/grasp frame"]["arrows"].size(), 3U);
   ASSERT_TRUE(entities.contains("contacts/hand"));
   EXPECT_GE(entities["contacts/hand"]["arrows"].size(), 2U);
   EXPECT_EQ(entities["contacts/hand"]["triangles"].size(),
@@ -163,6 +165,58 @@ Value structure(std::vector<std::pair<std::string_view, Value>> fields) {
   Value::Fields made;
   for (auto& [name, value] : fields) made.push_back({name, std::move(value)});
   return Value{std::move(made)};
+}
+
+Value vector_of(double x, double y, double z) {
+  return structure({{"x", Value{x}}, {"y", Value{y}}, {"z", Value{z}}});
+}
+
+/// An object that was seen, with these standard deviations of its place, m, and two of them
+/// correlated.
+Value seen(double sigma_x, double sigma_y, double sigma_z, double correlation) {
+  Value::List covariance(16, Value{0.0});
+  const auto set = [&](std::size_t at, double value) { covariance[at] = Value{value}; };
+  set(0, sigma_x * sigma_x);
+  set(5, sigma_y * sigma_y);
+  set(10, sigma_z * sigma_z);
+  set(1, correlation * sigma_x * sigma_y);
+  set(4, correlation * sigma_x * sigma_y);
+  return structure({{"track", Value{std::uint64_t{3}}},
+                    {"shape", Value{recording::types::Enumerator{1, "SHAPE_BOX"}}},
+                    {"size", vector_of(0.1, 0.1, 0.1)},
+                    {"X_WO", structure({{"position", vector_of(0.3, -0.2, 0.05)},
+                                        {"orientation", structure({{"w", Value{1.0}},
+                                                                   {"x", Value{0.0}},
+                                                                   {"y", Value{0.0}},
+                                                                   {"z", Value{0.0}}})}})},
+                    {"covariance", Value{std::move(covariance)}}});
+}
+
+/// The ellipsoids that are drawn of it.
+json doubts(const Value& message) {
+  for (const Document& document : view().hear("object/detection", message, 0))
+    if (document.feed == Feed::scene) return json::parse(document.text)["entities"][0]["spheres"];
+  return {};
+}
+
+// Two standard deviations to each side, along the axes of the covariance.
+TEST(LabView, WhereAnObjectMayBeIsDrawn) {
+  json drawn = doubts(seen(0.01, 0.02, 0.005, 0));
+  ASSERT_EQ(drawn.size(), 1U);
+  EXPECT_EQ(drawn[0]["pose"]["position"], (json{{"x", 0.3}, {"y", -0.2}, {"z", 0.05}}));
+  std::vector<double> size{drawn[0]["size"]["x"], drawn[0]["size"]["y"], drawn[0]["size"]["z"]};
+  std::ranges::sort(size);
+  EXPECT_NEAR(size[0], 4 * 0.005, 1e-9);
+  EXPECT_NEAR(size[1], 4 * 0.01, 1e-9);
+  EXPECT_NEAR(size[2], 4 * 0.02, 1e-9);
+  // Nearly all along the diagonal of x and y: that axis is longer, the one across shorter.
+  drawn = doubts(seen(0.01, 0.01, 0.01, 0.96));
+  size = {drawn[0]["size"]["x"], drawn[0]["size"]["y"], drawn[0]["size"]["z"]};
+  EXPECT_NEAR(*std::ranges::max_element(size), 4 * 0.014, 1e-9);
+  EXPECT_NEAR(*std::ranges::min_element(size), 4 * 0.002, 1e-9);
+  EXPECT_TRUE(doubts(seen(0, 0, 0, 0)).empty()) << "it is certain";
+  EXPECT_TRUE(doubts(seen(HUGE_VAL, 0, 0, 0)).empty());
+  EXPECT_TRUE(doubts(seen(50, 0.1, 0.1, 0)).empty()) << "nothing is known";
 }
 
 TEST(LabView, WhatIsGoneIsNotShownAnyMore) {
