@@ -329,9 +329,7 @@ ordered_json come_and_go(const Console& console, double seconds) {
 /// Median of the world's own p50 of «glove to accepted», with ten clients and without, in turns.
 ordered_json in_a_lab(double seconds, const std::filesystem::path& folder) {
   const Place place;
-  const auto config = folder / "lab.toml";
-  std::ofstream(config) << "# all as it is\n";
-  service::Lab lab(config.string(),
+  service::Lab lab((share_directory() / "lab.toml").string(),
                    {"lab.rig=" + place.rig, fmt::format("lab.domain={}", place.domain),
                     "safety.state=" + (folder / "state").string()},
                    folder);
