@@ -3,7 +3,9 @@
 //
 //   benchmark_console [--seconds S] [--lab] [--visits S] [--hold S]
 //
-// --lab: what 10 clients add to the latency from glove to world, with and without them in turns.
+// --lab: what 10 clients add to the latency from glove to world, with and without them in eight
+// turns. The lab tells the latency of its last 1024 frames, so a turn is to last longer than these:
+// 40 s.
 // --visits: only the memory, while 50 clients at a time come and go that long.
 // --hold: prints the address and moves bodies and a hand that long, for who wants to look.
 // A floor is measured beside each figure: what the machine takes at that time to hand as many bytes
@@ -376,7 +378,7 @@ ordered_json in_a_lab(double seconds, const std::filesystem::path& folder) {
 
 int main(int argc, char** argv) {
   using namespace prehend;
-  double seconds = 8, hold = 0, visits = 0;
+  double seconds = 0, hold = 0, visits = 0;
   bool lab = false;
   for (int i = 1; i < argc; ++i) {
     const std::string_view argument = argv[i];
@@ -385,6 +387,7 @@ int main(int argc, char** argv) {
     if (argument == "--visits" && i + 1 < argc) visits = std::atof(argv[++i]);
     if (argument == "--hold" && i + 1 < argc) hold = std::atof(argv[++i]);
   }
+  if (seconds <= 0) seconds = lab ? 40 : 8;
   const auto folder = service::TemporaryFolder::create(false);
   if (!folder) give_up(folder.error().message());
   if (lab) {
