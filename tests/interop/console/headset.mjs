@@ -15,7 +15,7 @@ setTimeout(() => { throw new Error("it takes more than two minutes"); }, 120000)
 
 const lab = ["--set", `lab.rig=headset-${process.pid}`, "--set", "glove.device=landmarks", "--set", "glove.port=127.0.0.1:9874"];
 await start(`${bin}/prehend-glove`, lab, "stderr", /./);
-const { line: address } = await start(`${bin}/prehend-console`, [...lab, "--set", "console.port=0"], "stdout", /http:\S+/);
+const { line: address } = await start(`${bin}/prehend-console`, [...lab, "--set", "console.port=0"], "stdout", /http:[^\s;]+/);
 const emulator = readFileSync(join(dirname(createRequire(import.meta.url).resolve("iwer")), "../build/iwer.min.js"), "utf8");
 const page = await browse(chromium, `${scratch}/browser`, address, "1000,700", [], `${emulator};
   window.headset = new IWER.XRDevice(IWER.metaQuest3);

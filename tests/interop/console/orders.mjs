@@ -8,7 +8,7 @@ const [bin, chromium, scratch] = process.argv.slice(2);
 setTimeout(() => { throw new Error("it takes more than two minutes"); }, 120000).unref();
 
 const lab = ["--set", `lab.rig=orders-${process.pid}`, "--set", `safety.state=${scratch}/state`];
-const { line } = await start(`${bin}/prehend-console`, [...lab, "--set", "console.port=0"], "stdout", /http:\S+/);
+const { line } = await start(`${bin}/prehend-console`, [...lab, "--set", "console.port=0"], "stdout", /http:[^\s;]+/);
 const page = await browse(chromium, `${scratch}/browser`, line);
 const disabled = (form) => `document.querySelector("#${form} button").disabled`;
 await page.until(`${disabled("place")} && document.querySelector("#place button").title === "simulation is not there"`,
