@@ -166,7 +166,7 @@ inline constexpr Topic<v1::OperatorReplyPubSubType> operator_reply{
 inline constexpr Topic<v1::OperatorConsentPubSubType> operator_consent{
     {.name = "operator/consent",
      .qos = {.reliable = false, .deadline = std::chrono::milliseconds(100)},
-     .writers = Role::operator_,
+     .writers = Role::operator_ | Role::console,
      .readers = Role::simulation | Role::robot,
      .content = Content::order,
      .rate = "50 Hz while asked"}};

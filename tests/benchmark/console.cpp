@@ -1,15 +1,24 @@
 // What the console costs: a lab of 40 bodies that move at 60 Hz is watched by clients of this
 // process.
 //
-//   benchmark_console [--seconds S] [--lab] [--hold S]
+//   benchmark_console [--seconds S] [--lab] [--visits S] [--hold S]
 //
-// --lab: what 10 clients add to the latency from glove to world, with and without them in turns.
+// --lab: what 10 clients add to the latency from glove to world, with and without them in eight
+// turns. The lab tells the latency of its last 1024 frames, so a turn is to last longer than these:
+// 40 s.
+// --visits: only the memory, while 50 clients at a time come and go that long.
 // --hold: prints the address and moves bodies and a hand that long, for who wants to look.
+// A floor is measured beside each figure: what the machine takes at that time to hand as many bytes
+// from one thread to another through a socket.
 #include <fmt/format.h>
+#include <sys/socket.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
+#include <charconv>
+#include <ctime>
 #include <fstream>
 #include <iostream>
 #include <nlohmann/json.hpp>
@@ -77,15 +86,11 @@ class Console {
 
   /// Processor time so far, s.
   double used() const {
-    std::ifstream file(fmt::format("/proc/{}/stat", process_->pid()));
-    std::string text;
-    std::getline(file, text);
-    std::istringstream rest(text.substr(text.rfind(')') + 2));
-    std::string skipped;
-    for (int i = 0; i < 11; ++i) rest >> skipped;
-    double user = 0, system = 0;
-    rest >> user >> system;
-    return (user + system) / static_cast<double>(::sysconf(_SC_CLK_TCK));
+    clockid_t clock{};
+    timespec time{};
+    if (::clock_getcpuclockid(process_->pid(), &clock) != 0 || ::clock_gettime(clock, &time) != 0)
+      give_up("the console has ended");
+    return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
   }
   double memory_mb() const {
     std::ifstream file(fmt::format("/proc/{}/statm", process_->pid()));
@@ -167,16 +172,32 @@ bool subscribe(WebClient& client, const std::vector<std::string>& topics) {
   return true;
 }
 
-/// A client in a thread of its own; each message is as old as its stamp says when it is here.
+/// The integer behind each such name in a JSON text.
+std::vector<std::int64_t> numbers_behind(std::string_view text, std::string_view name) {
+  std::vector<std::int64_t> found;
+  for (std::size_t at = text.find(name); at != std::string_view::npos; at = text.find(name, at)) {
+    at += name.size();
+    std::int64_t number = 0;
+    std::from_chars(text.data() + at, text.data() + text.size(), number);
+    found.push_back(number);
+  }
+  return found;
+}
+
+/// A client in a thread of its own; a message is as old as the oldest of the frames in it.
 class Watcher {
  public:
   explicit Watcher(int port)
       : client_(port, "foxglove.sdk.v1"),
         thread_([this](const std::stop_token& stop) { run(stop); }) {}
-  std::vector<double> stop() {
+  struct Seen {
+    std::vector<double> ages;  // ms
+    std::size_t frames = 0;
+  };
+  Seen stop() {
     thread_.request_stop();
     thread_.join();
-    return std::move(ages_);
+    return std::move(seen_);
   }
 
  private:
@@ -185,20 +206,65 @@ class Watcher {
     const auto begin = std::chrono::steady_clock::now();
     while (!stop.stop_requested()) {
       const auto message = client_.hear(0.5);
+      const std::int64_t now = now_ns();
       // The first second is that of joining.
       if (!message || !message->binary || std::chrono::steady_clock::now() - begin < 1s) continue;
-      std::int64_t stamp = 0;
-      for (int i = 0; i < 8; ++i)
-        stamp |= static_cast<std::int64_t>(
-                     static_cast<unsigned char>(message->bytes[5 + static_cast<std::size_t>(i)]))
-                 << (8 * i);
-      ages_.push_back(1e-6 * static_cast<double>(now_ns() - stamp));
+      const auto whole = numbers_behind(message->payload(), "\"sec\":");
+      const auto rest = numbers_behind(message->payload(), "\"nsec\":");
+      std::int64_t oldest = now;
+      for (std::size_t i = 0; i < whole.size(); ++i)
+        oldest = std::min(oldest, whole[i] * 1'000'000'000 + rest[i]);
+      seen_.ages.push_back(1e-6 * static_cast<double>(now - oldest));
+      seen_.frames += whole.size();
     }
   }
 
   WebClient client_;
-  std::vector<double> ages_;
+  Seen seen_;
   std::jthread thread_;
+};
+
+/// The bytes of a tick from one thread to another, at the same rate, by the kernel alone.
+class Floor {
+ public:
+  Floor() {
+    if (::socketpair(AF_UNIX, SOCK_STREAM, 0, ends_) != 0) give_up("no sockets");
+    reader_ = std::jthread([this] { read(); });
+    writer_ = std::jthread([this](const std::stop_token& stop) { write(stop); });
+  }
+  ~Floor() { stop(); }
+  Floor(const Floor&) = delete;
+  Floor& operator=(const Floor&) = delete;
+  std::vector<double> stop() {
+    if (!writer_.joinable()) return {};
+    writer_.request_stop();
+    writer_.join();
+    ::shutdown(ends_[0], SHUT_WR);
+    reader_.join();
+    for (const int end : ends_) ::close(end);
+    return std::move(ages_);
+  }
+
+ private:
+  using Bytes = std::array<std::int64_t, 1500>;
+  void write(const std::stop_token& stop) {
+    auto next = std::chrono::steady_clock::now();
+    while (!stop.stop_requested()) {
+      next += std::chrono::nanoseconds(static_cast<long>(1e9 / rate));
+      std::this_thread::sleep_until(next);
+      Bytes bytes{now_ns()};
+      if (::write(ends_[0], bytes.data(), sizeof bytes) != sizeof bytes) return;
+    }
+  }
+  void read() {
+    Bytes bytes{};
+    while (::recv(ends_[1], bytes.data(), sizeof bytes, MSG_WAITALL) == sizeof bytes)
+      ages_.push_back(1e-6 * static_cast<double>(now_ns() - bytes[0]));
+  }
+
+  int ends_[2]{};
+  std::vector<double> ages_;
+  std::jthread reader_, writer_;
 };
 
 /// clients watch for that long; stuck: one beside them takes nothing.
@@ -212,18 +278,20 @@ ordered_json watch(const Console& console, Mover& mover, int clients, bool stuck
   std::vector<std::unique_ptr<Watcher>> watchers;
   for (int i = 0; i < clients; ++i) watchers.push_back(std::make_unique<Watcher>(console.port()));
   std::this_thread::sleep_for(1s);
+  Floor floor;
   const double used = console.used();
   const auto begin = std::chrono::steady_clock::now();
   std::this_thread::sleep_for(std::chrono::duration<double>(seconds));
   const double share =
       (console.used() - used) /
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  const std::vector<double> least = floor.stop();
   std::vector<double> ages;
   std::size_t fewest = SIZE_MAX;
   for (auto& watcher : watchers) {
     const auto own = watcher->stop();
-    fewest = std::min(fewest, own.size());
-    ages.insert(ages.end(), own.begin(), own.end());
+    fewest = std::min(fewest, own.frames);
+    ages.insert(ages.end(), own.ages.begin(), own.ages.end());
   }
   mover.pictures = false;
   return {{"clients", clients},
@@ -231,7 +299,9 @@ ordered_json watch(const Console& console, Mover& mover, int clients, bool stuck
           {"core_percent", 100 * share},
           {"p50_ms", quantile(ages, 0.5)},
           {"p99_ms", quantile(ages, 0.99)},
-          {"least_messages_per_second", clients ? static_cast<double>(fewest) / seconds : 0},
+          {"floor_p50_ms", quantile(least, 0.5)},
+          {"floor_p99_ms", quantile(least, 0.99)},
+          {"least_frames_per_second", clients ? static_cast<double>(fewest) / seconds : 0},
           {"memory_mb", console.memory_mb()}};
 }
 
@@ -261,7 +331,7 @@ ordered_json come_and_go(const Console& console, double seconds) {
 /// Median of the world's own p50 of «glove to accepted», with ten clients and without, in turns.
 ordered_json in_a_lab(double seconds, const std::filesystem::path& folder) {
   const Place place;
-  service::Lab lab("",
+  service::Lab lab((share_directory() / "lab.toml").string(),
                    {"lab.rig=" + place.rig, fmt::format("lab.domain={}", place.domain),
                     "safety.state=" + (folder / "state").string()},
                    folder);
@@ -290,7 +360,9 @@ ordered_json in_a_lab(double seconds, const std::filesystem::path& folder) {
           }
     }
     for (auto& watcher : watchers) watcher->stop();
+    if (const auto dead = lab.casualty()) give_up(dead->message());
     if (turn < 0) continue;  // it has come up meanwhile
+    if (p50 == 0) give_up("the lab tells no latency");
     p50s[watched].push_back(p50);
     p99s[watched].push_back(p99);
   }
@@ -306,14 +378,16 @@ ordered_json in_a_lab(double seconds, const std::filesystem::path& folder) {
 
 int main(int argc, char** argv) {
   using namespace prehend;
-  double seconds = 8, hold = 0;
+  double seconds = 0, hold = 0, visits = 0;
   bool lab = false;
   for (int i = 1; i < argc; ++i) {
     const std::string_view argument = argv[i];
     if (argument == "--lab") lab = true;
     if (argument == "--seconds" && i + 1 < argc) seconds = std::atof(argv[++i]);
+    if (argument == "--visits" && i + 1 < argc) visits = std::atof(argv[++i]);
     if (argument == "--hold" && i + 1 < argc) hold = std::atof(argv[++i]);
   }
+  if (seconds <= 0) seconds = lab ? 40 : 8;
   const auto folder = service::TemporaryFolder::create(false);
   if (!folder) give_up(folder.error().message());
   if (lab) {
@@ -326,6 +400,10 @@ int main(int argc, char** argv) {
   if (hold > 0) {
     std::cout << console.address() << std::endl;
     std::this_thread::sleep_for(std::chrono::duration<double>(hold));
+    return 0;
+  }
+  if (visits > 0) {
+    std::cout << come_and_go(console, visits).dump() << "\n";
     return 0;
   }
   for (const auto& [clients, stuck] :

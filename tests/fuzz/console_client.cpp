@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "services/console/core/access.hpp"
+#include "services/console/core/consent.hpp"
 #include "services/console/core/hand_line.hpp"
 #include "services/console/core/hub.hpp"
 #include "services/console/core/orders.hpp"
@@ -39,8 +40,8 @@ Asked asked_of(const std::string& text, std::string& body) {
 
 Hub make_hub() {
   Hub::Options options;
-  options.channels = {{{0, "/tf", "json", "a", "jsonschema", "{}"}, false},
-                      {{0, "/log", "json", "b", "jsonschema", "{}"}, true}};
+  options.channels = {{{0, "/tf", "json", "a", "jsonschema", "{}"}, false, "[", "]"},
+                      {{0, "/log", "json", "b", "jsonschema", "{}"}, true, "", ""}};
   options.parameters = {{"/robot_description", "<robot/>"}};
   options.recording = Span{1, 2};
   return Hub(std::move(options));
@@ -88,6 +89,8 @@ int main(int argc, char** argv) {
   fuzzer.seeds.push_back(
       "POST\n/hand\nlocalhost:1\nhttp://localhost:1\n" + secret +
       "\n\n\n{\"hand\":\"left\",\"origin\":\"room\",\"age_s\":0.1,\"points_m\":[" + points + "]}");
+  fuzzer.seeds.push_back("POST\n/consent\nlocalhost:1\nhttp://localhost:1\n" + secret +
+                         "\n\n\n{\"hand\":\"hand\",\"held\":true,\"now_ms\":1700000000000}");
   fuzzer.long_round = 300'000;
   fuzzer.mutate = [](Random& random, std::string text) {
     return fuzz::mutate_text(random, std::move(text), fuzz::mutate_lines);
@@ -98,7 +101,8 @@ int main(int argc, char** argv) {
     const Asked asked = asked_of(text, body);
     const Verdict verdict = judge(asked, policy);
     fuzz::require((verdict.route == Route::refused) == (verdict.status != 0), "is undecided");
-    if (verdict.route == Route::order || verdict.route == Route::hand)
+    if (verdict.route == Route::order || verdict.route == Route::hand ||
+        verdict.route == Route::consent)
       fuzz::require(asked.token == secret && asked.origin.size() == asked.host.size() + 7,
                     "anybody gives orders");
     if (verdict.route == Route::socket)
@@ -106,6 +110,8 @@ int main(int argc, char** argv) {
     hear(body);
     if (const auto line = hand_line(body, 1'700'000'000'000'000'000, Pose::Identity()))
       fuzz::require(nlohmann::json::parse(*line)["points_m"].size() >= 21, "is no hand");
+    if (const auto consent = read_consent(body, 1'700'000'000'000'000'000))
+      fuzz::require(!consent->hand.empty() && consent->hand.size() < 64, "is for no hand");
     const auto order = read_order(body);
     if (order) fuzz::require(order->argument.size() < 128, "does not fit the contract");
     return verdict.route != Route::refused;

@@ -30,8 +30,11 @@ constexpr std::array cases{Case{"robot/state", "v1::HandState"},
                            Case{"robot/command", "v2::HandCommand"}};
 
 void check(const console::Documents& documents) {
-  for (const console::Document& document : documents)
-    fuzz::require(nlohmann::json::parse(document.text).is_object(), "is no document");
+  for (const console::Document& document : documents) {
+    const auto [opening, closing] = around(console::feeds[static_cast<std::size_t>(document.feed)]);
+    fuzz::require(nlohmann::json::parse(opening + document.text + closing).is_object(),
+                  "is no document");
+  }
 }
 
 }  // namespace

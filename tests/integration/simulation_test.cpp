@@ -29,6 +29,46 @@ v2::HandCommand command(const Vector3d& p_WG, double closure) {
 
 using Simulation = Rig;
 
+TEST_F(Simulation, AnOperatorPlacesAnObject) {
+  auto orders = writer(dds::operator_command);
+  auto replies = reader(dds::operator_reply);
+  auto objects = reader(dds::object_state);
+  auto process = start("simulation");
+  meet(orders, 2);  // the gate's and the world's
+  const auto answer = [&](const char* id, const char* name, double x) {
+    v1::OperatorCommand order;
+    order.id(id);
+    order.action(v1::ACTION_PLACE_OBJECT);
+    order.target("simulation");
+    order.argument(name);
+    order.X_WO(convert::to_message(make_pose(Vector3d(x, 0, 0))));
+    // Until the simulation knows who gives it, it is refused.
+    std::optional<v1::OperatorReply> reply;
+    eventually(20, [&] {
+      order.stamp_ns(now_ns());
+      orders.write(order);
+      reply = hear<v1::OperatorReply>(replies, 1, [&](const auto& one) {
+        return one.id().to_string() == id &&
+               (one.done() || one.message().to_string().find("catalogue") != std::string::npos);
+      });
+      return reply.has_value();
+    });
+    return reply;
+  };
+  const auto placed = answer("1", "Talc", 0.2);
+  ASSERT_TRUE(placed);
+  EXPECT_TRUE(placed->done()) << placed->message().to_string();
+  EXPECT_EQ(placed->service().to_string(), "simulation");
+  const auto talc = hear<v1::ObjectState>(objects, 20, [](const auto& one) {
+    return one.body().to_string() == "Talc" && std::abs(one.X_WO().position().x() - 0.2) < 1e-3;
+  });
+  ASSERT_TRUE(talc);
+  EXPECT_GT(talc->X_WO().position().z(), 0.01) << "it stands on the table";
+  const auto refused = answer("2", "no such thing", 0.4);
+  ASSERT_TRUE(refused);
+  EXPECT_FALSE(refused->done());
+}
+
 TEST_F(Simulation, GraspsWhatWasSeenAndReportsIt) {
   auto commands = writer(dds::robot_command);
   auto detections = writer(dds::object_detection);

@@ -55,7 +55,7 @@ Verdict judge_socket(const Asked& asked, const Policy& policy) {
   return {Route::socket, 0, std::string(*protocol), false};
 }
 
-/// Whatever moves something: orders, and the hand that a robot's follows.
+/// Whatever moves something: orders, consent, and the hand that a robot's follows.
 Verdict judge_order(const Asked& asked, const Policy& policy, Route route) {
   if (asked.method != "POST") return refuse(not_allowed, "orders are posted");
   if (!is_own(asked, policy)) return refuse(forbidden, "orders come from the console's own page");
@@ -107,6 +107,7 @@ Verdict judge(const Asked& asked, const Policy& policy) {
   }
   if (path == "/order") return judge_order(asked, policy, Route::order);
   if (path == "/hand") return judge_order(asked, policy, Route::hand);
+  if (path == "/consent") return judge_order(asked, policy, Route::consent);
   if (asked.method != "GET" && asked.method != "HEAD")
     return refuse(not_allowed, "only GET and HEAD");
   if (path == "/" && asked.upgrade) return judge_socket(asked, policy);

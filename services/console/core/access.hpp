@@ -30,7 +30,7 @@ struct Policy {
   std::string order_token;
 };
 
-enum class Route : std::uint8_t { refused, page, file, tracking, socket, order, hand };
+enum class Route : std::uint8_t { refused, page, file, tracking, socket, order, hand, consent };
 
 struct Verdict {
   Route route = Route::refused;

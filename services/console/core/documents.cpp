@@ -2,13 +2,19 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
+#include <charconv>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
 namespace prehend::console {
+namespace {
+
+constexpr std::int64_t second = 1'000'000'000;  // ns
+
+}  // namespace
 
 Json to_time(std::int64_t ns) {
-  constexpr std::int64_t second = 1'000'000'000;
   const std::int64_t whole = ns < 0 ? 0 : ns;
   return {{"sec", whole / second}, {"nsec", whole % second}};
 }
@@ -34,12 +40,68 @@ Json to_json(const Colour& colour) {
   return {{"r", colour.r}, {"g", colour.g}, {"b", colour.b}, {"a", colour.a}};
 }
 
-Json transform(std::int64_t ns, std::string_view a, std::string_view b, const Pose& X_AB) {
-  return {{"timestamp", to_time(ns)},
-          {"parent_frame_id", a},
-          {"child_frame_id", b},
-          {"translation", to_json(Eigen::Vector3d(X_AB.translation()))},
-          {"rotation", rotation_of(X_AB)}};
+std::pair<std::string, std::string> around(const FeedInfo& feed) {
+  if (feed.list.empty()) return {};
+  return {"{\"" + std::string(feed.list) + "\":[", "]}"};
+}
+
+namespace {
+
+void add_value(std::string& text, std::int64_t value) {
+  std::array<char, 24> digits;
+  text.append(digits.data(), std::to_chars(digits.begin(), digits.end(), value).ptr);
+}
+
+/// Nine digits are nanometres on a table. What is not finite has no JSON.
+void add_value(std::string& text, double value) {
+  std::array<char, 32> digits;
+  if (!std::isfinite(value)) {
+    text += "null";
+    return;
+  }
+  text.append(
+      digits.data(),
+      std::to_chars(digits.begin(), digits.end(), value, std::chars_format::general, 9).ptr);
+}
+
+/// Names of frames are those of messages: whatever they are, they stay one string.
+void add_value(std::string& text, std::string_view name) {
+  const bool plain = std::all_of(name.begin(), name.end(), [](char c) {
+    return c >= 0x20 && c < 0x7f && c != '"' && c != '\\';
+  });
+  if (!plain) {
+    text += text_of(Json(name));
+    return;
+  }
+  text += '"';
+  text += name;
+  text += '"';
+}
+
+}  // namespace
+
+void add_transform(std::string& list, std::int64_t ns, std::string_view a, std::string_view b,
+                   const Pose& X_AB) {
+  const Eigen::Vector3d p = X_AB.translation();
+  const Eigen::Quaterniond q(X_AB.linear());
+  const std::int64_t since = std::max<std::int64_t>(ns, 0);
+  if (!list.empty()) list += ',';
+  const auto field = [&](std::string_view before, const auto& value) {
+    list += before;
+    add_value(list, value);
+  };
+  field("{\"timestamp\":{\"sec\":", since / second);
+  field(",\"nsec\":", since % second);
+  field("},\"parent_frame_id\":", a);
+  field(",\"child_frame_id\":", b);
+  field(",\"translation\":{\"x\":", p.x());
+  field(",\"y\":", p.y());
+  field(",\"z\":", p.z());
+  field("},\"rotation\":{\"x\":", q.x());
+  field(",\"y\":", q.y());
+  field(",\"z\":", q.z());
+  field(",\"w\":", q.w());
+  list += "}}";
 }
 
 Json entity(std::int64_t ns, std::string_view id, std::string_view frame) {
@@ -66,6 +128,13 @@ void add_shape(Json& entity, const model::Shape& shape, const Pose& X_ES, const 
   }
   solid["color"] = to_json(colour);
   entity[list].push_back(std::move(solid));
+}
+
+void add_ellipsoid(Json& entity, const Eigen::Vector3d& half, const Pose& X_ES,
+                   const Colour& colour) {
+  entity["spheres"].push_back({{"pose", to_json(X_ES)},
+                               {"size", to_json(Eigen::Vector3d(2 * half))},
+                               {"color", to_json(colour)}});
 }
 
 void add_arrow(Json& entity, const Eigen::Vector3d& from, const Eigen::Vector3d& along,

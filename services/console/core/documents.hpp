@@ -5,6 +5,7 @@
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "common/base/pose.hpp"
@@ -37,9 +38,11 @@ struct FeedInfo {
   std::string_view schema_name;
   /// Each message counts, not the newest of each key alone.
   bool queued = false;
+  /// Not empty: a document is some elements of this list, the only field of a message.
+  std::string_view list = {};
 };
 inline constexpr std::array<FeedInfo, 10> feeds{{
-    {Feed::tf, "/tf", "foxglove.FrameTransforms"},
+    {Feed::tf, "/tf", "foxglove.FrameTransforms", false, "transforms"},
     {Feed::scene, "/scene", "foxglove.SceneUpdate"},
     {Feed::image, "/camera/image", "foxglove.CompressedImage"},
     {Feed::annotations, "/camera/annotations", "foxglove.ImageAnnotations"},
@@ -52,6 +55,8 @@ inline constexpr std::array<FeedInfo, 10> feeds{{
 }};
 /// The JSON schema of a feed's messages, as text.
 std::string json_schema(Feed feed);
+/// What stands before and behind the elements of a feed's list; empty where it has none.
+std::pair<std::string, std::string> around(const FeedInfo& feed);
 
 struct Colour {
   double r = 0, g = 0, b = 0, a = 1;
@@ -64,13 +69,18 @@ Json to_json(const Eigen::Vector3d& v);
 Json to_json(const Pose& X);
 Json to_json(const Colour& colour);
 
-/// X_AB, where A and B are names of frames.
-Json transform(std::int64_t ns, std::string_view a, std::string_view b, const Pose& X_AB);
+/// X_AB, where A and B are names of frames, as one more element of a list. Written as text, since
+/// most of what is told are these.
+void add_transform(std::string& list, std::int64_t ns, std::string_view a, std::string_view b,
+                   const Pose& X_AB);
 
 /// An entity of a scene with nothing in it yet.
 Json entity(std::int64_t ns, std::string_view id, std::string_view frame);
 /// Adds a solid to an entity. E: the entity's frame, S: the shape's.
 void add_shape(Json& entity, const model::Shape& shape, const Pose& X_ES, const Colour& colour);
+/// half: its axes, in its own frame S.
+void add_ellipsoid(Json& entity, const Eigen::Vector3d& half, const Pose& X_ES,
+                   const Colour& colour);
 void add_arrow(Json& entity, const Eigen::Vector3d& from, const Eigen::Vector3d& along,
                double thickness, const Colour& colour);
 void add_line(Json& entity, const std::vector<Eigen::Vector3d>& points, const Colour& colour);

@@ -7,40 +7,13 @@
 
 namespace prehend::console {
 
-std::size_t Hub::Kept::put(Message message, std::size_t max) {
-  const bool replaces = by_key.contains(message.key);
-  erase(message.key);
-  messages.push_back(std::move(message));
-  by_key[messages.back().key] = std::prev(messages.end());
-  if (messages.size() <= max) return replaces ? 1 : 0;
-  erase(std::string(messages.front().key));
-  return 1;
-}
-
-void Hub::Kept::erase(const std::string& key) {
-  const auto found = by_key.find(key);
-  if (found == by_key.end()) return;
-  const auto at = found->second;
-  by_key.erase(found);
-  messages.erase(at);
-}
-
-Hub::Message Hub::Kept::take() {
-  Message message = std::move(messages.front());
-  by_key.erase(message.key);
-  messages.pop_front();
-  return message;
-}
-
-Hub::Hub(Options options) : options_(std::move(options)), kept_(options_.channels.size()) {
-  for (std::size_t i = 0; i < options_.channels.size(); ++i)
-    options_.channels[i].info.id = static_cast<std::uint32_t>(i);
-}
-
-std::size_t Hub::limit(std::uint32_t channel) const {
+Hub::Hub(Options options) : options_(std::move(options)) {
   // Instances are bounded where they come from.
-  return options_.channels[channel].queued ? options_.max_queued
-                                           : std::numeric_limits<std::size_t>::max();
+  constexpr std::size_t all = std::numeric_limits<std::size_t>::max();
+  for (Channel& channel : options_.channels) {
+    channel.info.id = static_cast<std::uint32_t>(stories_.size());
+    stories_.emplace_back(channel.queued ? options_.max_queued : all, options_.max_queued);
+  }
 }
 
 Hub::Client Hub::connect() {
@@ -92,10 +65,7 @@ void Hub::obey(State& client, const Subscribe& request) {
       say(client, status_message(2, fmt::format("there is no channel {}", channel), "channel"));
       continue;
     }
-    Watching& watching = client.watching[channel];
-    watching.subscription = subscription;
-    for (const Message& message : kept_[channel].messages)
-      watching.waiting.put(message, limit(channel));
+    client.watching[channel] = {subscription, stories_[channel].begin(), 0};
   }
 }
 
@@ -120,25 +90,25 @@ void Hub::obey(State& client, const Refused& request) {
 
 void Hub::publish(std::uint32_t channel, const std::string& key, std::int64_t stamp_ns,
                   Payload payload) {
-  const Message message{key, stamp_ns, std::move(payload)};
-  kept_[channel].put(message, limit(channel));
-  for (auto& [id, client] : clients_) {
-    const auto found = client.watching.find(channel);
-    if (found == client.watching.end()) continue;
-    const std::size_t lost = found->second.waiting.put(message, limit(channel));
-    found->second.dropped += lost;
-    dropped_ += lost;
-  }
+  stories_[channel].put(key, stamp_ns, std::move(payload));
 }
 
 void Hub::forget(std::uint32_t channel, const std::string& key) {
-  kept_[channel].erase(key);
+  stories_[channel].end(key);
 }
 
 void Hub::forget_all() {
-  for (Kept& kept : kept_) kept = {};
   for (auto& [id, client] : clients_)
-    for (auto& [channel, watching] : client.watching) watching.waiting = {};
+    for (auto& [channel, watching] : client.watching) stories_[channel].skip(watching.reader);
+  for (Story& story : stories_) story.clear();
+}
+
+std::uint64_t Hub::dropped() const {
+  std::uint64_t all = 0;
+  for (const auto& [id, client] : clients_)
+    for (const auto& [channel, watching] : client.watching)
+      all += stories_[channel].missed(watching.reader);
+  return all;
 }
 
 void Hub::tell_playback(const PlaybackState& state) {
@@ -160,9 +130,10 @@ void Hub::tell_losses() {
   for (auto& [id, client] : clients_) {
     std::string words;
     for (auto& [channel, watching] : client.watching) {
-      if (watching.dropped == watching.told) continue;
-      watching.told = watching.dropped;
-      words += fmt::format("{}{} of {}", words.empty() ? "" : ", ", watching.dropped,
+      const std::uint64_t missed = stories_[channel].missed(watching.reader);
+      if (missed == watching.told) continue;
+      watching.told = missed;
+      words += fmt::format("{}{} of {}", words.empty() ? "" : ", ", missed,
                            options_.channels[channel].info.topic);
     }
     // What does not fit is said a second later: it is no reason to let a client go.
@@ -183,18 +154,24 @@ std::optional<Frame> Hub::next(Client id) {
   // Channels take turns, so that one that never rests does not silence the others.
   const auto serve = [&](auto from, auto to) -> std::optional<Frame> {
     for (; from != to; ++from) {
-      Watching& watching = from->second;
-      if (watching.waiting.messages.empty()) continue;
+      auto part = next(from->first, from->second);
+      if (!part) continue;
       client.turn = from->first;
-      Message message = watching.waiting.take();
-      return Frame{true, message_head(watching.subscription, message.stamp_ns),
-                   std::move(message.payload)};
+      return Frame{true, message_head(from->second.subscription, part->stamp_ns),
+                   std::move(part->payload)};
     }
     return std::nullopt;
   };
   const auto behind = client.watching.upper_bound(client.turn);
   if (auto frame = serve(behind, client.watching.end())) return frame;
   return serve(client.watching.begin(), behind);
+}
+
+std::optional<Story::Part> Hub::next(std::uint32_t channel, Watching& watching) {
+  const auto& [info, queued, opening, closing] = options_.channels[channel];
+  Story& story = stories_[channel];
+  return opening.empty() ? story.next(watching.reader)
+                         : story.rest(watching.reader, opening, closing);
 }
 
 bool Hub::overflowed(Client client) const {

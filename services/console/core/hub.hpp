@@ -3,23 +3,17 @@
 #include <cstddef>
 #include <cstdint>
 #include <deque>
-#include <list>
 #include <map>
-#include <memory>
 #include <optional>
-#include <set>
 #include <string>
 #include <string_view>
-#include <unordered_map>
 #include <vector>
 
 #include "services/console/core/playback.hpp"
 #include "services/console/core/protocol.hpp"
+#include "services/console/core/story.hpp"
 
 namespace prehend::console {
-
-/// Bytes that all clients share.
-using Payload = std::shared_ptr<const std::string>;
 
 /// What goes to a client next, in one message of the WebSocket.
 struct Frame {
@@ -37,6 +31,9 @@ class Hub {
     ChannelInfo info;
     /// Each message counts. Else of each key the newest one alone does.
     bool queued = false;
+    /// Not empty: messages are parts of a list that stands between these, and all that a client
+    /// has not got yet goes as one.
+    std::string opening, closing;
   };
   struct Options {
     std::string name = "prehend", session;
@@ -80,29 +77,14 @@ class Hub {
   std::size_t clients() const { return clients_.size(); }
   /// Does anybody watch it?
   bool watched(std::uint32_t channel) const;
-  /// Messages that slow clients have missed.
-  std::uint64_t dropped() const { return dropped_; }
+  /// Messages that those who are here have missed.
+  std::uint64_t dropped() const;
 
  private:
-  struct Message {
-    std::string key;
-    std::int64_t stamp_ns = 0;
-    Payload payload;
-  };
-  using Messages = std::list<Message>;
-  /// Messages of a channel, in order, found by their key.
-  struct Kept {
-    Messages messages;
-    std::unordered_map<std::string, Messages::iterator> by_key;
-    /// Returns how many gave way.
-    std::size_t put(Message message, std::size_t max);
-    void erase(const std::string& key);
-    Message take();
-  };
   struct Watching {
     std::uint32_t subscription = 0;
-    Kept waiting;
-    std::uint64_t dropped = 0, told = 0;
+    Story::Reader reader;
+    std::uint64_t told = 0;  // of what it missed
   };
   struct State {
     std::deque<Frame> control;
@@ -117,15 +99,14 @@ class Hub {
   void obey(State& client, const GetParameters& request);
   void obey(State& client, const WatchGraph& request);
   void obey(State& client, const Refused& request);
-  std::size_t limit(std::uint32_t channel) const;
+  std::optional<Story::Part> next(std::uint32_t channel, Watching& watching);
 
   Options options_;
-  std::vector<Kept> kept_;  // by channel, for those who come later
+  std::vector<Story> stories_;  // by channel
   std::vector<TopicEnds> graph_;
   std::vector<PlaybackRequest> requests_;
   std::map<Client, State> clients_;
   Client next_client_ = 1;
-  std::uint64_t dropped_ = 0;
 };
 
 }  // namespace prehend::console

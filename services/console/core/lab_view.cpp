@@ -2,9 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cmath>
 #include <utility>
 
@@ -19,10 +19,8 @@ constexpr Colour glove_colour{0.90, 0.72, 0.60, 0.8};
 constexpr Colour contact_colour{0.85, 0.15, 0.20, 1};
 constexpr Colour cone_colour{0.85, 0.15, 0.20, 0.25};
 constexpr Colour table_colour{0.55, 0.50, 0.45, 0.35};
+constexpr Colour doubt_colour{0.20, 0.60, 0.86, 0.35};
 constexpr Colour white{1, 1, 1, 1};
-/// A status comes once a second. So a killed service is told within 3 s of its end.
-constexpr std::int64_t max_silence_ns = 2'900'000'000;
-constexpr std::size_t max_left = 256;
 
 std::string object_frame(const std::string& body) {
   return "object/" + body;
@@ -39,6 +37,29 @@ model::Shape shape_of(View message) {
   if (kind == "SHAPE_BOX") shape.kind = model::ShapeKind::box;
   if (kind == "SHAPE_SPHERE") shape.kind = model::ShapeKind::sphere;
   return shape;
+}
+
+/// Where it may be: two standard deviations to each side. Nothing where that is not known.
+void add_doubt(Json& drawn, const std::vector<double>& covariance, const Eigen::Vector3d& at) {
+  constexpr double thinnest = 1e-4, widest = 1;  // m
+  if (covariance.size() != 16) return;
+  const Eigen::Matrix3d of_place =
+      Eigen::Map<const Eigen::Matrix4d>(covariance.data()).topLeftCorner<3, 3>();
+  if (!of_place.allFinite()) return;
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solved(of_place);
+  const Eigen::Vector3d half = 2 * solved.eigenvalues().cwiseMax(0).cwiseSqrt();
+  if (!half.allFinite() || half.maxCoeff() < thinnest || half.maxCoeff() > widest) return;
+  Eigen::Matrix3d axes = solved.eigenvectors();
+  if (axes.determinant() < 0) axes.col(0) *= -1;
+  add_ellipsoid(drawn, half.cwiseMax(thinnest), make_pose(at, axes), doubt_colour);
+}
+
+/// The axes of a frame, as red, green and blue arrows.
+void add_axes(Json& drawn, const Pose& X) {
+  constexpr double length = 0.04, thickness = 0.002;  // m
+  for (int i = 0; i < 3; ++i)
+    add_arrow(drawn, X.translation(), length * X.linear().col(i), thickness,
+              {i == 0 ? 0.85 : 0.1, i == 1 ? 0.7 : 0.1, i == 2 ? 0.9 : 0.1, 1});
 }
 
 /// Of which joint angles a state tells, or nothing where its numbers do not fit the model.
@@ -81,9 +102,8 @@ Documents LabView::begin(std::int64_t now_ns) {
   add_shape(top, {model::ShapeKind::box, {1.0, 1.2, 0.01}},
             make_pose(Eigen::Vector3d(0, 0, -0.005)), table_colour);
   made.push_back(scene(std::move(top), "table", now_ns));
-  const Json camera = transform(now_ns, table, options_.camera, options_.X_WC);
-  made.push_back(
-      {Feed::tf, options_.camera, now_ns, text_of({{"transforms", Json::array({camera})}})});
+  Document& camera = made.emplace_back(Feed::tf, options_.camera, now_ns);
+  add_transform(camera.text, now_ns, table, options_.camera, options_.X_WC);
   made.push_back(status(now_ns));
   made.push_back(latency(now_ns));
   made.push_back(annotations(now_ns));
@@ -100,8 +120,8 @@ Documents LabView::hear(std::string_view topic, const Value& value, std::int64_t
   if (topic == "camera/image") return camera_image(message);
   if (topic == "object/detection") return object_detection(message);
   if (topic == "grasp/report") return grasp_report(value);
-  if (topic == "service/status") return service_status(message, now_ns);
-  if (topic == "robot/gate") return robot_gate(message, now_ns);
+  if (topic == "service/status") return told(roster_.hear_status(message, now_ns), stamp(message));
+  if (topic == "robot/gate") return told(roster_.hear_gate(message), now_ns);
   if (topic == "operator/reply") return operator_reply(value);
   if (topic == "operator/command") return operator_command(message);
   return {};
@@ -113,36 +133,34 @@ Documents LabView::lose(std::string_view topic, const Value& last, std::int64_t 
     return Document{Feed::scene, id, now_ns, text_of(scene_without(now_ns, id)), true};
   };
   if (topic == "hand/posture") return {end("glove/" + message["glove"].text())};
-  if (topic == "robot/gate") {
-    gates_.erase(message["hand"].text());
-    return {status(now_ns)};
-  }
+  if (topic == "robot/gate") return told(roster_.lose_gate(message), now_ns);
+  if (topic == "service/status") return told(roster_.lose_status(message), now_ns);
   if (topic == "object/detection") {
     const std::int64_t track = message["track"].integer();
     detections_.erase(track);
     return {end(fmt::format("seen/{}", track)), annotations(now_ns)};
   }
-  if (topic == "service/status") {
-    const std::string service = message["service"].text();
-    services_.erase(service);
-    if (left_.size() < max_left) left_.insert(message["name"].text());
-    return {status(now_ns), latency(now_ns),
-            log(now_ns, LogLevel::warning, message["name"].text(), service + " has left")};
-  }
   return {};
 }
 
 Documents LabView::wait(std::int64_t now_ns) {
+  return told(roster_.wait(now_ns), now_ns);
+}
+
+Documents LabView::told(const Roster::News& news, std::int64_t at_ns) {
   Documents made;
-  for (auto& [key, service] : services_) {
-    if (service.silent || now_ns - service.heard_ns <= max_silence_ns) continue;
-    service.silent = true;
-    made.push_back(log(now_ns, LogLevel::error, service.name, key + " is silent"));
-  }
-  if (made.empty()) return made;
-  made.push_back(status(now_ns));
-  made.push_back(latency(now_ns));
+  for (const auto& [level, name, text] : news.events) made.push_back(log(at_ns, level, name, text));
+  if (news.services || news.gates) made.push_back(status(at_ns));
+  if (news.services) made.push_back(latency(at_ns));
   return made;
+}
+
+Document LabView::status(std::int64_t ns) const {
+  return {Feed::status, "", ns, text_of(roster_.everybody())};
+}
+
+Document LabView::latency(std::int64_t ns) const {
+  return {Feed::latency, "", ns, text_of(roster_.latency())};
 }
 
 Documents LabView::links_of(const std::string& hand, const model::HandModel& model,
@@ -155,6 +173,10 @@ Documents LabView::links_of(const std::string& hand, const model::HandModel& mod
       add_shape(drawn, shape.shape, shape.X_LS, link_colour);
     made.push_back(scene(std::move(drawn), id, ns));
   }
+  const std::string id = hand + "/grasp frame";
+  Json drawn = entity(ns, id, model.links()[0].name);
+  add_axes(drawn, model.X_BG());
+  made.push_back(scene(std::move(drawn), id, ns));
   return made;
 }
 
@@ -171,11 +193,10 @@ Documents LabView::robot_state(View message) {
     drawn = kind;
     made = links_of(hand, *model, ns);
   }
-  Json transforms = Json::array();
+  Document& frames = made.emplace_back(Feed::tf, "hand/" + hand, ns);
   const auto poses = model->link_poses(*joints);
   for (std::size_t i = 0; i < poses.size(); ++i)
-    transforms.push_back(transform(ns, table, model->links()[i].name, *X_WB * poses[i]));
-  made.push_back({Feed::tf, "hand/" + hand, ns, text_of({{"transforms", std::move(transforms)}})});
+    add_transform(frames.text, ns, table, model->links()[i].name, *X_WB * poses[i]);
   Json names = Json::array();
   for (const model::HandJoint& joint : model->joints()) names.push_back(joint.name);
   made.push_back(signals(ns, "joints", hand, "rad", std::move(names),
@@ -193,10 +214,9 @@ Documents LabView::robot_command(View message) {
 Documents LabView::object_state(View message) {
   const auto X_WO = message["X_WO"].pose();
   if (!X_WO) return {};
-  const std::string frame = object_frame(message["body"].text());
-  const std::int64_t ns = stamp(message);
-  return {{Feed::tf, frame, ns,
-           text_of({{"transforms", Json::array({transform(ns, table, frame, *X_WO)})}})}};
+  Document made{Feed::tf, object_frame(message["body"].text()), stamp(message)};
+  add_transform(made.text, made.stamp_ns, table, made.key, *X_WO);
+  return {std::move(made)};
 }
 
 Documents LabView::scene_state(View message) {
@@ -274,6 +294,7 @@ Documents LabView::object_detection(View message) {
   const std::string id = fmt::format("seen/{}", track);
   Json drawn = entity(ns, id, table);
   add_shape(drawn, shape, *X_WO, seen_colour);
+  add_doubt(drawn, message["covariance"].numbers(), X_WO->translation());
   made.push_back(scene(std::move(drawn), id, ns));
   return made;
 }
@@ -303,61 +324,6 @@ Documents LabView::grasp_report(const Value& value) {
   made.push_back(log(ns, held ? LogLevel::info : LogLevel::warning, hand,
                      fmt::format("{}: {} contacts, ε {:.3f}, {}", object,
                                  message["contacts"].elements().size(), epsilon, verdict)));
-  return made;
-}
-
-Documents LabView::service_status(View message, std::int64_t now_ns) {
-  const std::int64_t ns = stamp(message);
-  const std::string key = message["service"].text();
-  Service now{.name = message["name"].text(),
-              .host = message["host"].text(),
-              .state = message["state"].text(),
-              .message = message["message"].text(),
-              .latency = Json::array(),
-              .heard_ns = now_ns};
-  if (now.state.starts_with("STATE_")) now.state.erase(0, 6);
-  std::transform(now.state.begin(), now.state.end(), now.state.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  for (const View& drop : message["drops"].elements()) now.dropped += drop["count"].integer();
-  for (const View& stage : message["latency"].elements())
-    now.latency.push_back({{"service", key},
-                           {"stage", stage["stage"].text()},
-                           {"p50_ms", 1e-3 * stage["p50_us"].number()},
-                           {"p99_ms", 1e-3 * stage["p99_us"].number()},
-                           {"max_ms", 1e-3 * stage["max_us"].number()},
-                           {"count", stage["count"].integer()}});
-  Documents made;
-  const auto before = services_.find(key);
-  if (before == services_.end() || before->second.silent || before->second.state != now.state ||
-      before->second.message != now.message)
-    made.push_back(log(ns, now.state == "degraded" ? LogLevel::warning : LogLevel::info, now.name,
-                       now.message.empty() ? now.state : now.state + ": " + now.message));
-  left_.erase(now.name);
-  // Who was killed comes again as another process: nobody waits for the first any more.
-  if (before == services_.end())
-    std::erase_if(services_, [&](const auto& entry) {
-      return entry.second.silent && entry.second.name == now.name;
-    });
-  services_[key] = std::move(now);
-  made.push_back(status(ns));
-  made.push_back(latency(ns));
-  return made;
-}
-
-Documents LabView::robot_gate(View message, std::int64_t now_ns) {
-  const std::string hand = message["hand"].text();
-  const Gate now{message["leader"].text(), message["stopped_by"].text(), message["reason"].text(),
-                 message["stopped"].flag(), message["consent"].flag()};
-  Documents made;
-  const auto before = gates_.find(hand);
-  if (before == gates_.end() ? now.stopped : before->second.stopped != now.stopped)
-    made.push_back(log(now_ns, now.stopped ? LogLevel::error : LogLevel::info, hand,
-                       now.stopped ? fmt::format("stopped by {}: {}", now.stopped_by, now.reason)
-                                   : "released: " + now.reason));
-  if (!now.leader.empty() && (before == gates_.end() || before->second.leader != now.leader))
-    made.push_back(log(now_ns, LogLevel::info, hand, now.leader + " leads"));
-  gates_[hand] = now;
-  made.push_back(status(now_ns));
   return made;
 }
 
@@ -406,52 +372,6 @@ Document LabView::annotations(std::int64_t ns) const {
   }
   return {Feed::annotations, "", ns,
           text_of({{"circles", Json::array()}, {"points", points}, {"texts", texts}})};
-}
-
-Document LabView::status(std::int64_t ns) const {
-  Json there = Json::array(), gates = Json::array();
-  for (const auto& [key, service] : services_)
-    if (!service.silent)
-      there.push_back({{"service", key},
-                       {"name", service.name},
-                       {"host", service.host},
-                       {"state", service.state},
-                       {"message", service.message},
-                       {"dropped", service.dropped}});
-  for (const auto& [hand, gate] : gates_)
-    gates.push_back({{"hand", hand},
-                     {"leader", gate.leader},
-                     {"stopped", gate.stopped},
-                     {"stopped_by", gate.stopped_by},
-                     {"reason", gate.reason},
-                     {"consent", gate.consent}});
-  return {Feed::status, "", ns,
-          text_of({{"services", there}, {"missing", missing()}, {"gates", gates}})};
-}
-
-Json LabView::missing() const {
-  Json all = Json::array();
-  std::set<std::string> known;
-  for (const auto& [key, service] : services_) {
-    known.insert(service.name);
-    if (service.silent)
-      all.push_back({{"name", service.name},
-                     {"reason", fmt::format("{} is silent for 3 s: killed, or cut off", key)}});
-  }
-  for (const std::string& name : options_.services)
-    if (!known.contains(name))
-      all.push_back(
-          {{"name", name},
-           {"reason", left_.contains(name) ? "has left" : "has not been heard since this began"}});
-  return all;
-}
-
-Document LabView::latency(std::int64_t ns) const {
-  Json stages = Json::array();
-  for (const auto& [key, service] : services_)
-    for (const Json& stage : service.latency)
-      if (!service.silent) stages.push_back(stage);
-  return {Feed::latency, "", ns, text_of({{"stages", stages}})};
 }
 
 }  // namespace prehend::console

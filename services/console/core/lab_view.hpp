@@ -12,6 +12,7 @@
 
 #include "common/model/hand_model.hpp"
 #include "services/console/core/documents.hpp"
+#include "services/console/core/roster.hpp"
 #include "services/console/core/view.hpp"
 
 namespace prehend::console {
@@ -21,7 +22,7 @@ struct Document {
   Feed feed{};
   std::string key;
   std::int64_t stamp_ns = 0;
-  std::string text;
+  std::string text = {};  // of a feed with a list: some elements of it
   /// What it tells of is over: who joins later is not told.
   bool last = false;
 };
@@ -39,7 +40,7 @@ class LabView {
       return nullptr;
     };
   };
-  explicit LabView(Options options) : options_(std::move(options)) {}
+  explicit LabView(Options options) : options_(std::move(options)), roster_(options_.services) {}
 
   /// What is there before anybody says something: the table, the camera, who is missing.
   Documents begin(std::int64_t now_ns);
@@ -52,17 +53,6 @@ class LabView {
   Documents wait(std::int64_t now_ns);
 
  private:
-  struct Service {
-    std::string name, host, state, message;
-    std::int64_t dropped = 0;
-    Json latency;
-    std::int64_t heard_ns = 0;
-    bool silent = false;
-  };
-  struct Gate {
-    std::string leader, stopped_by, reason;
-    bool stopped = false, consent = false;
-  };
   struct Detection {
     std::string name;
     double probability = 0, x = 0, y = 0, width = 0, height = 0;
@@ -76,16 +66,14 @@ class LabView {
   Documents camera_image(View message);
   Documents object_detection(View message);
   Documents grasp_report(const Value& value);
-  Documents service_status(View message, std::int64_t now_ns);
-  Documents robot_gate(View message, std::int64_t now_ns);
   Documents operator_reply(const Value& value);
   Documents operator_command(View message);
 
   Documents links_of(const std::string& hand, const model::HandModel& model, std::int64_t ns);
   Document annotations(std::int64_t ns) const;
+  /// What has happened, and how it is now. at_ns: of what tells it.
+  Documents told(const Roster::News& news, std::int64_t at_ns);
   Document status(std::int64_t ns) const;
-  /// Who ought to be there and is not, and why.
-  Json missing() const;
   Document latency(std::int64_t ns) const;
   Document log(std::int64_t ns, LogLevel level, std::string_view name, std::string_view text);
   /// Numbers to be plotted over time. What is not finite is left out of a plot.
@@ -96,9 +84,7 @@ class LabView {
   Options options_;
   std::map<std::string, std::string> drawn_hands_;             // model by hand
   std::map<std::string, std::set<std::string>> drawn_bodies_;  // by scene
-  std::map<std::string, Service> services_;
-  std::set<std::string> left_;  // names of those that have said farewell
-  std::map<std::string, Gate> gates_;
+  Roster roster_;
   std::map<std::int64_t, Detection> detections_;  // by track
   std::uint64_t count_ = 0;                       // of queued documents
 };

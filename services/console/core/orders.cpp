@@ -1,12 +1,14 @@
 #include "services/console/core/orders.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 namespace prehend::console {
 namespace {
 
 constexpr std::size_t max_argument = 127;  // of the contract
+constexpr double off_table = 2;            // m, from the table's middle
 
 struct Row {
   std::string_view action;
@@ -18,10 +20,12 @@ constexpr Row rows[]{
     {"stop", OrderKind::stop, "gate", false},
     {"release", OrderKind::release, "gate", true},
     {"record", OrderKind::start, "recorder", true},
+    {"replay", OrderKind::start, "replayer", true},
     {"mode", OrderKind::set_mode, "mapping", true},
     {"show", OrderKind::start, "demonstration", true},
     {"shown", OrderKind::stop, "demonstration", false},
     {"lead", OrderKind::take_over, "", true},
+    {"place", OrderKind::place, "simulation", true},
 };
 
 }  // namespace
@@ -42,9 +46,17 @@ Expected<Order> read_order(std::string_view body) {
   for (const Row& row : rows) {
     if (row.action != action) continue;
     if (row.needs_argument && argument.empty()) return wrong("needs an argument");
-    return Order{row.kind, std::string(row.target), argument};
+    Order made{row.kind, std::string(row.target), argument};
+    if (row.kind != OrderKind::place) return made;
+    const auto x = asked.find("x"), y = asked.find("y");
+    if (x == asked.end() || y == asked.end() || !x->is_number() || !y->is_number())
+      return wrong("says not where: x and y, m");
+    made.x = x->get<double>();
+    made.y = y->get<double>();
+    if (!(std::hypot(made.x, made.y) <= off_table)) return wrong("is for a place beside the table");
+    return made;
   }
-  return wrong("is none of stop, release, record, mode, show, shown, lead");
+  return wrong("is none of stop, release, record, replay, mode, show, shown, lead, place");
 }
 
 }  // namespace prehend::console

@@ -168,6 +168,7 @@ Json status() {
                             {"stopped", flag()},
                             {"stopped_by", text()},
                             {"reason", text()},
+                            {"deadman", flag()},
                             {"consent", flag()}});
   const Json missing = object({{"name", text()}, {"reason", text()}});
   return object({{"services", list(service)}, {"missing", list(missing)}, {"gates", list(gate)}});

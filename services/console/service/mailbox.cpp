@@ -1,5 +1,7 @@
 #include "services/console/service/mailbox.hpp"
 
+#include <utility>
+
 namespace prehend::console {
 
 void Mailbox::put(std::size_t topic, dds::RawSample&& sample) {
@@ -7,7 +9,16 @@ void Mailbox::put(std::size_t topic, dds::RawSample&& sample) {
   if (sample.kind == dds::RawSample::Kind::data)
     letter.payload =
         std::make_shared<const std::string>(sample.payload.begin(), sample.payload.end());
-  const std::scoped_lock lock(mutex_);
+  bool first = false;
+  {
+    const std::scoped_lock lock(mutex_);
+    first = newest_.empty() && queued_.empty();
+    keep(topic, std::move(letter));
+  }
+  if (first) ring_();
+}
+
+void Mailbox::keep(std::size_t topic, Letter letter) {
   if (keeps_all_[topic]) {
     queued_.push_back(std::move(letter));
     if (queued_.size() <= max_queued) return;
@@ -15,7 +26,7 @@ void Mailbox::put(std::size_t topic, dds::RawSample&& sample) {
     ++lost_;
     return;
   }
-  const std::pair key{topic, sample.instance};
+  const std::pair key{topic, letter.instance};
   if (newest_.size() >= max_instances && !newest_.contains(key))
     ++lost_;
   else

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <deque>
+#include <functional>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -26,8 +27,10 @@ struct Letter {
 /// thread.
 class Mailbox {
  public:
-  /// keeps_all: by topic.
-  explicit Mailbox(std::vector<bool> keeps_all) : keeps_all_(std::move(keeps_all)) {}
+  /// keeps_all: by topic. ring: called by who brings the first letter after it was emptied.
+  explicit Mailbox(
+      std::vector<bool> keeps_all, std::function<void()> ring = [] {})
+      : keeps_all_(std::move(keeps_all)), ring_(std::move(ring)) {}
 
   void put(std::size_t topic, dds::RawSample&& sample);
   /// In the order of arrival, as far as it matters.
@@ -38,7 +41,11 @@ class Mailbox {
  private:
   static constexpr std::size_t max_instances = 4096, max_queued = 4096;
 
+  /// Under the mutex.
+  void keep(std::size_t topic, Letter letter);
+
   const std::vector<bool> keeps_all_;
+  const std::function<void()> ring_;
   mutable std::mutex mutex_;  // guards what follows
   std::map<std::pair<std::size_t, dds::Guid>, Letter> newest_;
   std::deque<Letter> queued_;

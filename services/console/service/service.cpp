@@ -26,6 +26,8 @@ v1::OperatorAction action_of(OrderKind kind) {
       return v1::ACTION_SET_MODE;
     case OrderKind::take_over:
       return v1::ACTION_TAKE_OVER;
+    case OrderKind::place:
+      return v1::ACTION_PLACE_OBJECT;
   }
   return v1::ACTION_STOP;
 }
@@ -49,7 +51,8 @@ Expected<std::unique_ptr<Service>> Service::create(service::Shell& shell) {
 Service::Service(service::Shell& shell)
     : shell_(shell),
       orders_(shell.publish(dds::operator_command)),
-      mailbox_(topics_that_keep_all()),
+      consents_(shell.publish(dds::operator_consent)),
+      mailbox_(topics_that_keep_all(), [this] { server_->wake(); }),
       graph_(shell.config().text("lab.rig")) {}
 
 Service::~Service() {
@@ -89,6 +92,7 @@ Expected<Show::Options> Service::show_options() {
                         .letters = [this] { return mailbox_.take(); },
                         .now_ns = [] { return to_ns(process_now()); },
                         .give = [this](const Order& order) { return give(order); },
+                        .consent = [this](const Consent& said) { consent(said); },
                         .tracking = tracking_folder(),
                         .X_TW = X_WT->inverse(),
                         .graph = [this] { return graph_.changed(); }};
@@ -128,9 +132,24 @@ std::string Service::give(const Order& order) {
   message.action(action_of(order.kind));
   message.target(order.target.c_str());
   message.argument(order.argument.c_str());
+  if (order.kind == OrderKind::place) {
+    message.X_WO().position().x(order.x);
+    message.X_WO().position().y(order.y);
+    message.X_WO().orientation().w(1);
+  }
   log::info("order: {} for {} {}", id, order.target, order.argument);
   shell_.post([this, message] { orders_.publish(message); });
   return id;
+}
+
+/// In the server's thread. Stamped when it was heard: the gate counts from there.
+void Service::consent(const Consent& said) {
+  v1::OperatorConsent message;
+  message.hand(said.hand.c_str());
+  message.sequence_number(++consented_);
+  message.stamp_ns(to_ns(process_now()));
+  message.held(said.held);
+  shell_.post([this, message] { consents_.publish(message); });
 }
 
 }  // namespace prehend::console

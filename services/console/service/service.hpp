@@ -31,10 +31,12 @@ class Service {
   Expected<void> read_topics();
   Expected<Show::Options> show_options();
   std::string give(const Order& order);
+  void consent(const Consent& consent);
 
   service::Shell& shell_;
   service::Shell::Output<v1::OperatorCommand> orders_;
-  std::uint64_t given_ = 0;
+  service::Shell::Output<v1::OperatorConsent> consents_;
+  std::uint64_t given_ = 0, consented_ = 0;
   std::uint64_t told_lost_ = 0;  // as the status tells
   Mailbox mailbox_;
   Graph graph_;

@@ -19,22 +19,27 @@
 namespace prehend::console {
 namespace {
 
-constexpr std::uint64_t second = 60;  // ticks
 constexpr const char* recorded = "this is a recording: nobody is there to be ordered";
 
 /// A channel for each feed, then one for each topic of the lab.
 std::vector<Hub::Channel> channels_of(const recording::types::Library& types) {
   std::vector<Hub::Channel> made;
-  for (const FeedInfo& feed : feeds)
+  for (const FeedInfo& feed : feeds) {
+    auto [opening, closing] = around(feed);
     made.push_back({{0, std::string(feed.topic), "json", std::string(feed.schema_name),
                      "jsonschema", json_schema(feed.feed)},
-                    feed.queued});
+                    feed.queued,
+                    std::move(opening),
+                    std::move(closing)});
+  }
   for (const dds::TopicInfo& topic : dds::topic_table) {
     const std::string name = topic.type_name();
     const recording::types::Structure* type = types.find(name);
     made.push_back({{0, std::string(topic.name), "cdr", recording::types::ros2_name(name),
                      "ros2msg", type ? recording::types::ros2msg(*type) : ""},
-                    topic.qos.reader_depth == 0});
+                    topic.qos.reader_depth == 0,
+                    "",
+                    ""});
   }
   return made;
 }
@@ -126,6 +131,7 @@ Verdict Show::judge(const Asked& asked) {
 web::Answer Show::answer(const Verdict& verdict, std::string_view body) {
   if (verdict.route == Route::order) return order(body);
   if (verdict.route == Route::hand) return hand(body);
+  if (verdict.route == Route::consent) return consent(body);
   if (verdict.route == Route::tracking) return tracking(verdict.what);
   if (verdict.route == Route::page)
     return {200, "text/html; charset=utf-8",
@@ -154,6 +160,15 @@ web::Answer Show::hand(std::string_view body) {
   return plain(202, "sent");
 }
 
+web::Answer Show::consent(std::string_view body) {
+  if (!options_.consent) return plain(409, recorded);
+  const std::int64_t now = to_ns(process_now());
+  const auto said = read_consent(body, now);
+  if (!said) return plain(400, said.error().message());
+  options_.consent(*said);
+  return {202, "application/json", consent_answer(now), ""};
+}
+
 /// Only what was fetched has a name here, so nobody reads another file by it.
 web::Answer Show::tracking(const std::string& name) const {
   const std::string_view type = page::tracking_type(name);
@@ -165,21 +180,23 @@ web::Answer Show::tracking(const std::string& name) const {
 }
 
 void Show::tick() {
-  ++ticks_;
+  const Time now = process_now();
+  const bool once_a_second = now >= next_second_;
   // Nobody looks: it is enough to keep up with what is to be kept.
-  if (hub_.clients() == 0 && ticks_ % second != 0) return;
+  if (hub_.clients() == 0 && !once_a_second) return;
   Film* film = options_.film;
   if (film)
     for (const PlaybackRequest& request : hub_.take_requests()) film->obey(request);
   const std::vector<Letter> letters = options_.letters();
-  if (const auto state = film ? film->news(process_now()) : std::nullopt) {
+  if (const auto state = film ? film->news(now) : std::nullopt) {
     if (state->sought) begin();
     hub_.tell_playback(*state);
   }
   for (const Letter& letter : letters) hand_on(letter);
   publish(view_.wait(options_.now_ns()));
   round_.tell(hub_);
-  if (ticks_ % second != 0) return;
+  if (!once_a_second) return;
+  next_second_ = now + std::chrono::seconds(1);
   hub_.tell_losses();
   if (options_.graph)
     if (auto graph = options_.graph()) hub_.set_graph(std::move(*graph));
@@ -211,11 +228,11 @@ void Show::hand_on(const Letter& letter) {
     last_.insert_or_assign(instance, std::move(*value));
 }
 
-void Show::publish(const Documents& documents) {
-  for (const Document& document : documents) {
+void Show::publish(Documents documents) {
+  for (Document& document : documents) {
     const auto channel = static_cast<std::uint32_t>(document.feed);
     round_.put(channel, document.key, document.stamp_ns,
-               std::make_shared<const std::string>(document.text), document.last);
+               std::make_shared<const std::string>(std::move(document.text)), document.last);
   }
 }
 

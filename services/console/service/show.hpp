@@ -13,6 +13,7 @@
 #include "common/model/hand_model.hpp"
 #include "common/recording/types/type.hpp"
 #include "common/service/config.hpp"
+#include "services/console/core/consent.hpp"
 #include "services/console/core/hub.hpp"
 #include "services/console/core/lab_view.hpp"
 #include "services/console/core/orders.hpp"
@@ -33,6 +34,8 @@ class Show : public web::Site {
     std::function<std::int64_t()> now_ns;
     /// Gives an order and returns the name by which its reply is known; nothing: there is no lab.
     std::function<std::string(const Order&)> give;
+    /// Somebody holds the deadman, or lets it go; nothing: there is no lab.
+    std::function<void(const Consent&)> consent;
     /// Takes a line of a hand that the page tracks, for the glove.
     std::function<void(const std::string&)> hand;
     /// Why it does not; the page says so. Empty: it does.
@@ -71,11 +74,12 @@ class Show : public web::Site {
        std::shared_ptr<Hands> hands);
   web::Answer order(std::string_view body);
   web::Answer hand(std::string_view body);
+  web::Answer consent(std::string_view body);
   web::Answer tracking(const std::string& name) const;
   /// Says of nothing any more that it has been told.
   void begin();
   void hand_on(const Letter& letter);
-  void publish(const Documents& documents);
+  void publish(Documents documents);
 
   Options options_;
   recording::types::Library types_;
@@ -86,7 +90,8 @@ class Show : public web::Site {
   Round round_;
   /// The last message of each instance: its end brings nothing.
   std::map<std::pair<std::size_t, dds::Guid>, Value> last_;
-  std::uint64_t ticks_ = 0, queued_ = 0;
+  Time next_second_{};
+  std::uint64_t queued_ = 0;
 };
 
 }  // namespace prehend::console

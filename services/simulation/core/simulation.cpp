@@ -12,6 +12,7 @@ using Eigen::Vector3d;
 constexpr double far_off = 10;         // m: no hand works there
 constexpr double noticed = 0.005;      // m, by which a sighting must differ to move a body
 constexpr double noticed_turn = 0.05;  // rad
+constexpr double in_hand = 0.005;      // m, of the hand from what it may hold
 constexpr int max_bodies = 32;
 const Duration max_jump = std::chrono::seconds(60);  // of the lockstep clock
 
@@ -69,18 +70,63 @@ Expected<bool> Simulation::see(const grasping::Body& body, const Pose& X_WO) {
   if (!is_finite(X_WO) || X_WO.translation().norm() > far_off)
     return fail("is not on the table", body.name);
   const Pose place = standing(body.shape, X_WO);
-  for (int i = 0; i < world_->body_count(); ++i) {
-    if (world_->body(i).name != body.name) continue;
+  if (const int i = find(body.name); i >= 0) {
     const Pose now = world_->body_motion(i).X_WO;
     const bool differs = (now.translation() - place.translation()).norm() > noticed ||
                          angle_between(now.linear(), place.linear()) > noticed_turn;
-    if (differs && world_->distance_to_hand(i, options_.far_away) >= options_.far_away)
+    if (differs && !placed_.contains(body.name) &&
+        world_->distance_to_hand(i, options_.far_away) >= options_.far_away)
       world_->move_body(i, place);
     return false;
   }
+  return add(body, place);
+}
+
+Expected<bool> Simulation::add(const grasping::Body& body, const Pose& place) {
   if (world_->body_count() >= max_bodies) return fail("too many objects", body.name);
   if (auto added = world_->add_body(body, place); !added) return tl::unexpected(added.error());
   return true;
+}
+
+int Simulation::find(const std::string& name) const {
+  for (int i = 0; i < world_->body_count(); ++i)
+    if (world_->body(i).name == name) return i;
+  return -1;
+}
+
+Expected<void> Simulation::is_free(const grasping::Body& body, const Pose& X_WO, int itself) const {
+  const auto radius = [](const model::Shape& shape) {
+    return model::half_extents(shape).head<2>().norm();
+  };
+  const auto apart = [&](const Vector3d& p) {
+    return (p - X_WO.translation()).head<2>().norm() - radius(body.shape);
+  };
+  for (int i = 0; i < world_->body_count(); ++i)
+    if (i != itself &&
+        apart(world_->body_motion(i).X_WO.translation()) < radius(world_->body(i).shape))
+      return fail("cannot stand there", body.name, world_->body(i).name + " does");
+  const grasping::HandMotion hand = world_->hand_motion();
+  const double top = 2 * model::half_extents(body.shape).z();
+  for (const Pose& X_BL : hand_.link_poses(hand.joint)) {
+    const Vector3d p = hand.X_WB * X_BL.translation();
+    if (apart(p) < options_.far_away && p.z() < top + options_.far_away)
+      return fail("cannot stand there", body.name, "the hand is in the way");
+  }
+  return {};
+}
+
+Expected<bool> Simulation::place(const grasping::Body& body, const Pose& X_WO) {
+  if (!is_finite(X_WO) || X_WO.translation().norm() > far_off)
+    return fail("is not on the table", body.name);
+  const Pose there = standing(body.shape, X_WO);
+  const int known = find(body.name);
+  if (const auto free = is_free(body, there, known); !free) return tl::unexpected(free.error());
+  if (known >= 0 && world_->distance_to_hand(known, in_hand) < in_hand)
+    return fail("cannot be taken", body.name, "the hand has it");
+  placed_.insert(body.name);
+  if (known < 0) return add(body, there);
+  world_->move_body(known, there);
+  return false;
 }
 
 Expected<void> Simulation::accept(const Command& command, Time now) {

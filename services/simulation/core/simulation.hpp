@@ -4,6 +4,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -45,6 +46,10 @@ class Simulation {
   /// hand is far. True if the bodies of the world have changed. Fails when it cannot be placed.
   Expected<bool> see(const grasping::Body& body, const Pose& X_WO);
 
+  /// By order: an object stands there from now on, whatever is seen of it. True if the bodies of
+  /// the world have changed. Fails where the hand is, or another object.
+  Expected<bool> place(const grasping::Body& body, const Pose& X_WO);
+
   /// Follows a command from now on. The first one puts a hand without an arm there at once, unless
   /// it would touch something. Refuses commands for another model, of wrong length or not finite,
   /// and far away ones.
@@ -74,6 +79,10 @@ class Simulation {
  private:
   Simulation(const model::HandModel& hand, const Options& options,
              std::unique_ptr<grasping::World> world, std::unique_ptr<CarryingArm> arm);
+  Expected<bool> add(const grasping::Body& body, const Pose& place);
+  int find(const std::string& name) const;  // -1: there is none
+  /// Nothing is where a body of this shape would stand, other than `itself`.
+  Expected<void> is_free(const grasping::Body& body, const Pose& X_WO, int itself) const;
   void approach(const Command& command);
   void brake();
 
@@ -89,6 +98,7 @@ class Simulation {
   bool holding_ = true, braking_ = false;
   std::optional<Closure> closure_;
   std::uint64_t closures_ = 0;
+  std::set<std::string> placed_;  // by order
 };
 
 }  // namespace prehend::simulation

@@ -6,6 +6,7 @@
 
 #include "common/base/log.hpp"
 #include "common/base/paths.hpp"
+#include "common/convert/convert.hpp"
 #include "common/dds/topics.hpp"
 #include "services/simulation/service/messages.hpp"
 
@@ -40,6 +41,7 @@ Service::Service(service::Shell& shell, model::HandModel hand, model::Catalogue 
       object_state_(shell.publish(dds::object_state)),
       scene_state_(shell.publish(dds::scene_state)),
       reports_(shell.publish(dds::grasp_report)),
+      replies_(shell.publish(dds::operator_reply)),
       state_period_(seconds(1.0 / shell.config().number("simulation.state_rate"))) {}
 
 Service::~Service() {
@@ -87,6 +89,10 @@ Expected<void> Service::start() {
                                                                  const dds::SampleInfo& info) {
                        if (!info.gone) on_detection(message);
                      }));
+  shell_.subscribe(dds::operator_command, std::function([this](const v1::OperatorCommand& order,
+                                                               const dds::SampleInfo& info) {
+                     if (!info.gone) on_order(order, info);
+                   }));
   shell_.on_tick(seconds(1.0 / rate), [this](Time now) { on_tick(now); });
   if (!shell_.lockstep()) judge_ = std::thread([this] { judge_queued(); });
   shell_.status().running();
@@ -124,6 +130,41 @@ void Service::on_detection(const v1::ObjectDetection& message) {
     return;
   }
   scene_changed_ |= *changed;
+}
+
+/// «Place object», for us or for all; other orders are the gate's.
+void Service::on_order(const v1::OperatorCommand& order, const dds::SampleInfo& info) {
+  const std::string target = order.target().to_string();
+  if (order.action() != v1::ACTION_PLACE_OBJECT) return;
+  if (!target.empty() && target != "simulation") return;
+  if (const auto known = orders_.find(order.id().to_string())) return replies_.publish(*known);
+  const auto placed = place(order, info);
+  v1::OperatorReply reply;
+  reply.id(order.id());
+  reply.stamp_ns(to_ns(shell_.now()));
+  reply.service("simulation");
+  reply.done(placed.has_value());
+  reply.message((placed ? *placed : placed.error().message()).substr(0, 255));
+  if (placed) orders_.add(reply);
+  replies_.publish(reply);
+}
+
+Expected<std::string> Service::place(const v1::OperatorCommand& order,
+                                     const dds::SampleInfo& info) {
+  const std::string by = service::given_by(order, shell_.writer_of(info));
+  if (!shell_.lockstep())
+    if (const auto meant = service::meant_now(order, by, shell_.now()); !meant)
+      return tl::unexpected(meant.error());
+  const std::string name = order.argument().to_string();
+  const model::CatalogueObject* object = catalogue_.find(name);
+  if (!object) return fail("is not in the catalogue", name);
+  const auto X_WO = convert::from_message(order.X_WO());
+  if (!X_WO) return tl::unexpected(X_WO.error());
+  const auto changed = simulation_->place(body_of(*object), *X_WO);
+  if (!changed) return tl::unexpected(changed.error());
+  scene_changed_ |= *changed;
+  log::info("{} is placed, by order of {}", name, by);
+  return name + " stands there";
 }
 
 void Service::on_tick(Time now) {

@@ -10,6 +10,7 @@
 #include "common/base/error.hpp"
 #include "common/gate/motion_limiter.hpp"
 #include "common/robot/gatekeeper.hpp"
+#include "common/service/order_book.hpp"
 #include "common/service/shell.hpp"
 #include "services/simulation/core/simulation.hpp"
 #include "services/simulation/service/arm_teller.hpp"
@@ -31,6 +32,8 @@ class Service {
   std::optional<gate::Place> where() const;
   void go(const gate::Place& place, Time now);
   void on_detection(const v1::ObjectDetection& message);
+  void on_order(const v1::OperatorCommand& order, const dds::SampleInfo& info);
+  Expected<std::string> place(const v1::OperatorCommand& order, const dds::SampleInfo& info);
   void on_tick(Time now);
   void publish_state();
   void publish_scene();
@@ -50,6 +53,8 @@ class Service {
   service::Shell::Output<v1::ObjectState> object_state_;
   service::Shell::Output<v1::SceneState> scene_state_;
   service::Shell::Output<v1::GraspReport> reports_;
+  service::Shell::Output<v1::OperatorReply> replies_;
+  service::OrderBook orders_;
   std::uint64_t sequence_ = 0, scene_sequence_ = 0;
   Duration state_period_{};
   Time next_state_{};

@@ -6,6 +6,7 @@ import { parse } from "@foxglove/rosmsg";
 import { MessageReader } from "@foxglove/rosmsg2-serialization";
 import protocol from "@foxglove/ws-protocol";
 import WebSocket from "ws";
+import { accessible } from "./accessible.mjs";
 import { browse, start } from "./chromium.mjs";
 
 const [console_, sample, chromium, scratch, picture] = process.argv.slice(2);
@@ -42,6 +43,15 @@ await seek("1");
 await page.until(`Math.abs(${time} - 1) < 0.01`, "it is at its first second");
 await page.evaluate("document.getElementById('step').click()");
 await page.until(`Math.abs(${time} - 1 - 1 / 30) < 0.01`, "a step on");
+// Slowly: a quarter of the time that passes here.
+await page.evaluate(`document.getElementById("speed").value = "0.25"; document.getElementById("play").click()`);
+await page.until(`${time} > 1.2`, "it plays slowly");
+const [from, since] = await page.evaluate(`[${time}, performance.now()]`);
+await new Promise((later) => setTimeout(later, 3000));
+const [to, until] = await page.evaluate(`[${time}, performance.now()]`);
+const rate = 1000 * (to - from) / (until - since);
+assert.ok(Math.abs(rate - 0.25) < 0.1, `a quarter of its speed is ${rate}`);
+await page.evaluate("document.getElementById('play').click()");
 await seek("0");
 await page.until(`${time} < 0.01 && ${reports} === 0`, "at the beginning nothing was grasped yet");
 await seek("line.max");
@@ -77,6 +87,8 @@ const { data } = await page.call("Page.captureScreenshot", { format: "jpeg", qua
 writeFileSync(picture, Buffer.from(data, "base64"));
 assert.ok(data.length > 27000, "the picture is empty");
 assert.deepEqual(page.complaints, [], "the browser complains");
-console.log(`the page shows a grasp and ${bodies.size} bodies where they are; its picture is ${picture}`);
+const says = await accessible(page, ["play", "step", "speed", "time", "view", "near", "csv", "png"]);
+assert.deepEqual(page.complaints, [], "the browser complains");
+console.log(`the page shows a grasp and ${bodies.size} bodies where they are; its picture is ${picture}; ${says}`);
 await page.close();
 process.exit(0);

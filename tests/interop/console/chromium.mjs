@@ -22,8 +22,9 @@ export function start(program, args, stream, pattern) {
   });
 }
 
-// A page at this address. Its complaints are errors, also what the content security policy refuses.
-export async function browse(chromium, scratch, address, size = "1280,800", flags = []) {
+// A page at this address. Its complaints are errors, also what the content security policy refuses. first: a script
+// that runs before its own.
+export async function browse(chromium, scratch, address, size = "1280,800", flags = [], first = "") {
   const { line, child } = await start(chromium, ["--headless", "--no-sandbox", "--disable-dev-shm-usage",
     "--hide-scrollbars", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader",
     `--window-size=${size}`, `--user-data-dir=${scratch}`, "--remote-debugging-port=0", ...flags], "stderr", /ws:\/\/.*/);
@@ -45,6 +46,7 @@ export async function browse(chromium, scratch, address, size = "1280,800", flag
   const { targetId } = await call("Target.createTarget", { url: "about:blank" });
   ({ sessionId } = await call("Target.attachToTarget", { targetId, flatten: true }));
   for (const domain of ["Runtime", "Log", "Page"]) await call(`${domain}.enable`);
+  if (first) await call("Page.addScriptToEvaluateOnNewDocument", { source: first });
   await call("Page.navigate", { url: address });
 
   const evaluate = async (expression) => {

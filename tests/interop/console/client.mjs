@@ -111,11 +111,13 @@ for (const names of [["foxglove.websocket.v1"], ["foxglove.sdk.v1"],
   const joints = jointsOf(urdf);
   let compared = 0, worst = 0;
   for (const { message } of hands(heard)) {
-    const state = states.get(nanoseconds(message.transforms[0].timestamp));
-    if (!state) continue;
-    const base = state.x_wb;
-    const expected = forward(joints, poseOf(base.position, base.orientation), [...state.joint]);
+    // Beside links it tells of objects.
     for (const t of message.transforms) {
+      const state = states.get(nanoseconds(t.timestamp));
+      if (!state) continue;
+      const { position, orientation } = state.x_wb;
+      const expected = forward(joints, poseOf(position, orientation), [...state.joint]);
+      if (!expected.has(t.child_frame_id)) continue;
       const said = poseOf(t.translation, t.rotation), wanted = expected.get(t.child_frame_id);
       said.forEach((row, i) => row.forEach((value, j) =>
         (worst = Math.max(worst, Math.abs(value - wanted[i][j])))));

@@ -6,7 +6,8 @@ import { readFileSync, writeFileSync } from "node:fs";
 // The page's modules are bundled, so Node does not know them as such.
 const file = new URL("./hand-math.mjs", import.meta.url);
 writeFileSync(file, readFileSync(`${process.argv[2]}/hand-math.js`));
-const { calibrated, calibrationOf, Clutch, distance, placeOf, pointsAt, usualPalm } = await import(file);
+const { calibrated, calibrationOf, Clutch, distance, middleOfPalm, ofHeadset, onTable, placeOf, pointsAt, usualPalm } =
+  await import(file);
 
 // A flat right hand, m, about its middle; x right, y down, z away from the camera.
 function handOf(bend = 0, size = 1) {
@@ -52,6 +53,16 @@ close(clutch.follow([0.5, 0.9, 0.9]), [1.05, 2.05, 3.05], "a jump is none of the
 const placed = pointsAt(handOf(), [1, 2, 3]);
 close(palmOf(placed), [1, 2, 3], "the palm is there");
 assert.ok(Math.abs(distance(placed[0], placed[9]) - 0.095) < 1e-3);
+
+// A headset's joints: without the bones of the palm; before the user is x of the table, to the right -y, up z.
+const joints = Array.from({ length: 25 }, (_, i) => [i, 0, 0]);
+assert.deepEqual(ofHeadset(joints).map(([x]) => -x),
+                 [0, 1, 2, 3, 4, 6, 7, 8, 9, 11, 12, 13, 14, 16, 17, 18, 19, 21, 22, 23, 24]);
+const placedBy = (p) => onTable(ofHeadset([p])[0]);
+close(placedBy([0, 0, -1]), [1, 0, 0], "forward");
+close(placedBy([1, 0, 0]), [0, -1, 0], "right");
+close(placedBy([0, 1, 0]), [0, 0, 1], "up");
+close(middleOfPalm(placed), [1, 2, 3], "the palm's middle");
 
 // Postures: what they are, and what they are not.
 const pinch = handOf();

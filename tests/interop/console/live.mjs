@@ -9,7 +9,7 @@ setTimeout(() => { throw new Error("it takes more than three minutes"); }, 18000
 
 const recording = `${scratch}/lab.mcap`;
 const { line, child } = await start(`${bin}/prehend`, ["demo", "--watch", "--json", "--seed", "3", "--record", recording,
-  "--set", "console.port=0"], "stderr", /http:\S+/);
+  "--set", "console.port=0"], "stderr", /http:[^\s;]+/);
 const outcome = new Promise((told) => child.stdout.on("data", (bytes) => {
   const text = String(bytes);
   if (text.startsWith("{")) told(JSON.parse(text));

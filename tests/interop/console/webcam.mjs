@@ -56,7 +56,7 @@ const errorOf = (seen, row) => {
 async function track() {
   const camera = await makeCamera();
   const { line, child } = await start(`${bin}/prehend-console`,
-    ["--set", "console.port=0", "--set", "glove.device=landmarks", "--set", `lab.rig=webcam-${process.pid}`], "stdout", /http:\S+/);
+    ["--set", "console.port=0", "--set", "glove.device=landmarks", "--set", `lab.rig=webcam-${process.pid}`], "stdout", /http:[^\s;]+/);
   const page = await browse(chromium, `${scratch}/browser`, line, "1280,800",
     ["--use-fake-ui-for-media-stream", "--use-fake-device-for-media-stream", `--use-file-for-fake-video-capture=${camera}`]);
   await page.until("document.getElementById('link').textContent === 'connected'", "it is connected");
@@ -87,7 +87,7 @@ async function track() {
 const open = 285, fist = 270;
 async function grasp() {
   const { line, child } = await start(`${bin}/prehend`, ["demo", "--watch", "--json", "--seed", "3", "--timeout", "150",
-    "--glove", "landmarks:127.0.0.1:9870", "--set", "console.port=0"], "stderr", /http:\S+/);
+    "--glove", "landmarks:127.0.0.1:9870", "--set", "console.port=0"], "stderr", /http:[^\s;]+/);
   const outcome = new Promise((told) => child.stdout.on("data", (bytes) => {
     const text = String(bytes);
     if (text.startsWith("{")) told(JSON.parse(text));

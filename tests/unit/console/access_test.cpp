@@ -103,17 +103,20 @@ TEST(Access, OrdersComeFromThePageAlone) {
 }
 
 // What leads a robot's hand is let in as orders are.
-TEST(Access, AHandComesFromThePageAlone) {
-  Asked asked = order();
-  asked.target = "/hand";
-  EXPECT_EQ(judge(asked, local()).route, Route::hand);
-  asked.token = "another";
-  EXPECT_EQ(judge(asked, local()).status, 403);
-  asked = order();
-  asked.target = "/hand";
-  asked.origin = "https://evil.example";
-  EXPECT_EQ(judge(asked, local()).status, 403);
-  EXPECT_EQ(judge(get("/hand"), local()).status, 405);
+TEST(Access, AHandAndConsentComeFromThePageAlone) {
+  for (const auto& [target, route] :
+       {std::pair{"/hand", Route::hand}, {"/consent", Route::consent}}) {
+    Asked asked = order();
+    asked.target = target;
+    EXPECT_EQ(judge(asked, local()).route, route);
+    asked.token = "another";
+    EXPECT_EQ(judge(asked, local()).status, 403);
+    asked = order();
+    asked.target = target;
+    asked.origin = "https://evil.example";
+    EXPECT_EQ(judge(asked, local()).status, 403);
+    EXPECT_EQ(judge(get(target), local()).status, 405);
+  }
   EXPECT_EQ(judge(get("/hands/hands.js"), local()).route, Route::tracking);
   EXPECT_EQ(judge(get("/hands/hands.js"), local()).what, "hands.js");
 }

@@ -4,8 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <map>
 #include <nlohmann/json.hpp>
 
+#include "common/base/random.hpp"
 #include "services/console/core/round.hpp"
 
 namespace prehend::console {
@@ -18,8 +20,9 @@ Payload text(std::string words) {
 Hub::Options two_channels() {
   Hub::Options options;
   options.session = "1";
-  options.channels = {{{0, "/tf", "json", "foxglove.FrameTransforms", "jsonschema", "{}"}, false},
-                      {{0, "/log", "json", "foxglove.Log", "jsonschema", "{}"}, true}};
+  options.channels = {
+      {{0, "/scene", "json", "foxglove.SceneUpdate", "jsonschema", "{}"}, false, "", ""},
+      {{0, "/log", "json", "foxglove.Log", "jsonschema", "{}"}, true, "", ""}};
   options.max_queued = 4;
   options.max_control = 8;
   return options;
@@ -102,9 +105,84 @@ TEST(Hub, ASlowOneGetsTheNewestIsToldWhatItMissedAndHarmsNobody) {
   ASSERT_EQ(frames.size(), 1U + 5U);
   EXPECT_EQ(document(frames[0])["op"], "status");
   EXPECT_EQ(document(frames[0])["message"],
-            "too slow for all messages; missed 999 of /tf, 996 of /log");
+            "too slow for all messages; missed 999 of /scene, 996 of /log");
   EXPECT_EQ(*frames[1].payload, "log 996");
   EXPECT_EQ(*frames[2].payload, "hand 999");
+}
+
+TEST(Hub, WhoIsThereIsToldTheLastOfWhatEndsAndWhoComesLaterNothing) {
+  Hub hub(two_channels());
+  const auto there = watch(hub);
+  hub.publish(0, "cup", 1, text("gone"));
+  hub.forget(0, "cup");
+  EXPECT_TRUE(drain(hub, watch(hub)).empty());
+  const auto frames = drain(hub, there);
+  ASSERT_EQ(frames.size(), 1U);
+  EXPECT_EQ(*frames[0].payload, "gone");
+  hub.publish(0, "cup", 2, text("there again"));
+  EXPECT_EQ(drain(hub, watch(hub)).size(), 1U);
+  EXPECT_EQ(drain(hub, there).size(), 1U);
+  EXPECT_EQ(hub.dropped(), 0U);
+}
+
+Hub::Options one_list() {
+  Hub::Options options = two_channels();
+  options.channels[0].opening = "[";
+  options.channels[0].closing = "]";
+  return options;
+}
+
+TEST(Hub, OfAListAllThatIsNewGoesAsOneWhoseBytesAreShared) {
+  Hub hub(one_list());
+  const auto quick = watch(hub), other = watch(hub), slow = watch(hub);
+  hub.publish(0, "hand", 3, text("1"));
+  hub.publish(0, "cup", 2, text("2,3"));
+  auto first = drain(hub, quick), second = drain(hub, other);
+  ASSERT_EQ(first.size(), 1U);
+  ASSERT_EQ(second.size(), 1U);
+  EXPECT_EQ(*first[0].payload, "[1,2,3]");
+  EXPECT_EQ(first[0].head[5], 3) << "the stamp is the newest";
+  EXPECT_EQ(first[0].payload.get(), second[0].payload.get());
+  hub.publish(0, "hand", 4, text("4"));
+  first = drain(hub, quick);
+  ASSERT_EQ(first.size(), 1U);
+  EXPECT_EQ(*first[0].payload, "[4]");
+  EXPECT_EQ(*drain(hub, slow).at(0).payload, "[2,3,4]");
+  EXPECT_EQ(hub.dropped(), 1U) << "the slow one never got the first hand";
+  EXPECT_EQ(*drain(hub, watch(hub)).at(0).payload, "[2,3,4]") << "who comes late";
+  hub.forget_all();
+  hub.publish(0, "hand", 5, text("5"));
+  EXPECT_EQ(*drain(hub, slow).at(0).payload, "[5]");
+  EXPECT_EQ(hub.dropped(), 1U);
+}
+
+// A story that a client reads now and then, against a plain model of it.
+TEST(Story, EveryReaderEndsWithTheNewestOfEveryKeyThatIsThere) {
+  Random random(7);
+  Story story(1000, 4);
+  std::map<std::string, std::string> newest;
+  struct Seen {
+    Story::Reader reader;
+    std::map<std::string, std::string> by_key;
+    std::uint64_t got = 0, told = 0;
+  };
+  std::vector<Seen> all(3);
+  std::uint64_t put = 0;
+  for (int i = 0; i < 3000; ++i) {
+    const std::string key(1, static_cast<char>('a' + static_cast<int>(9 * random.uniform(0, 1))));
+    const std::string words = key + std::to_string(i);
+    story.put(key, i, text(words));
+    newest[key] = words;
+    ++put;
+    Seen& seen = all[static_cast<std::size_t>(i) % 3];
+    if (random.uniform(0, 1) < 0.7) continue;
+    while (const auto part = story.next(seen.reader)) {
+      seen.by_key[part->payload->substr(0, 1)] = *part->payload;
+      ++seen.got;
+    }
+    EXPECT_EQ(seen.by_key, newest);
+    EXPECT_EQ(seen.got + story.missed(seen.reader), put) << "got or missed, each once";
+  }
 }
 
 TEST(Hub, WhoAsksWithoutTakingAnswersIsLetGo) {

@@ -38,6 +38,17 @@ TEST(Mailbox, AnEndReplacesWhatItEnds) {
   EXPECT_FALSE(letters[0].payload);
 }
 
+TEST(Mailbox, RingsOnceUntilItIsEmptied) {
+  int rings = 0;
+  Mailbox mailbox({false, true}, [&] { ++rings; });
+  for (std::size_t i = 0; i < 10; ++i) mailbox.put(i % 2, sample(1, 0));
+  EXPECT_EQ(rings, 1);
+  mailbox.take();
+  EXPECT_EQ(rings, 1);
+  mailbox.put(1, sample(1, 0));
+  EXPECT_EQ(rings, 2);
+}
+
 TEST(Mailbox, WhoSendsWithoutEndTakesNoMemoryWithoutEnd) {
   Mailbox mailbox({false, true});
   for (unsigned i = 0; i < 10000; ++i) {

@@ -199,6 +199,32 @@ TEST(Simulation, SightingsPlaceObjectsAndMoveThemOnlyWhileTheHandIsFar) {
   EXPECT_EQ(simulation->world().body_count(), 1);
 }
 
+TEST(Simulation, AnOrderPlacesAnObjectWhereNothingIs) {
+  const auto simulation = made();
+  const auto stands_at = [&](int body) -> Vector3d {
+    return simulation->world().body_motion(body).X_WO.translation();
+  };
+  grasping::Body cup = talc;
+  cup.name = "cup";
+  EXPECT_TRUE(*simulation->see(cup, make_pose(Vector3d(0, 0, 0))));
+  EXPECT_TRUE(*simulation->place(talc, make_pose(Vector3d(0.2, 0, 0.9))));
+  EXPECT_LT((stands_at(1) - Vector3d(0.2, 0, 0.0525)).norm(), 1e-12) << "it stands on the table";
+  EXPECT_FALSE(*simulation->place(talc, make_pose(Vector3d(0.3, 0.1, 0)))) << "no new body";
+  EXPECT_LT((stands_at(1) - Vector3d(0.3, 0.1, 0.0525)).norm(), 1e-12);
+  // What is still seen of it where it was does not take it back.
+  EXPECT_FALSE(*simulation->see(talc, make_pose(Vector3d(0.1, 0, 0))));
+  EXPECT_LT((stands_at(1) - Vector3d(0.3, 0.1, 0.0525)).norm(), 1e-12);
+
+  EXPECT_FALSE(simulation->place(talc, make_pose(Vector3d(0.03, 0.03, 0)))) << "the cup is there";
+  EXPECT_TRUE(simulation->place(talc, make_pose(Vector3d(0.31, 0.1, 0))))
+      << "it may stand on itself";
+  ASSERT_TRUE(simulation->accept(command({-0.3, 0, 0.06}, 0), start));
+  EXPECT_FALSE(simulation->place(talc, make_pose(Vector3d(-0.3, 0, 0)))) << "the hand is there";
+  EXPECT_FALSE(simulation->place(talc, make_pose(Vector3d(nan, 0, 0))));
+  EXPECT_FALSE(simulation->place(talc, make_pose(Vector3d(99, 0, 0))));
+  EXPECT_LT((stands_at(1) - Vector3d(0.31, 0.1, 0.0525)).norm(), 1e-12);
+}
+
 struct Episode {
   std::vector<Closure> closures;
   std::unique_ptr<Simulation> simulation;
@@ -246,6 +272,11 @@ TEST(Simulation, AGraspIsFoundOnceJudgedAndReallyLifted) {
 
 // DLR's hand held what stood there, and no grasp was reported: a finger that touched nothing
 // trembled with the operator's.
+TEST(Simulation, WhatTheHandHoldsIsNotTakenAwayByAnOrder) {
+  Episode episode = reach_and_lift(talc, {0.005, 0.005, 0.005});
+  EXPECT_FALSE(episode.simulation->place(talc, make_pose(Vector3d(0.5, 0.5, 0))));
+}
+
 TEST(Simulation, AFingerThatTouchesNothingMayTremble) {
   EXPECT_EQ(reach_and_lift(talc, {0.005, 0.005, 0.005}, 0.04).closures.size(), 1u);
   EXPECT_TRUE(reach_and_lift(talc, {0, -0.10, 0}, 0.04).closures.empty());

@@ -1,5 +1,7 @@
 #include "services/console/service/web/server.hpp"
 
+#include <algorithm>
+
 #include "services/console/service/web/session.hpp"
 
 namespace prehend::console::web {
@@ -47,13 +49,21 @@ class BeastServer final : public Server {
 
   void run() override {
     accept();
-    timer_.expires_after(connections_.options.period);
-    await_tick();
+    await_tick(asio::steady_timer::clock_type::now() + connections_.options.period);
     context_.run();
     // Who is connected is kept by what the context still holds: they go with it, before the rest.
     for (Connection* one : connections_.all) one->close();
     context_.restart();
     context_.poll();
+  }
+
+  void wake() override {
+    asio::post(context_, [this] {
+      const Options& options = connections_.options;
+      const Instant at = std::max(asio::steady_timer::clock_type::now() + options.together,
+                                  ticked_ + options.soonest);
+      if (!stopping_ && at < timer_.expiry()) await_tick(at);
+    });
   }
 
   void stop() override {
@@ -67,6 +77,8 @@ class BeastServer final : public Server {
   }
 
  private:
+  using Instant = asio::steady_timer::time_point;
+
   void accept() {
     acceptor_.async_accept([this](Code failed, asio::ip::tcp::socket socket) {
       if (stopping_ || failed == asio::error::operation_aborted) return;
@@ -96,17 +108,19 @@ class BeastServer final : public Server {
           ->start();
   }
 
-  void await_tick() {
+  /// Instead of what was waited for before.
+  void await_tick(Instant at) {
+    timer_.expires_at(at);
     timer_.async_wait([this](Code failed) {
       if (failed || stopping_) return;
+      ticked_ = asio::steady_timer::clock_type::now();
       connections_.site.tick();
       // Those that are let go leave the set meanwhile.
       const std::vector<Connection*> all(connections_.all.begin(), connections_.all.end());
       for (Connection* one : all)
         if (connections_.all.contains(one)) one->flush();
       // A late tick is not made up for.
-      timer_.expires_after(connections_.options.period);
-      await_tick();
+      await_tick(asio::steady_timer::clock_type::now() + connections_.options.period);
     });
   }
 
@@ -115,6 +129,7 @@ class BeastServer final : public Server {
   asio::ssl::context security_;
   asio::ip::tcp::acceptor acceptor_;
   asio::steady_timer timer_;
+  Instant ticked_{};
   bool stopping_ = false;
 };
 

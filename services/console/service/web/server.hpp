@@ -44,7 +44,10 @@ class Server {
     std::size_t max_clients = 64;
     Duration patience =
         std::chrono::seconds(10);  // until a request is there, six times of it for a pong
-    Duration period = std::chrono::microseconds(16667);  // of Site::tick()
+    // Of Site::tick(), when nothing is new; after wake() it comes as soon as what arrives together
+    // is there, but not more often than that.
+    Duration period = std::chrono::microseconds(16667);
+    Duration together = std::chrono::milliseconds(2), soonest = std::chrono::microseconds(8333);
   };
   /// The site must outlive it.
   static Expected<std::unique_ptr<Server>> listen(const Options& options, Site& site);
@@ -54,6 +57,8 @@ class Server {
   /// Until stop(), which every thread may call.
   virtual void run() = 0;
   virtual void stop() = 0;
+  /// There is something new. Every thread may call it.
+  virtual void wake() = 0;
 };
 
 }  // namespace prehend::console::web

@@ -145,6 +145,8 @@ class Session : public Connection, public std::enable_shared_from_this<Session<S
     times.keep_alive_pings = true;
     socket_->set_option(times);
     socket_->read_message_max(max_request);
+    // A message in one write, however large.
+    socket_->auto_fragment(false);
     socket_->set_option(beast::websocket::stream_base::decorator(
         [protocol](beast::websocket::response_type& response) {
           response.set(http::field::sec_websocket_protocol, protocol);

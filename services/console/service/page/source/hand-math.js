@@ -35,6 +35,13 @@ export function placeOf(picture, metres, ratio) {
   return [centre[0] / scale, centre[1] / scale, focal / scale];
 }
 
+// A headset's 25 joints (x right, y up, -z forward) as the 21 points of a webcam that stands before the user:
+// without the bones of the palm, and in its axes.
+export const ofHeadset = (joints) =>
+  joints.filter((_, i) => ![5, 10, 15, 20].includes(i)).map(([x, y, z]) => [-x, -y, z]);
+
+export const middleOfPalm = (points) => mean(palm.map((i) => points[i]));
+
 const curl = (points) => mean(tips.slice(1).map((i) => [distance(points[i], points[0])]))[0];
 
 // What three postures tell of the user's hand; or why not.
@@ -84,6 +91,6 @@ export class Clutch {
 
 // Points on the table: the palm's middle is at `at`.
 export function pointsAt(metres, at) {
-  const turned = metres.map(onTable), centre = mean(palm.map((i) => turned[i]));
+  const turned = metres.map(onTable), centre = middleOfPalm(turned);
   return turned.map((p) => p.map((x, k) => x - centre[k] + at[k]));
 }

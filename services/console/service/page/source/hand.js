@@ -1,6 +1,7 @@
 // A hand before the webcam as glove: tracked in the browser, sent to the console, which hands it on.
 // Pictures never leave the browser.
 import { calibrated, calibrationOf, Clutch, placeOf, pointsAt } from "./hand-math.js";
+import { hasHeadset, startHeadset } from "./headset.js";
 
 const byId = (id) => document.getElementById(id);
 const token = document.querySelector('meta[name="prehend-token"]').content;
@@ -28,16 +29,17 @@ class Tracker {
     line.className = bad ? "bad" : "";
   }
 
-  // One hand: picture {x, y} from 0 to 1 and metres [x, y, z] of 21 points; when in performance.now().
-  take({ picture, metres, left, score, ratio, at }) {
+  // One hand: picture {x, y} from 0 to 1 and metres [x, y, z] of 21 points; when in performance.now(). Who
+  // knows real metres says the place himself.
+  take({ picture, metres, place: known, left, score, ratio, at }) {
     if (!(score >= minScore)) return this.lose("the hand is not seen clearly");
-    const place = placeOf(picture, metres, ratio);
+    const place = known ?? placeOf(picture, metres, ratio);
     if (!place) return this.lose("the hand is not seen whole");
     this.heard = at;
     ++this.seen;
     this.collecting?.(metres);
     const room = byId("hand-place").value === "room";
-    const points = calibrated(metres, this.calibration);
+    const points = known ? metres : calibrated(metres, this.calibration);
     this.send({ hand: left ? "left" : "right", origin: room ? "room" : "hand",
                 points_m: room ? pointsAt(points, this.clutch.follow(place)) : points }, at);
   }
@@ -51,7 +53,7 @@ class Tracker {
   watch() {
     if (!this.running) return;
     const silence = performance.now() - this.heard;
-    if (silence > lostAfter) this.lose("no hand is seen: show one to the camera");
+    if (silence > lostAfter) this.lose("no hand is seen: show one");
   }
 
   // One at a time: a slow lab gets the newest, not a queue.
@@ -174,33 +176,48 @@ export function setUpHand(where) {
   const tracker = new Tracker(start());
   // Tests listen here, and play recorded points.
   section.take = (seen) => tracker.take(seen);
-  const controls = ["calibrate", "clutch"].map(byId), button = byId("webcam-switch");
-  const set = (running) => {
-    for (const control of controls) control.disabled = !running;
-    byId("webcam").hidden = !running;
-    button.textContent = running ? "Stop the webcam" : "Start the webcam";
+  const buttons = ["webcam", "headset"].map((source) => byId(`${source}-switch`));
+  // source: which of the two runs; nothing: none.
+  const set = (source) => {
+    byId("clutch").disabled = !source;
+    byId("calibrate").disabled = byId("webcam").hidden = source !== "webcam";
+    for (const button of buttons) {
+      const own = button.id === `${source}-switch`;
+      button.disabled = Boolean(source && !own);
+      button.textContent = `${own ? "Stop" : "Start"} the ${button.id.split("-")[0]}`;
+    }
   };
+  hasHeadset().then((there) => (byId("headset").hidden = !there));
   if (refusal) {
-    button.disabled = true;
+    for (const button of buttons) button.disabled = true;
     return tracker.say(refusal);
   }
-  button.onclick = async () => {
-    if (tracker.running) {
-      tracker.stop();
-      tracker.lead(false);
-      set(false);
-      return tracker.say("");
-    }
-    button.disabled = true;
-    try {
-      tracker.clutch.at = start();
-      await startWebcam(tracker);
-      set(true);
-    } catch (error) {
-      tracker.say(error.message, true);
-    }
-    button.disabled = false;
+  const over = () => {
+    tracker.running = false;
+    tracker.lead(false);
+    set();
+    tracker.say("");
   };
+  const startBy = {
+    webcam: () => startWebcam(tracker),
+    headset: () => startHeadset(tracker, (seen) => section.take(seen), over),
+  };
+  for (const [source, begin] of Object.entries(startBy))
+    byId(`${source}-switch`).onclick = async ({ target }) => {
+      if (tracker.running) {
+        tracker.stop();
+        return over();
+      }
+      target.disabled = true;
+      try {
+        tracker.clutch.at = start();
+        await begin();
+        set(source);
+      } catch (error) {
+        tracker.say(error.message, true);
+      }
+      target.disabled = false;
+    };
   byId("clutch").onclick = () => tracker.lead(!tracker.clutch.on);
   byId("webcam").tabIndex = 0;
   byId("webcam").onkeydown = (event) => {

@@ -1,6 +1,7 @@
 // Prehend's console: what the lab says, drawn from the newest message at each frame.
 import { Connection } from "./connection.js";
-import { setUpOrders, showReply, showWhoObeys } from "./orders.js";
+import { showConsent } from "./consent.js";
+import { setUpOrders, showObject, showReply, showWhoObeys } from "./orders.js";
 import { setUpHand } from "./hand.js";
 import { forgetLists, showLag, showLatency, showLink, showLog, showReport, showStatus } from "./panels.js";
 import { Picture } from "./picture.js";
@@ -25,6 +26,7 @@ const transforms = new Map();
 const updates = new Map();
 let handStamp;
 let lag;
+const isLink = ({ id, frame_id }) => !id.startsWith("object/") && id.endsWith(`/${frame_id}`);
 
 function draw() {
   if (world) {
@@ -53,16 +55,19 @@ const playback = new Playback(() => {
 
 const topics = {
   "/tf": (message) => {
-    for (const t of message.transforms) transforms.set(t.child_frame_id, t);
-    if (message.transforms.length > 1) {
-      const { child_frame_id, timestamp: { sec, nsec } } = message.transforms[0];
-      if (world) world.hand = child_frame_id;
-      handStamp = sec * 1000 + nsec / 1e6;
+    for (const t of message.transforms) {
+      transforms.set(t.child_frame_id, t);
+      if (t.child_frame_id === world?.hand) handStamp = t.timestamp.sec * 1000 + t.timestamp.nsec / 1e6;
     }
   },
   "/scene": ({ deletions, entities }) => {
     for (const gone of deletions) updates.set(gone.id, { deletions: [gone], entities: [] });
-    for (const entity of entities) updates.set(entity.id, { deletions: [], entities: [entity] });
+    for (const entity of entities) {
+      updates.set(entity.id, { deletions: [], entities: [entity] });
+      // The first link that is told of is a hand's base: HAND/LINK in the frame LINK.
+      if (world && !world.hand && isLink(entity)) world.hand = entity.frame_id;
+      if (entity.id.startsWith("object/")) showObject(entity.id.slice("object/".length));
+    }
   },
   "/camera/image": (message) => picture.show(message),
   "/camera/annotations": (message) => picture.annotate(message),
@@ -73,6 +78,7 @@ const topics = {
   "/status": (status) => {
     showStatus(status);
     showWhoObeys(status);
+    showConsent(status);
   },
   "/latency": (message) => {
     showLatency(message);

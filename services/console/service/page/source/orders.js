@@ -12,14 +12,15 @@ function answerLine(text) {
   return line;
 }
 
-async function give(action, argument) {
+// more: beside the argument, as where an object is placed.
+async function give(action, argument, more = {}) {
   const words = argument ? `${action} (${argument})` : action;
   const line = answerLine(`${words}: sent`);
   try {
     const response = await fetch("/order", {
       method: "POST",
       headers: { "X-Prehend-Token": token, "Content-Type": "application/json" },
-      body: JSON.stringify({ action, argument }),
+      body: JSON.stringify({ action, argument, ...more }),
     });
     if (!response.ok) throw new Error((await response.text()).trim());
     const { id } = await response.json();
@@ -53,7 +54,7 @@ export function showReply(reply) {
 }
 
 // An order that nobody would obey is greyed, and says why. A stop is always given.
-const obeyedBy = { record: "recorder", mode: "mapping", show: "demonstration" };
+const obeyedBy = { record: "recorder", replay: "replayer", mode: "mapping", place: "simulation", show: "demonstration" };
 export function showWhoObeys({ services }) {
   for (const [action, name] of Object.entries(obeyedBy)) {
     const there = services.some((one) => one.name === name);
@@ -69,9 +70,19 @@ export function setUpOrders() {
   document.getElementById("orders").hidden = false;
   document.getElementById("stop").onclick = () => give("stop", "by the console");
   document.getElementById("shown").onclick = () => give("shown", "");
-  for (const action of ["release", "record", "mode", "show", "lead"])
+  for (const action of ["release", "record", "replay", "mode", "place", "show", "lead"])
     document.getElementById(action).onsubmit = (event) => {
       event.preventDefault();
-      give(action, new FormData(event.target).get("argument"));
+      const { argument, ...rest } = Object.fromEntries(new FormData(event.target));
+      give(action, argument, Object.fromEntries(Object.entries(rest).map(([name, value]) => [name, Number(value)])));
     };
+}
+
+// What stands there already is offered to be placed elsewhere.
+export function showObject(name) {
+  const list = document.getElementById("objects");
+  if ([...list.options].some((one) => one.value === name)) return;
+  const option = document.createElement("option");
+  option.value = name;
+  list.append(option);
 }

@@ -1,0 +1,105 @@
+// headset.mjs BIN CHROMIUM SCRATCH: an emulated headset moves and closes its hand; hand/posture, which the glove
+// makes of it, follows.
+import assert from "node:assert/strict";
+import { readFileSync } from "node:fs";
+import { createRequire } from "node:module";
+import { dirname, join } from "node:path";
+import { parse } from "@foxglove/rosmsg";
+import { MessageReader } from "@foxglove/rosmsg2-serialization";
+import protocol from "@foxglove/ws-protocol";
+import WebSocket from "ws";
+import { browse, start } from "./chromium.mjs";
+
+const [bin, chromium, scratch] = process.argv.slice(2);
+setTimeout(() => { throw new Error("it takes more than two minutes"); }, 120000).unref();
+
+const lab = ["--set", `lab.rig=headset-${process.pid}`, "--set", "glove.device=landmarks", "--set", "glove.port=127.0.0.1:9874"];
+await start(`${bin}/prehend-glove`, lab, "stderr", /./);
+const { line: address } = await start(`${bin}/prehend-console`, [...lab, "--set", "console.port=0"], "stdout", /http:[^\s;]+/);
+const emulator = readFileSync(join(dirname(createRequire(import.meta.url).resolve("iwer")), "../build/iwer.min.js"), "utf8");
+const page = await browse(chromium, `${scratch}/browser`, address, "1000,700", [], `${emulator};
+  window.headset = new IWER.XRDevice(IWER.metaQuest3);
+  headset.installRuntime({ forceInstall: true });
+  headset.primaryInputMode = "hand";`);
+await page.until("document.getElementById('link').textContent === 'connected'", "it is connected");
+await page.until("!document.getElementById('headset').hidden", "the headset is seen");
+
+// The newest posture: fingertips on the table, m.
+let tips, heard = 0;
+const client = new protocol.FoxgloveClient({ ws: new WebSocket(address.replace("http", "ws"), ["foxglove.sdk.v1"]) });
+let reader;
+client.on("advertise", (all) => {
+  const channel = all.find(({ topic }) => topic === "hand/posture");
+  reader = new MessageReader(parse(channel.schema, { ros2: true }));
+  client.subscribe(channel.id);
+});
+function rotate({ w, x, y, z }, p) {
+  const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
+  const t = cross([x, y, z], p).map((c) => 2 * c), u = cross([x, y, z], t);
+  return p.map((c, k) => c + w * t[k] + u[k]);
+}
+client.on("message", ({ data }) => {
+  ++heard;
+  const { x_wh: { position: o, orientation }, fingertips } = reader.readMessage(data);
+  tips = fingertips.map(({ p_hf: { x, y, z } }) => rotate(orientation, [x, y, z]).map((c, k) => c + [o.x, o.y, o.z][k]));
+});
+const distance = (a, b) => Math.hypot(...a.map((x, k) => x - b[k]));
+// Filters have settled: three times in a row nothing has moved for half a second, in which postures came.
+async function settled() {
+  for (let before, had = 0, still = 0, i = 0; i < 80; ++i) {
+    await new Promise((later) => setTimeout(later, 500));
+    const rests = before && heard >= had + 2 && tips.every((tip, f) => distance(tip, before[f]) < 5e-4);
+    still = rests ? still + 1 : 0;
+    if (still === 3) return tips;
+    [before, had] = [tips, heard];
+  }
+  throw new Error(`the posture does not come to rest, ${heard} heard: ${JSON.stringify(tips)}, ${await page.evaluate("document.getElementById('hand-state').textContent")}`);
+}
+
+await page.evaluate("document.getElementById('headset-switch').click()");
+await page.until("Number(document.getElementById('hand').dataset.sent) > 5", "hands are sent");
+const move = (x, y, z) => page.evaluate(`(async () => {
+  // As a hand moves, not as one jumps.
+  const { position } = headset.hands.right, from = [position.x, position.y, position.z];
+  for (let i = 1; i <= 20; ++i) {
+    position.set(...from.map((value, k) => value + [${x}, ${y}, ${z}][k] * i / 20));
+    await new Promise((later) => setTimeout(later, 100));
+  }
+})()`);
+const pinch = (hand, value) => page.evaluate(`headset.hands.${hand}.updatePinchValue(${value})`);
+
+const first = await settled();
+await move(0.05, 0, 0);
+const second = await settled();
+assert.ok(second.every((tip, f) => distance(tip, first[f]) < 5e-3), `without the other hand's pinch it stays: ${JSON.stringify([first, second])}`);
+await pinch("left", 1);
+await page.until("document.getElementById('clutch').getAttribute('aria-pressed') === 'true'", "the pinch is seen");
+const before = await settled();
+// Right, up and forward before the user are -y, z and x of the table.
+const step = [0.08, 0.06, -0.1], wanted = [0.1, -0.08, 0.06];
+await move(...step);
+const after = await settled();
+const worst = Math.max(...after.map((tip, f) => distance(tip.map((x, k) => x - before[f][k]), wanted)));
+assert.ok(worst < 5e-3, `a fingertip is off by ${1000 * worst} mm`);
+await pinch("left", 0);
+await page.until("document.getElementById('clutch').getAttribute('aria-pressed') === 'false'", "the other hand lets go");
+
+// Thumb and index meet as the headset's own joints do.
+await pinch("right", 1);
+const closed = await settled(), open = distance(after[0], after[1]), gap = distance(closed[0], closed[1]);
+const own = await page.evaluate(`new Promise((told) => {
+  const section = document.getElementById("hand"), take = section.take;
+  section.take = (seen) => {
+    section.take = take;
+    take(seen);
+    told(Math.hypot(...seen.metres[4].map((x, k) => x - seen.metres[8][k])));
+  };
+})`);
+assert.ok(Math.abs(gap - own) < 5e-3 && gap < open - 0.02, `thumb and index: ${gap} m apart, in the headset ${own} m, open ${open} m`);
+assert.deepEqual(page.complaints, [], "the browser complains");
+await page.evaluate("document.getElementById('headset-switch').click()");
+await page.until("document.getElementById('headset-switch').textContent === 'Start the headset'", "it has ended");
+client.close();
+await page.close();
+console.log(`fingertips of the headset were followed, the worst off by ${(1000 * worst).toFixed(1)} mm; a pinch is ${(1000 * gap).toFixed(1)} mm, in the headset ${(1000 * own).toFixed(1)} mm`);
+process.exit(0);
