@@ -35,9 +35,9 @@ grasping::Body body_of(const model::CatalogueObject& object) {
 
 Expected<std::unique_ptr<Simulation>> Simulation::create(const model::HandModel& hand,
                                                          const Options& options,
-                                                         std::unique_ptr<CarryingArm> arm) {
+                                                         std::unique_ptr<carrying::CarryingArm> arm) {
   grasping::WorldOptions how{.rate = options.rate, .brake = options.brake};
-  if (arm) how.base = CarryingArm::base();
+  if (arm) how.base = carrying::CarryingArm::base();
   auto world = grasping::World::create(hand, arm ? arm->home() : resting_place,
                                        hand.postures().at("open"), how);
   if (!world) return tl::unexpected(world.error());
@@ -46,7 +46,7 @@ Expected<std::unique_ptr<Simulation>> Simulation::create(const model::HandModel&
 }
 
 Simulation::Simulation(const model::HandModel& hand, const Options& options,
-                       std::unique_ptr<grasping::World> world, std::unique_ptr<CarryingArm> arm)
+                       std::unique_ptr<grasping::World> world, std::unique_ptr<carrying::CarryingArm> arm)
     : hand_(hand),
       options_(options),
       world_(std::move(world)),
@@ -175,7 +175,7 @@ bool Simulation::step() {
   return true;
 }
 
-std::optional<ArmMotion> Simulation::arm_motion() const {
+std::optional<carrying::ArmMotion> Simulation::arm_motion() const {
   if (!arm_) return std::nullopt;
   return arm_->motion(*world_);
 }

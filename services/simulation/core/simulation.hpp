@@ -12,7 +12,7 @@
 #include "common/grasping/world.hpp"
 #include "common/model/catalogue.hpp"
 #include "common/model/scene.hpp"
-#include "services/simulation/core/carrying_arm.hpp"
+#include "common/carrying/carrying_arm.hpp"
 #include "services/simulation/core/closure.hpp"
 #include "services/simulation/core/command.hpp"
 
@@ -36,7 +36,7 @@ class Simulation {
   /// arm: carries the hand, which begins at its home; none: the hand flies.
   static Expected<std::unique_ptr<Simulation>> create(const model::HandModel& hand,
                                                       const Options& options = {},
-                                                      std::unique_ptr<CarryingArm> arm = nullptr);
+                                                      std::unique_ptr<carrying::CarryingArm> arm = nullptr);
 
   /// Objects as the scene says. Fails on what cannot be simulated.
   Expected<void> build(const model::Scene& scene, const model::Catalogue& catalogue);
@@ -68,19 +68,19 @@ class Simulation {
   bool is_braking() const { return braking_; }
   const grasping::World& world() const { return *world_; }
   /// What the arm does; nothing without one.
-  std::optional<ArmMotion> arm_motion() const;
-  const CarryingArm* arm() const { return arm_.get(); }
+  std::optional<carrying::ArmMotion> arm_motion() const;
+  const carrying::CarryingArm* arm() const { return arm_.get(); }
 
  private:
   Simulation(const model::HandModel& hand, const Options& options,
-             std::unique_ptr<grasping::World> world, std::unique_ptr<CarryingArm> arm);
+             std::unique_ptr<grasping::World> world, std::unique_ptr<carrying::CarryingArm> arm);
   void approach(const Command& command);
   void brake();
 
   const model::HandModel& hand_;
   Options options_;
   std::unique_ptr<grasping::World> world_;
-  std::unique_ptr<CarryingArm> arm_;
+  std::unique_ptr<carrying::CarryingArm> arm_;
   ClosureDetector detector_;
   Duration period_;
   Time time_{}, goal_{};
