@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 
@@ -14,18 +13,19 @@ namespace {
 using arm::Joints;
 
 constexpr double look_m = 0.01, look_rad = 0.05;  // along a straight way
-constexpr double max_turn = 0.5;                  // rad, of a joint between two looks
-constexpr double apart = 0.03;                    // m, of the corners of a path
-constexpr int gentle = 6;                         // corners, over which a bend is spread
+constexpr int looks_at_branch = 40;
+constexpr double near_branch = 0.25;  // of the least dexterity: a way may lead round
+constexpr double max_turn = 0.5;      // rad, of a joint between two looks
+constexpr double apart = 0.03;        // m, of the corners of a path
+constexpr int gentle = 6;             // corners, over which a bend is spread
 
-/// Which side of all singularities a posture is on, of an arm with six joints.
-bool is_same_side(const model::ArmModel& arm, const Joints& a, const Joints& b) {
-  if (arm.joints.size() != 6) return true;
-  const auto determinant = [&](const Joints& q) {
-    const Eigen::Matrix<double, 6, 6> J = arm::jacobian(arm, arm::forward(arm, q));
-    return J.determinant();
-  };
-  return (determinant(a) > 0) == (determinant(b) > 0);
+/// Does the straight way between two postures keep off singularities, whatever else is there? If
+/// not, they are on different branches of the inverse kinematics, or nearly so.
+bool is_same_branch(const Room& room, const Joints& a, const Joints& b, double min_dexterity) {
+  for (int k = 1; k < looks_at_branch; ++k)
+    if (room.dexterity(a + static_cast<double>(k) / looks_at_branch * (b - a)) < min_dexterity)
+      return false;
+  return true;
 }
 
 /// Can the arm go on straight, from pose to pose? Empty, or why not.
@@ -46,6 +46,7 @@ Expected<std::vector<Joints>> goals_of(const Robot& robot, const Query& query,
   bare.held.reset();
   RoomOptions near = options.room;
   near.hand_clearance = options.contact_clearance;
+  near.clearance = std::min(near.clearance, options.arm_contact_clearance);
   near.touched = query.touched;
   const Room contact(robot, bare, near);
   std::vector<Joints> goals;
@@ -57,7 +58,7 @@ Expected<std::vector<Joints>> goals_of(const Robot& robot, const Query& query,
   };
   for (const Joints& branch : arm::Inverse(*robot.arm).branches(robot.end_for(query.X_WB)))
     for (const Joints& q : arm::turns_within_limits(*robot.arm, branch)) {
-      if (options.room.min_dexterity > 0 && !is_same_side(*robot.arm, query.start, q))
+      if (!is_same_branch(room, query.start, q, near_branch * options.room.min_dexterity))
         because(1, "needs another branch than the arm is in");
       else if (!ground.is_free(q))
         because(2, "is not free: " + (room.trouble(q).empty() ? "not upright" : room.trouble(q)));

@@ -22,7 +22,8 @@ struct Query {
 
 struct PlanOptions {
   RoomOptions room;
-  double contact_clearance = 0.001;  // m, of the hand on ways that come after
+  double contact_clearance = 0.001;      // m, of the hand on ways that come after
+  double arm_contact_clearance = 0.012;  // m, of the arm on these, if not less before
   SearchOptions search;
   Pace pace;
 };

@@ -253,6 +253,8 @@ void Room::tolerate(const Joints& start) {
     return true;
   });
   state_->options.min_dexterity = std::min(state_->options.min_dexterity, 0.9 * dexterity(start));
+  while (state_->options.joint_margin > 0 && joint_at_limit(start))
+    state_->options.joint_margin = std::max(0.0, state_->options.joint_margin - 0.01);
 }
 
 std::optional<Conflict> Room::conflict(const Joints& q) const {
@@ -274,9 +276,18 @@ double Room::dexterity(const Joints& q) const {
   return std::sqrt(std::max(0.0, parts.eigenvalues()[0]));
 }
 
+std::optional<std::size_t> Room::joint_at_limit(const Joints& q) const {
+  const auto& joints = state_->robot.arm->joints;
+  const double margin = state_->options.joint_margin;
+  for (std::size_t i = 0; i < joints.size(); ++i) {
+    const double value = q[static_cast<Eigen::Index>(i)];
+    if (value < joints[i].lower + margin || value > joints[i].upper - margin) return i;
+  }
+  return std::nullopt;
+}
+
 bool Room::is_free(const Joints& q) const {
-  return arm::is_within_limits(*state_->robot.arm, q) &&
-         dexterity(q) >= state_->options.min_dexterity && !conflict(q);
+  return !joint_at_limit(q) && dexterity(q) >= state_->options.min_dexterity && !conflict(q);
 }
 
 /// Halves first: a way that is not free mostly shows that in its middle.
@@ -294,11 +305,8 @@ bool Room::is_free(const Joints& from, const Joints& to) const {
 }
 
 std::string Room::trouble(const Joints& q) const {
-  const model::ArmModel& arm = *state_->robot.arm;
-  for (Eigen::Index i = 0; i < q.size(); ++i) {
-    const model::ArmJoint& joint = arm.joints[static_cast<std::size_t>(i)];
-    if (q[i] < joint.lower || q[i] > joint.upper) return joint.name + " is at its limit";
-  }
+  if (const auto joint = joint_at_limit(q))
+    return state_->robot.arm->joints[*joint].name + " is at its limit";
   if (const auto found = conflict(q)) return found->message();
   return dexterity(q) < state_->options.min_dexterity ? "the arm is stretched or folded" : "";
 }

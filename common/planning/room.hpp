@@ -12,9 +12,10 @@ struct RoomOptions {
   double clearance = 0.01;       // m, of the arm from itself and all else
   double hand_clearance = 0.01;  // m, of the hand and what it holds
   std::string touched = {};      // an obstacle that hand and held object may touch, not the arm
+  double joint_margin = 0;       // rad, of each joint from its limits
   /// Least singular value of the arm's Jacobian, a radian counted as 0.15 m. An arm that stays
   /// above it never changes its branch, so that who follows its hand follows its joints.
-  double min_dexterity = 0.02;
+  double min_dexterity = 0.01;
 };
 
 /// Two parts that are too near to each other.
@@ -37,7 +38,7 @@ class Room {
   Room& operator=(Room&&) noexcept;
 
   /// What was too near in this posture may be as near from now on: an arm that has let go of
-  /// something stands close to it.
+  /// something stands close to it. So with the margin of joints, and dexterity.
   void tolerate(const arm::Joints& start);
 
   /// The first conflict that is found, if any.
@@ -56,6 +57,8 @@ class Room {
   double dexterity(const arm::Joints& q) const;
 
  private:
+  std::optional<std::size_t> joint_at_limit(const arm::Joints& q) const;
+
   struct State;
   std::unique_ptr<State> state_;
 };

@@ -33,9 +33,9 @@ grasping::Body body_of(const model::CatalogueObject& object) {
   return {object.name, object.shape, object.mass, object.material, std::nullopt};
 }
 
-Expected<std::unique_ptr<Simulation>> Simulation::create(const model::HandModel& hand,
-                                                         const Options& options,
-                                                         std::unique_ptr<carrying::CarryingArm> arm) {
+Expected<std::unique_ptr<Simulation>> Simulation::create(
+    const model::HandModel& hand, const Options& options,
+    std::unique_ptr<carrying::CarryingArm> arm) {
   grasping::WorldOptions how{.rate = options.rate, .brake = options.brake};
   if (arm) how.base = carrying::CarryingArm::base();
   auto world = grasping::World::create(hand, arm ? arm->home() : resting_place,
@@ -46,7 +46,8 @@ Expected<std::unique_ptr<Simulation>> Simulation::create(const model::HandModel&
 }
 
 Simulation::Simulation(const model::HandModel& hand, const Options& options,
-                       std::unique_ptr<grasping::World> world, std::unique_ptr<carrying::CarryingArm> arm)
+                       std::unique_ptr<grasping::World> world,
+                       std::unique_ptr<carrying::CarryingArm> arm)
     : hand_(hand),
       options_(options),
       world_(std::move(world)),

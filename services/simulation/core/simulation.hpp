@@ -9,10 +9,10 @@
 
 #include "common/base/error.hpp"
 #include "common/base/time.hpp"
+#include "common/carrying/carrying_arm.hpp"
 #include "common/grasping/world.hpp"
 #include "common/model/catalogue.hpp"
 #include "common/model/scene.hpp"
-#include "common/carrying/carrying_arm.hpp"
 #include "services/simulation/core/closure.hpp"
 #include "services/simulation/core/command.hpp"
 
@@ -34,9 +34,9 @@ grasping::Body body_of(const model::CatalogueObject& object);
 class Simulation {
  public:
   /// arm: carries the hand, which begins at its home; none: the hand flies.
-  static Expected<std::unique_ptr<Simulation>> create(const model::HandModel& hand,
-                                                      const Options& options = {},
-                                                      std::unique_ptr<carrying::CarryingArm> arm = nullptr);
+  static Expected<std::unique_ptr<Simulation>> create(
+      const model::HandModel& hand, const Options& options = {},
+      std::unique_ptr<carrying::CarryingArm> arm = nullptr);
 
   /// Objects as the scene says. Fails on what cannot be simulated.
   Expected<void> build(const model::Scene& scene, const model::Catalogue& catalogue);

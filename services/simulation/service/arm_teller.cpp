@@ -69,7 +69,7 @@ std::string trouble_of(const carrying::ArmMotion& motion, const model::ArmModel&
 }  // namespace
 
 Expected<std::unique_ptr<carrying::CarryingArm>> arm_of(const service::Config& config,
-                                              const model::HandModel& hand) {
+                                                        const model::HandModel& hand) {
   const std::string& name = config.text("robot.arm");
   if (name.empty()) return nullptr;
   auto arm = model::load_arm(name);
@@ -101,7 +101,8 @@ ArmTeller::ArmTeller(service::Shell& shell, const carrying::CarryingArm& arm)
   state_.X_WA(convert::to_message(arm.X_WA()));
 }
 
-void ArmTeller::tell(const carrying::ArmMotion& motion, const std::optional<Command>& command, Time now) {
+void ArmTeller::tell(const carrying::ArmMotion& motion, const std::optional<Command>& command,
+                     Time now) {
   const std::int64_t origin = command ? to_ns(command->origin) : 0;
   command_.stamp_ns(to_ns(now));
   command_.origin_ns(origin);

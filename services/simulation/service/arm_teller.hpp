@@ -6,17 +6,17 @@
 #include <string>
 
 #include "common/base/error.hpp"
+#include "common/carrying/carrying_arm.hpp"
 #include "common/service/config.hpp"
 #include "common/service/shell.hpp"
 #include "idl/Arm.h"
-#include "common/carrying/carrying_arm.hpp"
 #include "services/simulation/core/command.hpp"
 
 namespace prehend::simulation {
 
 /// The arm of the configuration, with the hand on it; nothing where there is none.
 Expected<std::unique_ptr<carrying::CarryingArm>> arm_of(const service::Config& config,
-                                              const model::HandModel& hand);
+                                                        const model::HandModel& hand);
 
 /// Says what the arm is told and does: arm/command, arm/state, and in the status why the hand is
 /// not where it is wished.

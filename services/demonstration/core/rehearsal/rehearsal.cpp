@@ -19,6 +19,7 @@ constexpr int steps_a_command = 5;    // 100 Hz, as robot/state
 constexpr double max_step_time = 60;  // s
 constexpr int more_tries = 2;         // once one grasp has done it, for a better one
 constexpr double sure = 0.5;          // of what is permitted: no other grasp needs to be tried
+constexpr const char* out_of_reach = "approach";      // of a grasp that could not even be tried
 constexpr double same_place = 0.01, same_turn = 0.1;  // m, rad: no other grasp
 
 Pose turned(double degrees, const Pose& X_OG) {
@@ -45,23 +46,43 @@ struct Trial {
   std::unique_ptr<grasping::World> world;
   RobotGrasp grasp;
   Verdict verdict;
+  arm::Joints posture;  // of the arm, at the end
 };
 
 /// One step, in a copy of the world. Fails if it cannot be tried, or is not done.
 Expected<Trial> try_step(const model::HandModel& hand, const TaskModel& task,
                          const grasping::World& before, const Shapes& shapes,
                          const RobotGrasp& grasp, const RehearsalOptions& options) {
-  Trial made{before.clone(), grasp, {}};
+  Trial made{before.clone(), grasp, {}, options.posture};
+  std::unique_ptr<carrying::CarryingArm> arm;
+  if (options.robot) {
+    auto carried = arm_of(*options.robot, options.posture);
+    if (!carried) return tl::unexpected(carried.error());
+    arm = std::move(*carried);
+  }
   auto performer =
       TaskPerformer::create(hand, task, shapes, places_of(*made.world), {grasp},
                             {made.world->commanded_base(), made.world->commanded_dof()},
-                            options.performer, options.verdict);
+                            options.performer, options.verdict, {options.robot, false, true});
   if (!performer) return tl::unexpected(performer.error());
-  if (auto ok = perform_in(*made.world, *performer, max_step_time); !ok)
+  if (auto ok = perform_in(*made.world, *performer, max_step_time, arm.get()); !ok)
     return tl::unexpected(ok.error());
+  if (arm) made.posture = arm->posture();
   made.verdict = performer->verdicts().front();
-  if (!made.verdict.done) return fail(made.verdict.reason);
+  if (!made.verdict.done)
+    return fail(made.verdict.reason, made.verdict.reached ? "" : out_of_reach);
   return made;
+}
+
+/// The same grasps turned half about the approach: another posture of an arm, and for most hands
+/// as good.
+void add_rolled(const model::HandModel& hand, std::vector<RobotGrasp>& grasps) {
+  const Pose roll(AngleAxisd(std::numbers::pi, Vector3d::UnitZ()));
+  for (std::size_t i = 0, count = grasps.size(); i < count; ++i) {
+    RobotGrasp rolled = grasps[i];
+    rolled.X_OB = rolled.X_OB * hand.X_BG() * roll * hand.X_BG().inverse();
+    grasps.push_back(std::move(rolled));
+  }
 }
 
 /// The first grasp that does a step and leaves room for what may be otherwise, or else the one that
@@ -71,13 +92,15 @@ Expected<Trial> best_trial(const model::HandModel& hand, const TaskModel& task,
                            const RehearsalOptions& options, const std::function<void(int)>& tell) {
   const Step& step = task.steps.front();
   auto candidates = grasp_candidates(hand, shapes.at(step.object), step.X_OG);
-  if (static_cast<int>(candidates.size()) > options.max_tries)
-    candidates.resize(static_cast<std::size_t>(options.max_tries));
-  int left = more_tries;
+  if (options.robot) add_rolled(hand, candidates);
+  int left = more_tries, tries = 0;
   Expected<Trial> best = fail("the hand cannot reach around it");
-  for (std::size_t k = 0; k < candidates.size() && left >= 0; ++k) {
+  for (std::size_t k = 0; k < candidates.size() && tries < options.max_tries && left >= 0; ++k) {
     tell(static_cast<int>(k));
     auto trial = try_step(hand, task, before, shapes, candidates[k], options);
+    const bool is_tried = trial || trial.error().where != out_of_reach;
+    tries += is_tried;
+    if (!is_tried && tries > 0) continue;
     const bool better =
         trial && best &&
         used(trial->verdict, step, options.verdict) < used(best->verdict, step, options.verdict);
@@ -110,7 +133,7 @@ std::vector<RobotGrasp> grasp_candidates(const model::HandModel& hand, const mod
                                ? Vector3d(y.x(), y.y(), 0).normalized()
                                : Vector3d::UnitX().eval();
   const Pose above = make_pose(Vector3d::Zero(), model::grasp_axes(-Vector3d::UnitZ(), closing));
-  for (const double turn : {0, 90, 45, -45}) offer(turned(turn, above));
+  for (const double turn : {0, 90, 45, -45, 180, -90, 135, -135}) offer(turned(turn, above));
   std::vector<RobotGrasp> made;
   for (const Pose& X : found)
     made.push_back({X * hand.X_BG().inverse(), hand.postures().at("open")});
@@ -129,22 +152,36 @@ Shapes shapes_of(const std::vector<Thing>& things) {
   return made;
 }
 
-Expected<void> perform_in(grasping::World& world, TaskPerformer& performer, double longest) {
+Expected<std::unique_ptr<carrying::CarryingArm>> arm_of(const planning::Robot& robot,
+                                                        const arm::Joints& posture) {
+  auto made = carrying::CarryingArm::create(*robot.arm, *robot.hand, robot.X_WA, robot.X_EB);
+  if (made) (*made)->start(posture);
+  return made;
+}
+
+Expected<void> perform_in(grasping::World& world, TaskPerformer& performer, double longest,
+                          carrying::CarryingArm* arm) {
   for (int n = 0; !performer.over(); ++n) {
     const double t = n * steps_a_command * world.time_step();
     if (t > longest) return fail("takes longer than it should");
     const grasping::HandMotion motion = world.hand_motion();
-    const HandGoal goal =
-        performer.step({Time(seconds(t)), motion.X_WB, motion.dof, motion.joint}, places_of(world));
+    const HandGoal goal = performer.step({Time(seconds(t)), motion.X_WB, motion.dof, motion.joint,
+                                          arm ? arm->posture() : arm::Joints()},
+                                         places_of(world));
     if (auto told = world.command(goal.X_WB, goal.dof); !told) return told;
-    for (int i = 0; i < steps_a_command; ++i) world.step();
+    if (arm) arm->follow(goal.X_WB);
+    for (int i = 0; i < steps_a_command; ++i) {
+      if (arm) arm->step(world);
+      world.step();
+    }
   }
   return {};
 }
 
 Expected<Rehearsal> rehearse(const model::HandModel& hand, const TaskModel& task,
                              const std::vector<Thing>& things, const HandGoal& from,
-                             const RehearsalOptions& options) {
+                             const RehearsalOptions& given) {
+  RehearsalOptions options = given;
   const auto order = order_of(task);
   if (!order) return tl::unexpected(order.error());
   auto created = grasping::World::create(hand, from.X_WB, from.dof);
@@ -171,6 +208,7 @@ Expected<Rehearsal> rehearse(const model::HandModel& hand, const TaskModel& task
     world = std::move(best->world);
     made.grasps[i] = best->grasp;
     made.verdicts[i] = best->verdict;
+    options.posture = best->posture;
   }
   return made;
 }
