@@ -70,14 +70,6 @@ double left_to_close(const model::HandModel& hand, const VectorXd& posture) {
   return count == 0 ? 0 : left / count;
 }
 
-/// Postures from which the hand can close: all that have half their way before them, and «open».
-std::vector<std::string> opened_postures(const model::HandModel& hand) {
-  std::vector<std::string> names{"open"};
-  for (const auto& [name, dof] : hand.postures())
-    if (name != "open" && left_to_close(hand, dof) >= 0.5) names.push_back(name);
-  return names;
-}
-
 VectorXd sample_preshape(const model::HandModel& hand, const VectorXd& posture, double off_posture,
                          Random& random) {
   VectorXd dof = posture;
@@ -99,6 +91,13 @@ VectorXd sample_preshape(const model::HandModel& hand, const VectorXd& posture, 
 }
 
 }  // namespace
+
+std::vector<std::string> opened_postures(const model::HandModel& hand) {
+  std::vector<std::string> names{"open"};
+  for (const auto& [name, dof] : hand.postures())
+    if (name != "open" && left_to_close(hand, dof) >= 0.5) names.push_back(name);
+  return names;
+}
 
 double narrowest_width(const model::Shape& shape) {
   return 2 * model::half_extents(shape).minCoeff();

@@ -22,6 +22,7 @@ constexpr double slips_after = 0.02;  // s, that a joint must be blocked before 
 // Shares of a DoF's squeeze: how far a finger that its clutch presses may still follow, how far it
 // must be opened until the whole torque holds it, and the speed (per s) below which it is blocked.
 constexpr double give = 0.13, yield = 0.07, blocked_speed = 0.33;
+constexpr double goes_back = 0.1;      // share of a squeeze behind where its motor was: it opens
 constexpr double resting_gap = 0.002;  // m: links that are closer at rest never collide
 
 }  // namespace
@@ -155,10 +156,7 @@ void HandBody::place(const Pose& X_WB, const VectorXd& joint, const VectorXd& ve
     multibody_->setJointPos(i, joint[i]);
     multibody_->setJointVel(i, velocity[i]);
   }
-  for (Clutch& clutch : clutches_) {
-    clutch.released.reset();
-    clutch.blocked = 0;
-  }
+  for (Clutch& clutch : clutches_) clutch = {clutch.follower};
   move_colliders();
 }
 
@@ -197,9 +195,13 @@ void HandBody::drive(const VectorXd& dof, const VectorXd& effort) {
     const double ahead = std::abs(wanted - multibody_->getJointPos(i));
     // Only what closes is to be soft; a spread that gives way lets the object turn.
     double share = led.closing != 0 ? ahead / (std::abs(joint.multiplier) * led.squeeze) : 1.0;
-    const auto& released = clutches_[static_cast<std::size_t>(joint.dof)].released;
+    const auto& [follower, blocked, released, farthest, locked] =
+        clutches_[static_cast<std::size_t>(joint.dof)];
     double limit = most[joint.dof];
-    if (released && i == led.joint) {
+    if (locked && i == led.joint) {
+      limit = share = 1;
+      wanted = *locked;
+    } else if (released && i == led.joint) {
       limit = 1;  // its gear holds it, whatever the motor may use
       wanted = std::clamp(*released + led.closing * give * led.squeeze, joint.lower, joint.upper);
       const double opened = led.closing * (*released - multibody_->getJointPos(i));
@@ -220,14 +222,22 @@ void HandBody::update_clutch(int dof, double command) {
   if (clutch.released) {
     const bool driven_back = led.closing * (command - *clutch.released) < 0 &&
                              led.closing * (motor(dof) - *clutch.released) <= 0;
-    if (driven_back) clutch = {clutch.follower, 0, std::nullopt};
+    clutch.farthest = led.closing > 0 ? std::max(clutch.farthest, motor(dof))
+                                      : std::min(clutch.farthest, motor(dof));
+    const double ahead = led.closing * (command - clutch.farthest);
+    if (driven_back)
+      clutch = {clutch.follower};
+    else if (ahead > 0)
+      clutch.locked.reset();
+    else if (!clutch.locked && ahead < -goes_back * led.squeeze)
+      clutch.locked = joint(led.joint);  // its gear does not turn back, and nothing presses it on
     return;
   }
   const double breakaway = *hand_.joints()[static_cast<std::size_t>(led.joint)].breakaway;
   const bool blocked = led.closing * torque(led.joint) >= 0.999 * breakaway &&
                        std::abs(velocity(led.joint)) < blocked_speed * led.squeeze;
   clutch.blocked = blocked ? clutch.blocked + time_step_ : 0;
-  if (clutch.blocked > slips_after) clutch.released = joint(led.joint);
+  if (clutch.blocked > slips_after) clutch.released = clutch.farthest = joint(led.joint);
 }
 
 double HandBody::motor(int dof) const {

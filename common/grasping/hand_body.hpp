@@ -38,8 +38,8 @@ struct LinkPairFilter : btOverlapFilterCallback {
 ///
 /// A joint with a clutch that is blocked with the breakaway torque is let go: it stays where it is,
 /// still pressed with that torque and held against opening with its whole torque, as by a worm
-/// gear, while the motor goes on with the joints coupled to it. Driven back to where it let go, the
-/// motor takes the joint again.
+/// gear, while the motor goes on with the joints coupled to it. While the motor goes back, nothing
+/// presses the joint on; driven back to where it let go, the motor takes it again.
 class HandBody {
  public:
   /// materials: of each link. The world must outlive the hand and gets its pair filter.
@@ -84,6 +84,8 @@ class HandBody {
     int follower = -1;               // a joint coupled to the leading one; -1: no clutch
     double blocked = 0;              // s, for which the joint has been blocked
     std::optional<double> released;  // where it was let go
+    double farthest = 0;             // of the motor since then
+    std::optional<double> locked;    // where its gear holds it while the motor goes back
   };
 
   void build_links(const BaseBody& base);

@@ -283,8 +283,8 @@ std::string Driver::probe(Time now) {
     waiting_ = false;
     phase_ = Phase::ready;
     good_ = now - milliseconds(1);
-    accept(*feedback, now);
-    hold();
+    for (MotorControl& motor : control_) motor.forget();
+    accept(*feedback, now);  // each target is where its motor is
     return {};
   }
   if (now - asked_ > patience_ || over) return lose("sends no feedback", now);

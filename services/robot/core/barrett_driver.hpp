@@ -31,6 +31,8 @@ class MotorControl {
   };
   explicit MotorControl(const Limits& limits) : limits_(limits) {}
 
+  /// The hand was away: nothing is known of it any more.
+  void forget() { *this = MotorControl(limits_); }
   /// Where it is by now.
   void observe(double position, Time now);
   /// Where it shall be; share: of the full effort.

@@ -9,6 +9,8 @@
 #include "common/base/random.hpp"
 #include "services/demonstration/core/observation/grasp_judge.hpp"
 #include "services/demonstration/core/person/person.hpp"
+#include "services/demonstration/tools/training/trainer.hpp"
+#include "tests/support/takes/made_takes.hpp"
 
 namespace prehend::demonstration {
 namespace {
@@ -215,6 +217,82 @@ TEST(GraspJudge, AnswersByObjectAndApproachAndFavoursWhatFits) {
   const std::vector<double> fit = taxonomy.fit_to_object(talc.shape);
   for (std::size_t k = 0; k < fit.size(); ++k)
     EXPECT_EQ(with[static_cast<Eigen::Index>(k)] == 0, fit[k] == 0) << judge.kinds()[k];
+}
+
+/// Hands that a recogniser was trained on, one after the other, 10 ms each.
+class Showman {
+ public:
+  explicit Showman(GraspJudge& judge) : judge_(judge) {}
+
+  /// A grasp of this kind where the hand is.
+  void grasp(const Take& take) {
+    for (const HandSample& sample : take.samples) show(sample);
+  }
+  void go(double speed, double way, const HandSample& shape) {
+    for (double left = way; left > 0; left -= speed / 100) {
+      x_ += speed / 100;
+      show(shape);
+    }
+  }
+  const Distribution& said() const { return said_; }
+
+ private:
+  void show(const HandSample& sample) {
+    SeenHand hand{now_ += std::chrono::milliseconds(10), make_pose({x_, 0, 0.1}), 1, {}};
+    hand.X_WH.pretranslate(random_.normal3(0.001));
+    hand.p_HF[0] = Eigen::Vector3d::Zero();
+    for (std::size_t f = 1; f < hand.p_HF.size(); ++f) hand.p_HF[f] = sample.p_thumb_tip_W[f - 1];
+    said_ = judge_.see(hand, nullptr);
+  }
+
+  GraspJudge& judge_;
+  Time now_ = start;
+  double x_ = 0;
+  Random random_{5};
+  Distribution said_;
+};
+
+TEST(GraspJudge, BeginsAnewWhenTheHandGoesToItsNextGrasp) {
+  const auto takes = test::made_takes({});
+  std::vector<const Take*> all;
+  for (const Take& take : takes) all.push_back(&take);
+  const auto trained = train_recognisers(all, {Method::posture}, {});
+  ASSERT_TRUE(trained) << trained.error().message();
+  const auto of_kind = [&](const std::string& kind) -> const Take& {
+    return *std::find_if(takes.begin(), takes.end(),
+                         [&](const Take& take) { return take.label == kind; });
+  };
+  const auto taxonomy = model::GraspTaxonomy::of_the_house().value();
+  const auto said_after = [&](double speed) {
+    GraspJudge judge(taxonomy, &trained->front());
+    Showman showman(judge);
+    showman.grasp(of_kind("bottle"));
+    showman.go(speed, 0.4, of_kind("knife").samples.front());
+    showman.grasp(of_kind("knife"));
+    Eigen::Index best = 0;
+    showman.said().maxCoeff(&best);
+    return judge.kinds()[static_cast<std::size_t>(best)];
+  };
+  EXPECT_EQ(said_after(0.5), "knife");
+  EXPECT_EQ(said_after(0.05), "bottle") << "one grasp, so the surest answer stays";
+}
+
+TEST(PalmSpeed, IsThatOfTheHandAndNotOfTheNoise) {
+  Random random(3);
+  const auto speed_at = [&](double v, double rate) {
+    PalmSpeed speed;
+    double last = 0, sum = 0;
+    for (int n = 0; n < rate; ++n) {
+      const Eigen::Vector3d p(v * n / rate, 0, 0);
+      last = speed.add(start + seconds(n / rate), p + random.normal3(0.0015));
+      if (2 * n >= rate) sum += last;
+    }
+    return sum / (rate / 2);
+  };
+  for (const double rate : {30, 100}) {
+    EXPECT_LT(speed_at(0, rate), 0.1);
+    EXPECT_NEAR(speed_at(0.4, rate), 0.4, 0.05);
+  }
 }
 
 }  // namespace

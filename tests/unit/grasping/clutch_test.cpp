@@ -89,6 +89,19 @@ TEST(Clutch, DrivenBackTheMotorTakesTheJointAgain) {
   EXPECT_NEAR(hand.q(hand.outer), 0.5, 0.005);
 }
 
+// While a hand opened, the inner links still pressed the object onward, by centimetres.
+TEST(Clutch, WhileTheMotorGoesBackNothingPressesTheJointOn) {
+  Blocked hand;
+  hand.drive(2.0, 2.0);
+  hand.drive(1.9, 0.5);  // only the outer joint opens
+  const double locked = hand.q(hand.inner);
+  hand.world->move_body(0, make_pose(Vector3d(0.5, 0.5, 1)));
+  hand.drive(1.3, 1.0);
+  EXPECT_NEAR(hand.q(hand.inner), locked, 0.002);
+  hand.drive(2.05, 1.0);  // the motor presses on again
+  EXPECT_GT(hand.q(hand.inner), locked + 0.005);
+}
+
 TEST(Clutch, AFreeFingerNeverBreaksAway) {
   Blocked hand(false);
   hand.drive(2.0, 2.0);

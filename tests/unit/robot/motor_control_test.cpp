@@ -105,6 +105,20 @@ TEST(MotorControl, HoldingKeepsASqueezeAndNothingElse) {
   EXPECT_FALSE(pressing.control().stuck(pressing.now()));
 }
 
+// A finger that had stalled before its cable was cut moved by a squeeze when it was back, though
+// stopped.
+TEST(MotorControl, AfterItWasAwayItStaysWhereItIsFound) {
+  Motor pressing;
+  pressing.control().follow(1.4 * scale, 1, pressing.now());
+  pressing.run(1, 1, 1.0);
+  ASSERT_TRUE(pressing.control().stalled());
+  pressing.control().forget();
+  pressing.control().observe(0.2 * scale, pressing.now() + seconds(5));
+  pressing.control().hold();
+  EXPECT_EQ(pressing.commanded(), 0);
+  EXPECT_FALSE(pressing.control().stalled());
+}
+
 TEST(MotorControl, FarFromItsTargetForLongItIsStuck) {
   Motor motor;
   motor.control().follow(1.5 * scale, 1, motor.now());

@@ -6,6 +6,8 @@ namespace prehend::demonstration {
 
 namespace {
 
+constexpr double max_grasp_speed = 0.2;  // m/s: a hand that is faster is on its way
+constexpr double smoothing = 0.1;        // s, of that speed, or a tracker's noise would be a speed
 constexpr double other_approach = 0.15;  // of a kind whose palm usually comes from elsewhere
 
 std::vector<std::string> names_of(const model::GraspTaxonomy& taxonomy) {
@@ -25,6 +27,17 @@ HandSample sample_of(const SeenHand& hand, const SeenHand* before, Time begin) {
     sample.hand_speed = (hand.X_WH.translation() - before->X_WH.translation()).norm() /
                         to_seconds(hand.stamp - before->stamp);
   return sample;
+}
+
+double PalmSpeed::add(Time stamp, const Eigen::Vector3d& p_WH) {
+  if (seen_ && stamp > stamp_) {
+    const double dt = to_seconds(stamp - stamp_);
+    v_WH_ += (1 - std::exp(-dt / smoothing)) * ((p_WH - p_WH_) / dt - v_WH_);
+  }
+  seen_ = true;
+  stamp_ = stamp;
+  p_WH_ = p_WH;
+  return v_WH_.norm();
 }
 
 GraspJudge::GraspJudge(const model::GraspTaxonomy& taxonomy, const Recogniser* recogniser)
@@ -68,6 +81,7 @@ Distribution GraspJudge::by_approach(const SeenHand& hand) const {
 }
 
 Distribution GraspJudge::see(const SeenHand& hand, const SeenObject* object) {
+  if (speed_.add(hand.stamp, hand.X_WH.translation()) > max_grasp_speed) begin();
   if (!first_) first_ = hand;
   const Distribution seen =
       stream_ ? stream_->add(sample_of(hand, last_ ? &*last_ : nullptr, first_->stamp))

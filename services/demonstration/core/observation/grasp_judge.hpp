@@ -11,9 +11,21 @@
 
 namespace prehend::demonstration {
 
+/// How fast a hand goes from place to place, whatever the noise of its single places.
+class PalmSpeed {
+ public:
+  double add(Time stamp, const Eigen::Vector3d& p_WH);  // m/s
+
+ private:
+  bool seen_ = false;
+  Time stamp_{};
+  Eigen::Vector3d p_WH_ = Eigen::Vector3d::Zero(), v_WH_ = Eigen::Vector3d::Zero();
+};
+
 /// Which kind of grasp a hand makes: P(kind | hand) as far as somebody trained a recogniser, times
 /// P(kind | object), by the object's shape and size. Without a recogniser the hand tells no more
-/// than from where the palm comes. Keeps references to both.
+/// than from where the palm comes. A hand that is faster than 0.2 m/s is on its way to its next
+/// grasp: what was seen before does not count any more. Keeps references to both.
 class GraspJudge {
  public:
   /// recogniser: may be nullptr.
@@ -35,6 +47,7 @@ class GraspJudge {
   std::vector<std::optional<std::size_t>> classes_;  // of the taxonomy: which one each kind is
   std::optional<RecogniserStream> stream_;
   std::optional<SeenHand> first_, last_;
+  PalmSpeed speed_;
 };
 
 /// What a recogniser looks at. before: the hand a moment ago, for speeds; nullptr if there was

@@ -4,28 +4,19 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
-
-#include "common/model/placement.hpp"
 
 namespace prehend::demonstration {
 
 namespace {
 
-using Eigen::AngleAxisd;
-using Eigen::Vector3d;
-
 constexpr int steps_a_command = 5;    // 100 Hz, as robot/state
 constexpr double max_step_time = 60;  // s
 constexpr int more_tries = 2;         // once one grasp has done it, for a better one
-constexpr double sure = 0.5;          // of what is permitted: no other grasp needs to be tried
-constexpr const char* out_of_reach = "approach";      // of a grasp that could not even be tried
-constexpr double same_place = 0.01, same_turn = 0.1;  // m, rad: no other grasp
-
-Pose turned(double degrees, const Pose& X_OG) {
-  const AngleAxisd turn(degrees * std::numbers::pi / 180, Vector3d::UnitZ());
-  return Pose(turn) * X_OG;
-}
+constexpr double sure = 0.25;         // of what is permitted: no other grasp needs to be tried
+constexpr const char* out_of_reach = "approach";  // of a grasp that could not even be tried
+constexpr double beside = 0.003, aslant = 0.035;  // m, rad (2°), that a hand may stand off
 
 /// One step as a task of its own.
 TaskModel alone(const TaskModel& task, std::size_t step) {
@@ -34,14 +25,7 @@ TaskModel alone(const TaskModel& task, std::size_t step) {
   return made;
 }
 
-/// How much of what is permitted a verdict uses, of the worst; the world is never as it was
-/// thought.
-double used(const Verdict& verdict, const Step& step, const VerdictOptions& limits) {
-  const double tilt = step.upright ? verdict.max_tilt / limits.max_tilt : 0;
-  return std::max({verdict.error / limits.max_error, verdict.turn / limits.max_turn, tilt});
-}
-
-/// A step that was done in a copy of a world.
+/// A step that was tried in a copy of a world.
 struct Trial {
   std::unique_ptr<grasping::World> world;
   RobotGrasp grasp;
@@ -49,7 +33,15 @@ struct Trial {
   arm::Joints posture;  // of the arm, at the end
 };
 
-/// One step, in a copy of the world. Fails if it cannot be tried, or is not done.
+/// How much of what is permitted a trial uses, of the worst; the world is never as it was thought.
+double used(const Trial& trial, const Step& step, const VerdictOptions& limits) {
+  const Verdict& verdict = trial.verdict;
+  if (!verdict.done) return std::numeric_limits<double>::infinity();
+  const double tilt = step.upright ? verdict.max_tilt / limits.max_tilt : 0;
+  return std::max({verdict.error / limits.max_error, verdict.turn / limits.max_turn, tilt});
+}
+
+/// One step, in a copy of the world. Fails if it cannot be tried.
 Expected<Trial> try_step(const model::HandModel& hand, const TaskModel& task,
                          const grasping::World& before, const Shapes& shapes,
                          const RobotGrasp& grasp, const RehearsalOptions& options) {
@@ -69,9 +61,43 @@ Expected<Trial> try_step(const model::HandModel& hand, const TaskModel& task,
     return tl::unexpected(ok.error());
   if (arm) made.posture = arm->posture();
   made.verdict = performer->verdicts().front();
-  if (!made.verdict.done)
-    return fail(made.verdict.reason, made.verdict.reached ? "" : out_of_reach);
   return made;
+}
+
+/// By a hand that stands a little to one side, along its closing direction, and turned.
+RobotGrasp disturbed(const model::HandModel& hand, const RobotGrasp& grasp, double side) {
+  const Pose X_GG = make_pose({0, side * beside, 0},
+                              AngleAxisd(side * aslant, Vector3d::UnitZ()).toRotationMatrix());
+  RobotGrasp made = grasp;
+  made.X_OB = grasp.X_OB * hand.X_BG() * X_GG * hand.X_BG().inverse();
+  return made;
+}
+
+/// A grasp that was tried, and how much it uses of what is permitted at worst, if the hand stands
+/// as it should or a little beside; infinite: not always done.
+struct Tried {
+  Trial trial;
+  double worst = 0;
+};
+
+/// Fails if the step is not done by a hand that stands as it should.
+Expected<Tried> try_surely(const model::HandModel& hand, const TaskModel& task,
+                           const grasping::World& before, const Shapes& shapes,
+                           const RobotGrasp& grasp, const RehearsalOptions& options) {
+  const auto used_by = [&](const Expected<Trial>& trial) {
+    return trial ? used(*trial, task.steps.front(), options.verdict)
+                 : std::numeric_limits<double>::infinity();
+  };
+  auto trial = try_step(hand, task, before, shapes, grasp, options);
+  if (!trial) return tl::unexpected(trial.error());
+  if (!trial->verdict.done)
+    return fail(trial->verdict.reason, trial->verdict.reached ? "" : out_of_reach);
+  double worst = used_by(trial);
+  for (const double side : {1.0, -1.0})
+    if (std::isfinite(worst))
+      worst = std::max(worst, used_by(try_step(hand, task, before, shapes,
+                                               disturbed(hand, grasp, side), options)));
+  return Tried{std::move(*trial), worst};
 }
 
 /// The same grasps turned half about the approach: another posture of an arm, and for most hands
@@ -86,59 +112,30 @@ void add_rolled(const model::HandModel& hand, std::vector<RobotGrasp>& grasps) {
 }
 
 /// The first grasp that does a step and leaves room for what may be otherwise, or else the one that
-/// leaves most.
-Expected<Trial> best_trial(const model::HandModel& hand, const TaskModel& task,
+/// leaves most. Fails if none does it.
+Expected<Tried> best_trial(const model::HandModel& hand, const TaskModel& task,
                            const grasping::World& before, const Shapes& shapes,
                            const RehearsalOptions& options, const std::function<void(int)>& tell) {
   const Step& step = task.steps.front();
   auto candidates = grasp_candidates(hand, shapes.at(step.object), step.X_OG);
   if (options.robot) add_rolled(hand, candidates);
   int left = more_tries, tries = 0;
-  Expected<Trial> best = fail("the hand cannot reach around it");
+  Expected<Tried> best = fail("the hand cannot reach around it");
   for (std::size_t k = 0; k < candidates.size() && tries < options.max_tries && left >= 0; ++k) {
     tell(static_cast<int>(k));
-    auto trial = try_step(hand, task, before, shapes, candidates[k], options);
-    const bool is_tried = trial || trial.error().where != out_of_reach;
-    tries += is_tried;
-    if (!is_tried && tries > 0) continue;
-    const bool better =
-        trial && best &&
-        used(trial->verdict, step, options.verdict) < used(best->verdict, step, options.verdict);
-    if (!best || better) best = std::move(trial);
-    if (!best) continue;
-    if (used(best->verdict, step, options.verdict) <= sure) break;
+    auto tried = try_surely(hand, task, before, shapes, candidates[k], options);
+    const bool is_reached = tried || tried.error().where != out_of_reach;
+    if (!is_reached && tries > 0) continue;  // there is something better to say
+    tries += is_reached;
+    if (!best || (tried && tried->worst < best->worst)) best = std::move(tried);
+    if (!best || !std::isfinite(best->worst)) continue;
+    if (best->worst <= sure) break;
     --left;
   }
   return best;
 }
 
 }  // namespace
-
-std::vector<RobotGrasp> grasp_candidates(const model::HandModel& hand, const model::Shape& shape,
-                                         const Pose& X_OG) {
-  std::vector<Pose> found;
-  const auto offer = [&](const Pose& wanted) {
-    const auto made = model::nearest_grasp(shape, wanted, hand.reach());
-    if (!made || std::any_of(found.begin(), found.end(), [&](const Pose& other) {
-          return (other.translation() - made->translation()).norm() < same_place &&
-                 angle_between(other.linear(), made->linear()) < same_turn;
-        }))
-      return;
-    found.push_back(*made);
-  };
-  offer(X_OG);
-  for (const double turn : {30, -30, 60, -60, 90, -90, 180}) offer(turned(turn, X_OG));
-  const Vector3d y = X_OG.linear().col(1);
-  const Vector3d closing = Vector3d(y.x(), y.y(), 0).norm() > 1e-6
-                               ? Vector3d(y.x(), y.y(), 0).normalized()
-                               : Vector3d::UnitX().eval();
-  const Pose above = make_pose(Vector3d::Zero(), model::grasp_axes(-Vector3d::UnitZ(), closing));
-  for (const double turn : {0, 90, 45, -45, 180, -90, 135, -135}) offer(turned(turn, above));
-  std::vector<RobotGrasp> made;
-  for (const Pose& X : found)
-    made.push_back({X * hand.X_BG().inverse(), hand.postures().at("open")});
-  return made;
-}
 
 Places places_of(const grasping::World& world) {
   Places made;
@@ -205,10 +202,10 @@ Expected<Rehearsal> rehearse(const model::HandModel& hand, const TaskModel& task
       return fail("no grasp does step " + std::to_string(i + 1) + " of " + task.name + ": " +
                       best.error().what,
                   step.object, "place the objects otherwise, or show another grasp");
-    world = std::move(best->world);
-    made.grasps[i] = best->grasp;
-    made.verdicts[i] = best->verdict;
-    options.posture = best->posture;
+    world = std::move(best->trial.world);
+    made.grasps[i] = best->trial.grasp;
+    made.verdicts[i] = best->trial.verdict;
+    options.posture = best->trial.posture;
   }
   return made;
 }

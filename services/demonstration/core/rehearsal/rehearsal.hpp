@@ -7,6 +7,7 @@
 
 #include "common/carrying/carrying_arm.hpp"
 #include "common/grasping/world.hpp"
+#include "services/demonstration/core/rehearsal/candidates.hpp"
 #include "services/demonstration/core/reproduction/task_performer.hpp"
 
 namespace prehend::demonstration {
@@ -17,14 +18,8 @@ struct Thing {
   Pose X_WO = Pose::Identity();
 };
 
-/// How this hand may take an object that a person took at X_OG: that way first, then turned about
-/// the object's axis, then from above, the open hand each time. What its reach does not allow is
-/// left out; may be empty.
-std::vector<RobotGrasp> grasp_candidates(const model::HandModel& hand, const model::Shape& shape,
-                                         const Pose& X_OG);
-
 struct RehearsalOptions {
-  int max_tries = 10;  // of each step; a grasp to which the arm has no way does not count
+  int max_tries = 24;  // of each step; a grasp to which the arm has no way does not count
   PerformerOptions performer;
   VerdictOptions verdict;
   std::optional<planning::Robot> robot;  // an arm that carries the hand; none: it flies

@@ -122,8 +122,10 @@ void StepPerformer::enter(StepPart part, const RobotNow& robot, const Pose& X_WO
   switch (part) {
     case StepPart::approach:
       return approach(robot, X_WO);
-    case StepPart::close:
     case StepPart::release:
+      goal_.dof = hand_.clamp(motors(robot));
+      return;
+    case StepPart::close:
       still_since_ = robot.stamp;
       stood_ = motors(robot);
       return;
@@ -213,12 +215,16 @@ void StepPerformer::close(const RobotNow& robot, const Pose& X_WO) {
   if (t > 4 * options_.patience) give_up("fingers do not come to rest", robot, X_WO);
 }
 
+/// What presses lets go as fast as it can, all at once: a finger that does so last would push the
+/// object away, and links that uncurl slowly would carry it along.
 void StepPerformer::open(const RobotNow& robot, const Pose& X_WO) {
   const double dt = to_seconds(robot.stamp - last_);
   bool there = true;
   for (Eigen::Index i = 0; i < goal_.dof.size(); ++i) {
     const model::HandDof& dof = hand_.dofs()[static_cast<std::size_t>(i)];
-    const double step = options_.finger_speed * model::radian_of(dof) * dt;
+    const bool presses = dof.closing * (goal_.dof[i] - robot.dof[i]) > 0;
+    const double step =
+        (presses ? dof.max_velocity : options_.finger_speed * model::radian_of(dof)) * dt;
     const double way = order_.grasp.preshape[i] - goal_.dof[i];
     goal_.dof[i] += std::clamp(way, -step, step);
     there &= std::abs(robot.dof[i] - order_.grasp.preshape[i]) < opened * model::radian_of(dof);

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <vector>
+
+#include "common/model/hand_model.hpp"
+#include "common/model/shape.hpp"
+#include "services/demonstration/core/reproduction/step_performer.hpp"
+
+namespace prehend::demonstration {
+
+/// How a hand may be before it closes, the likeliest first: open; open with all that does not close
+/// (spread, abduction) a little and a good deal towards the farther one of its limits; its other
+/// named postures that can close. Each once.
+std::vector<Eigen::VectorXd> preshapes_of(const model::HandModel& hand);
+
+/// How this hand may take an object that a person took at X_OG: that way with the open hand first,
+/// then turned about the object's axis, then from above, and each with other preshapes; the
+/// likeliest first. What its reach does not allow is left out; may be empty.
+std::vector<RobotGrasp> grasp_candidates(const model::HandModel& hand, const model::Shape& shape,
+                                         const Pose& X_OG);
+
+}  // namespace prehend::demonstration
