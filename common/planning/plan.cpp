@@ -13,11 +13,11 @@ namespace {
 using arm::Joints;
 
 constexpr double look_m = 0.01, look_rad = 0.05;  // along a straight way
-constexpr int looks_at_branch = 40;
-constexpr double near_branch = 0.25;  // of the least dexterity: a way may lead round
-constexpr double max_turn = 0.5;      // rad, of a joint between two looks
-constexpr double apart = 0.03;        // m, of the corners of a path
-constexpr int gentle = 6;             // corners, over which a bend is spread
+constexpr int looks_at_branch = 100;
+constexpr double near_branch = 0.5;  // of the least dexterity: a way may lead round
+constexpr double max_turn = 0.5;     // rad, of a joint between two looks
+constexpr double apart = 0.03;       // m, of the corners of a path
+constexpr int gentle = 6;            // corners, over which a bend is spread
 
 /// Does the straight way between two postures keep off singularities, whatever else is there? If
 /// not, they are on different branches of the inverse kinematics, or nearly so.

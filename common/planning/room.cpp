@@ -75,6 +75,14 @@ std::vector<model::Capsule> all_carried(const Robot& robot, const Scene& scene, 
   return made;
 }
 
+/// Two things meet at a time: pools for thousands would cost more than all looks.
+btDefaultCollisionConstructionInfo small_pools() {
+  btDefaultCollisionConstructionInfo made;
+  made.m_defaultMaxPersistentManifoldPoolSize = 16;
+  made.m_defaultMaxCollisionAlgorithmPoolSize = 16;
+  return made;
+}
+
 arm::Surroundings surroundings_of(const Robot& robot, const Scene& scene) {
   arm::Surroundings made;
   if (scene.table && robot.X_WA.linear().col(2).z() > 0.9999)
@@ -106,7 +114,7 @@ struct Room::State {
   };
   std::vector<Pair> pairs;
   std::vector<std::pair<std::size_t, double>> above_table;  // parts, and their clearance
-  btDefaultCollisionConfiguration configuration;
+  btDefaultCollisionConfiguration configuration{small_pools()};
   btCollisionDispatcher dispatcher{&configuration};
   btDbvtBroadphase broadphase;
   btCollisionWorld world{&dispatcher, &broadphase, &configuration};

@@ -1,10 +1,11 @@
 // What planning a way of an arm costs, on tables that are drawn, and how many of them are solved.
-// One thread. What no branch of the inverse kinematics can do is not counted as a way to be found.
+// One thread, processor time. What no branch of the inverse kinematics can do is not counted as a
+// way to be found.
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cstdlib>
+#include <ctime>
 #include <map>
 #include <vector>
 
@@ -13,8 +14,6 @@
 using namespace prehend;
 
 namespace {
-
-using SteadyClock = std::chrono::steady_clock;
 
 struct Tally {
   std::vector<double> times;  // ms, of those that were solved
@@ -36,9 +35,9 @@ struct Tally {
 
 Expected<planning::Trajectory> counted(const planning::Robot& robot, const planning::Query& query,
                                        Tally& tally) {
-  const auto begin = SteadyClock::now();
+  const std::clock_t begin = std::clock();
   auto made = planning::plan(robot, query);
-  const double ms = std::chrono::duration<double, std::milli>(SteadyClock::now() - begin).count();
+  const double ms = 1000.0 * static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
   if (made)
     tally.times.push_back(ms);
   else if (made.error().what.starts_with("no way"))

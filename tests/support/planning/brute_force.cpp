@@ -116,8 +116,8 @@ double gap_at(const planning::Robot& robot, const planning::Scene& scene, const 
 
 }  // namespace
 
-double least_gap(const planning::Robot& robot, const planning::Scene& scene,
-                 const planning::Trajectory& trajectory, double step) {
+double min_gap(const planning::Robot& robot, const planning::Scene& scene,
+               const planning::Trajectory& trajectory, double step) {
   const Things things = things_of(robot, scene);
   const arm::Joints lever = arm::levers(*robot.arm, {{Vector3d(0, 0, 0.35), {0, 0, 0.35}, 0}});
   double least = 1;

@@ -22,7 +22,7 @@ planning::Query drawn_carry(const planning::Robot& robot, const planning::Query&
 /// Least distance that anything keeps along a trajectory from obstacles, m, looked at so often that
 /// nothing moves by more than `step` between, by points on all surfaces and by none of the
 /// planner's means. The table counts for hand and held object.
-double least_gap(const planning::Robot& robot, const planning::Scene& scene,
-                 const planning::Trajectory& trajectory, double step);
+double min_gap(const planning::Robot& robot, const planning::Scene& scene,
+               const planning::Trajectory& trajectory, double step);
 
 }  // namespace prehend::test

@@ -75,7 +75,7 @@ TEST(Plan, EveryWayAmongThingsIsFreeWithinLimitsAndArrives) {
     ++solved;
     expect_arrives(robot, query, *made);
     expect_within_limits(robot, *made);
-    EXPECT_GT(test::least_gap(robot, query.scene, *made, look), kept);
+    EXPECT_GT(test::min_gap(robot, query.scene, *made, look), kept);
   }
   RecordProperty("solved", solved);
   RecordProperty("no_way", lost);
@@ -106,7 +106,7 @@ TEST(Plan, WhatIsHeldStaysUprightAndTouchesNothing) {
     ++solved;
     expect_arrives(robot, carry, *made);
     expect_within_limits(robot, *made);
-    EXPECT_GT(test::least_gap(robot, carry.scene, *made, look), kept);
+    EXPECT_GT(test::min_gap(robot, carry.scene, *made, look), kept);
     for (double t = 0; t < made->duration(); t += 0.01) {
       const Vector3d up_W = robot.hand_at(made->at(t)).linear() * carry.upright->up_B;
       EXPECT_LT(std::acos(std::min(1.0, up_W.z())), carry.upright->max_tilt + 0.01);
@@ -126,13 +126,13 @@ TEST(Plan, GoesAroundAThinWall) {
   ASSERT_TRUE(made) << made.error().message();
   expect_arrives(robot, query, *made);
   expect_within_limits(robot, *made);
-  EXPECT_GT(test::least_gap(robot, query.scene, *made, look), kept);
+  EXPECT_GT(test::min_gap(robot, query.scene, *made, look), kept);
   // Without the wall the way is shorter, and through it.
   Query bare = query;
   bare.scene.obstacles.clear();
   const auto direct = plan(robot, bare);
   ASSERT_TRUE(direct);
-  EXPECT_LT(test::least_gap(robot, query.scene, *direct, look), 0);
+  EXPECT_LT(test::min_gap(robot, query.scene, *direct, look), 0);
   EXPECT_LT(direct->duration(), made->duration());
 }
 
@@ -202,7 +202,7 @@ TEST(Room, AgreesWithBruteForceAtDrawnPostures) {
     const arm::Joints q =
         robot.arm->home + 0.8 * (test::random_posture(*robot.arm, random) - robot.arm->home);
     Trajectory standing = timed(robot, {q}, {});
-    const double gap = test::least_gap(robot, query.scene, standing, look);
+    const double gap = test::min_gap(robot, query.scene, standing, look);
     const auto conflict = room.conflict(q);
     if (gap < -0.001) {
       EXPECT_TRUE(conflict) << n << " " << gap;

@@ -30,8 +30,8 @@ Expected<Eigen::Vector2d> draw(Random& random, const Places& taken, const TableO
 
 void reachable(TableOptions& options) {
   options.half_width = 0.3;
-  options.half_depth = 0.2;
-  options.middle = -0.08;
+  options.half_depth = 0.17;
+  options.middle = -0.12;
   options.apart = 0.22;
 }
 
