@@ -148,7 +148,7 @@ demonstration::TaskModel tidying() {
   };
   put("Talc", 0.24, -0.2, 0.0525);
   put("Cup", -0.24, -0.2, 0.05);
-  put("Vitamins", 0.0, -0.22, 0.04);
+  put("Pringles", 0.0, -0.22, 0.12);
   return task;
 }
 
