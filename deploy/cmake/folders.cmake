@@ -39,7 +39,7 @@ function(prehend_library)
 endfunction()
 
 #   prehend_program(NAME [VISION] LINK what main.cpp needs beside its folder's library ...): is
-#   installed; VISION: it loads OpenCV, and has its place in that package
+#   installed; VISION: it loads OpenCV, libav or HDF5, and has its place in that package
 function(prehend_program name)
   cmake_parse_arguments(ARG "VISION" "" "LINK" ${ARGN})
   prehend_folder_target(library)

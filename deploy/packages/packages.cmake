@@ -1,5 +1,5 @@
-# Debian packages, by deploy/packages/make: `prehend`, `prehend-vision` (what loads OpenCV) and
-# `prehend-dev` (the contract and a CMake configuration for others' services).
+# Debian packages, by deploy/packages/make: `prehend`, `prehend-vision` (what loads OpenCV, libav or
+# HDF5) and `prehend-dev` (the contract and a CMake configuration for others' services).
 include(CMakePackageConfigHelpers)
 
 install(FILES ${CMAKE_CURRENT_LIST_DIR}/prehend.bash DESTINATION share/bash-completion/completions RENAME prehend
@@ -61,7 +61,7 @@ set(CPACK_COMPONENT_LAB_DESCRIPTION "leads a robot hand by a human one\n\
  A glove's fingertips and what a camera sees of the object become the joint angles of a robot hand;\n\
  a physics simulation judges the grasp. Services speak over DDS.")
 set(CPACK_COMPONENT_VISION_DESCRIPTION "leads a robot hand by a human one: the camera's side\n\
- Recognises objects and supplies their shape, size and place.")
+ Recognises objects and supplies their shape, size and place; writes recordings as training data.")
 set(CPACK_COMPONENT_DEV_DESCRIPTION "leads a robot hand by a human one: the contract\n\
  The topics' types in IDL, and a CMake configuration that generates them.")
 set(CPACK_DEBIAN_LAB_PACKAGE_RECOMMENDS "prehend-vision, gnuplot-nox")

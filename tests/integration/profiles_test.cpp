@@ -3,6 +3,7 @@
 // interfaces of its own runs in a network namespace, which takes root; it is skipped without.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <fstream>
 #include <iostream>
 #include <iterator>
@@ -201,7 +202,7 @@ wan="$lab --set lab.network=wan --set lab.keys=$keys"
 $bin/prehend-simulation $wan & simulation=$!
 sees() { $there $bin/prehend status --wait simulation $wan --set 'lab.peers=["10.9.0.1:7420"]' "$@"; }
 took() { begin=$(date +%s%N); "$@" || return 1; echo "took $((($(date +%s%N) - begin) / 1000000)) ms" >&2; }
-took sees --timeout 30 || exit 10
+for visit in 1 2 3; do took sees --timeout 30 || exit 10; done
 # Silent, and with the head of a ClientHello that never ends; they call again when they are cut.
 calls='while :; do
   held=
@@ -217,22 +218,23 @@ for one in "" "" greets greets; do
   $there bash -c "$calls" calls "$one" 2>/dev/null & callers="$callers $!"
 done
 sleep 1
-took sees --timeout 30 || exit 11
-took sees --timeout 30 || exit 12
+for visit in 1 2 3; do took sees --timeout 30 || exit 11; done
 kill -0 $simulation
 )sh",
-                              150);
+                              250);
   if (answer.exit_code == 77) GTEST_SKIP() << "iptables is needed to stop UDP";
   EXPECT_EQ(answer.exit_code, 0) << answer.log;
   std::vector<int> took;
   std::istringstream log(answer.log);
   for (std::string line; std::getline(log, line);)
     if (int ms = 0; std::sscanf(line.c_str(), "took %d ms", &ms) == 1) took.push_back(ms);
-  ASSERT_EQ(took.size(), 3u) << answer.log;
-  std::cout << "joined and seen after " << took[0] << " ms, among silent ones after " << took[1]
-            << " and " << took[2] << " ms\n";
-  EXPECT_LT(took[1], took[0] + 2000);
-  EXPECT_LT(took[2], took[0] + 2000);
+  ASSERT_EQ(took.size(), 6u) << answer.log;
+  // Medians: on a busy machine one visit may lose a packet of discovery, with callers or without.
+  std::sort(took.begin(), took.begin() + 3);
+  std::sort(took.begin() + 3, took.end());
+  std::cout << "joined and seen after " << took[1] << " ms, among silent ones after " << took[4]
+            << " ms, at most " << took[5] << " ms\n";
+  EXPECT_LT(took[4], took[1] + 2000);
 }
 
 // Two sites whose networks have the same addresses, as two container engines give them, each behind

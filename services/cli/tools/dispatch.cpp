@@ -15,7 +15,7 @@ const std::vector<Tool>& tools() {
       {"record", "prehend-record", "topics into a file"},
       {"replay", "prehend-replay", "a file back to topics"},
       {"check", "prehend-check", "do services still answer as recorded"},
-      {"recording", "prehend-recording", "what is in recordings, parts of them, comparisons"},
+      {"recording", "prehend-recording", "what is in recordings, parts of them, training data"},
       {"console", "prehend-console", "the lab in a browser"},
       {"ros", "prehend-ros", "tell nodes of ROS 2, without a bridge, what the hand does"},
       {"glove", "prehend-glove-tool", "calibrate, register and watch a glove; decode, emulate"},

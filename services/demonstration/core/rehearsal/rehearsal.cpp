@@ -52,10 +52,12 @@ Expected<Trial> try_step(const model::HandModel& hand, const TaskModel& task,
     if (!carried) return tl::unexpected(carried.error());
     arm = std::move(*carried);
   }
+  PerformerOptions once = options.performer;
+  once.retries = 0;  // a grasp that does it at the first attempt is looked for
   auto performer =
       TaskPerformer::create(hand, task, shapes, places_of(*made.world), {grasp},
-                            {made.world->commanded_base(), made.world->commanded_dof()},
-                            options.performer, options.verdict, {options.robot, false, true});
+                            {made.world->commanded_base(), made.world->commanded_dof()}, once,
+                            options.verdict, {options.robot, false, true});
   if (!performer) return tl::unexpected(performer.error());
   if (auto ok = perform_in(*made.world, *performer, max_step_time, arm.get()); !ok)
     return tl::unexpected(ok.error());

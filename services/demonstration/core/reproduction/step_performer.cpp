@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "services/demonstration/core/tasks/task_model.hpp"
 
@@ -17,6 +18,7 @@ constexpr double arrived_at = 0.006, arrived_turn = 0.04;  // m, rad
 constexpr double stands_for = 0.3;  // s, that fingers stand when they have closed
 constexpr double opened = 0.05;     // rad
 constexpr double above = 0.002;     // m, over its place that an object is let go
+constexpr double toppled = 0.3;     // rad
 
 Pose at_height(const Pose& X, double z) {
   Pose made = X;
@@ -99,7 +101,9 @@ void StepPerformer::approach(const RobotNow& robot, const Pose& X_WO) {
   const Pose X_WB = X_WO * order_.grasp.X_OB, before = back(X_WB, options_.stand_off);
   X_WO_before_ = X_WO;
   goal_.dof = order_.grasp.preshape;
-  if (!pilot_) return go({raised(goal_.X_WB), raised(before), before, X_WB}, options_.speed, robot);
+  // From an object that it stood around, the hand goes the way it came.
+  const Pose away = tries_ > 0 ? back(goal_.X_WB, options_.stand_off) : goal_.X_WB;
+  if (!pilot_) return go({away, raised(away), raised(before), before, X_WB}, options_.speed, robot);
   // An arm that could not lift there needs not go there.
   const Pose lifted = at_height(X_WB, X_WB.translation().z() + high() - X_WO.translation().z());
   over_ = !travel(before, {X_WB, lifted}, 1, robot, X_WO);
@@ -149,7 +153,16 @@ void StepPerformer::enter(StepPart part, const RobotNow& robot, const Pose& X_WO
   }
 }
 
+bool StepPerformer::try_again(const RobotNow& robot, const Pose& X_WO) {
+  if (tries_ >= options_.retries || tilt(X_WO) > tilt(X_WO_before_) + toppled) return false;
+  ++tries_;
+  again_ = true;
+  enter(StepPart::release, robot, X_WO);
+  return true;
+}
+
 void StepPerformer::give_up(const std::string& why, const RobotNow& robot, const Pose& X_WO) {
+  if ((part_ == StepPart::close || part_ == StepPart::lift) && try_again(robot, X_WO)) return;
   failure_ = why;
   failed_part_ = part_;
   enter(StepPart::release, robot, X_WO);
@@ -157,9 +170,18 @@ void StepPerformer::give_up(const std::string& why, const RobotNow& robot, const
 
 void StepPerformer::next(const RobotNow& robot, const Pose& X_WO) {
   if (part_ == StepPart::retract) {
+    if (std::exchange(again_, false)) return enter(StepPart::approach, robot, X_WO);
     over_ = true;
     return;
   }
+  const Vector3d moved = X_WO.translation() - X_WO_before_.translation();
+  if (part_ == StepPart::close && moved.head<2>().norm() > options_.pushed &&
+      try_again(robot, X_WO))
+    return;
+  // An arm plans its way from where the hand is clear of the object.
+  if (part_ == StepPart::release && again_ && pilot_) return enter(StepPart::retract, robot, X_WO);
+  if (part_ == StepPart::release && std::exchange(again_, false))
+    return enter(StepPart::approach, robot, X_WO);
   enter(static_cast<StepPart>(static_cast<int>(part_) + 1), robot, X_WO);
 }
 

@@ -56,10 +56,13 @@ struct PerformerOptions {
   double still = 0.03;                   // rad/s, of a finger that stands
   double patience = 2;                   // s, for what takes longer than it should
   double lost = 0.04;                    // m, that an object is from where the hand should have it
+  double pushed = 0.03;  // m, over the table: fingers that close have not met around the object
+  int retries = 2;       // of a grasp that pushed the object away or did not lift it
 };
 
-/// Does one step with a hand: approach, close, lift, carry, put down, release, retract. A base that
-/// moves freely travels high above all; for an arm a pilot plans the long ways. Says what to
+/// Does one step with a hand: approach, close, lift, carry, put down, release, retract; lets go and
+/// begins again where a grasp did not come about. A base that moves freely travels high above all;
+/// for an arm a pilot plans the long ways. Says what to
 /// command at each state of the robot; time is that of the states. Keeps a reference to the hand.
 class StepPerformer {
  public:
@@ -91,6 +94,8 @@ class StepPerformer {
   void close(const RobotNow& robot, const Pose& X_WO);
   void open(const RobotNow& robot, const Pose& X_WO);
   void next(const RobotNow& robot, const Pose& X_WO);
+  /// Lets go and begins anew, if that may be.
+  bool try_again(const RobotNow& robot, const Pose& X_WO);
   /// Lets go and goes away, if the object is not in the hand any more.
   void give_up(const std::string& why, const RobotNow& robot, const Pose& X_WO);
   Eigen::VectorXd motors(const RobotNow& robot) const;
@@ -103,7 +108,8 @@ class StepPerformer {
   Pilot pilot_;
   HandGoal goal_;
   StepPart part_ = StepPart::approach, failed_part_ = StepPart::approach;
-  bool begun_ = false, over_ = false;
+  bool begun_ = false, over_ = false, again_ = false;
+  int tries_ = 0;
   Time since_{}, last_{}, still_since_{};
   Way way_;
   Eigen::VectorXd stood_;                // fingers, when they were last seen to move

@@ -1,6 +1,9 @@
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <iostream>
@@ -11,7 +14,9 @@
 
 #include "common/base/log.hpp"
 #include "common/base/log_format.hpp"
+#include "common/base/paths.hpp"
 #include "common/recording/compare/recorded_topic.hpp"
+#include "services/recorder/tools/dataset_options/dataset_options.hpp"
 #include "services/recorder/tools/recording/commands.hpp"
 #include "services/recorder/tools/recording/table.hpp"
 
@@ -25,7 +30,21 @@ struct ExportArguments {
   std::string folder;  // empty: standard output
   std::string format = "csv";
   std::vector<std::string> topics;
+  DatasetOptions dataset;
 };
+
+/// Training data are written by a program of their own, because of the libraries that it loads.
+/// Returns only where it is not there.
+int become_dataset(const DatasetOptions& options) {
+  std::vector<std::string> command{(program_directory() / "prehend-dataset").string()};
+  for (std::string& argument : to_arguments(options)) command.push_back(std::move(argument));
+  std::vector<char*> pointers;
+  for (std::string& argument : command) pointers.push_back(argument.data());
+  pointers.push_back(nullptr);
+  ::execv(pointers.front(), pointers.data());
+  return complain({std::strerror(errno), command.front(), "it is in the package prehend-vision"},
+                  exit_broken);
+}
 
 /// glove/frame in CSV is glove-frame.csv.
 std::filesystem::path file_name(const ExportArguments& arguments, std::string topic) {
@@ -116,7 +135,7 @@ class Export {
   std::map<std::string, std::uint64_t> undecoded_;
 };
 
-int run(const ExportArguments& arguments) {
+int run_tables(const ExportArguments& arguments) {
   auto reader = recording::mcap::Reader::open(arguments.file);
   if (!reader) return complain_of(arguments.file, reader.error());
   std::set<std::string> topics;
@@ -137,18 +156,47 @@ int run(const ExportArguments& arguments) {
   return Export(arguments, *reader).run();
 }
 
+int run(ExportArguments& arguments) {
+  DatasetOptions& dataset = arguments.dataset;
+  if (std::ranges::count(dataset_formats(), arguments.format) > 0) {
+    dataset.format = arguments.format;
+    dataset.output = arguments.folder;
+    if (!arguments.topics.empty())
+      return complain({"is for tables", "--topic", ""}, exit_wrong_use);
+    if (const auto possible = check(dataset); !possible) return complain(possible.error());
+    return become_dataset(dataset);
+  }
+  if (dataset.sources.size() > 1)
+    return complain(
+        {"tables are made of one recording", fmt::format("{} given", dataset.sources.size()),
+         "prehend recording merge makes one of several"},
+        exit_wrong_use);
+  arguments.file = dataset.sources.front();
+  return run_tables(arguments);
+}
+
 }  // namespace
 
 void add_export(tool::Program& program) {
-  auto* command = program.app().add_subcommand("export", "messages as CSV or as lines of JSON");
+  auto* command = program.app().add_subcommand(
+      "export", "messages as CSV or as lines of JSON; recordings as training data");
   const auto arguments = std::make_shared<ExportArguments>();
-  command->add_option("FILE", arguments->file, "recording")->required();
-  command->add_option("--format", arguments->format, "a table a topic, or a document a message")
-      ->check(CLI::IsMember({"csv", "jsonl"}))
+  std::vector<std::string> formats{"csv", "jsonl"};
+  formats.insert(formats.end(), dataset_formats().begin(), dataset_formats().end());
+  command
+      ->add_option("FILE", arguments->dataset.sources,
+                   "recording; for training data also several, and folders of them")
+      ->required();
+  command
+      ->add_option("--format", arguments->format,
+                   "a table a topic (csv), a document a message (jsonl), or training data")
+      ->check(CLI::IsMember(formats))
       ->capture_default_str();
   command->add_option("--topic", arguments->topics, "only these; * and ? stand for anything");
   command->add_option("-o,--output", arguments->folder,
-                      "folder for a file a topic; without it standard output");
+                      "folder for a file a topic, without it standard output; of training data, "
+                      "what is made");
+  add_dataset_options(*command, arguments->dataset);
   program.on(*command, [arguments] { return run(*arguments); });
 }
 

@@ -1,0 +1,306 @@
+#include "services/recorder/tools/dataset/read_log.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <functional>
+#include <set>
+
+#include "common/base/printable.hpp"
+#include "common/model/human_hand.hpp"
+#include "common/recording/compare/recorded_topic.hpp"
+#include "common/recording/mcap/reader.hpp"
+#include "services/recorder/tools/dataset/message.hpp"
+
+namespace prehend::recorder::dataset {
+namespace {
+
+using recording::mcap::Channel;
+using recording::mcap::Reader;
+
+/// In the year 2223; sums of later times would not be numbers any more.
+constexpr std::uint64_t max_log_time = 8'000'000'000'000'000'000;
+constexpr std::string_view demonstration = "demonstration";  // whom the operator's marks are for
+
+/// Sizes must not change in the middle of a recording.
+bool fits(const Numbers& series, const Eigen::VectorXd& values) {
+  return series.empty() || series.values.front().size() == values.size();
+}
+
+/// Takes the messages that count. Each take_...() says whether the message could be used.
+class LogTaker {
+ public:
+  explicit LogTaker(std::string hand) : hand_(std::move(hand)) {}
+
+  using Take = bool (LogTaker::*)(const Value&, Time);
+  static const std::map<std::string, Take, std::less<>>& topics() {
+    static const std::map<std::string, Take, std::less<>> table{
+        {"robot/command", &LogTaker::command},  {"robot/state", &LogTaker::state},
+        {"arm/state", &LogTaker::arm},          {"hand/posture", &LogTaker::posture},
+        {"object/state", &LogTaker::body},      {"object/detection", &LogTaker::detection},
+        {"camera/image", &LogTaker::image},     {"grasp/report", &LogTaker::report},
+        {"task/progress", &LogTaker::progress}, {"operator/command", &LogTaker::order}};
+    return table;
+  }
+
+  RecordingLog finish() {
+    // Where the world says where things are, nobody needs what was seen of them.
+    if (log_.objects.empty()) log_.objects = std::move(seen_);
+    return std::move(log_);
+  }
+
+ private:
+  bool of_hand(const Value& message) const { return text(message, "hand") == hand_; }
+  /// A hand of another kind has other DoFs.
+  bool of_model(const Value& message) {
+    const std::string model = text(message, "model");
+    if (log_.model.empty()) log_.model = model;
+    return log_.model == model;
+  }
+
+  bool command(const Value& message, Time time) {
+    if (!of_hand(message)) return true;
+    const auto dof = numbers(message, "dof");
+    const auto X_WB = pose(message, "X_WB");
+    if (!dof || !X_WB || !of_model(message) || !fits(log_.command_dof, *dof)) return false;
+    log_.command_dof.add(time, *dof);
+    log_.command_X_WB.add(time, *X_WB);
+    log_.command_object.add(time, text(message, "object"));
+    return true;
+  }
+
+  bool state(const Value& message, Time time) {
+    if (!of_hand(message)) return true;
+    const auto dof = numbers(message, "dof"), joint = numbers(message, "joint"),
+               velocity = numbers(message, "velocity"), torque = numbers(message, "torque");
+    const auto X_WB = pose(message, "X_WB");
+    if (!dof || !joint || !velocity || !torque || !X_WB || !of_model(message) ||
+        !fits(log_.dof, *dof) || !fits(log_.joint, *joint) || !fits(log_.velocity, *velocity) ||
+        !fits(log_.torque, *torque))
+      return false;
+    log_.dof.add(time, *dof);
+    log_.joint.add(time, *joint);
+    log_.velocity.add(time, *velocity);
+    log_.torque.add(time, *torque);
+    log_.X_WB.add(time, *X_WB);
+    return true;
+  }
+
+  /// Of the first arm that is heard.
+  bool arm(const Value& message, Time time) {
+    const std::string name = text(message, "arm");
+    if (arm_.empty()) arm_ = name;
+    if (arm_ != name) return true;
+    const auto joint = numbers(message, "joint"), velocity = numbers(message, "velocity");
+    if (!joint || !velocity || !fits(log_.arm_joint, *joint) || !fits(log_.arm_velocity, *velocity))
+      return false;
+    log_.arm_joint.add(time, *joint);
+    log_.arm_velocity.add(time, *velocity);
+    return true;
+  }
+
+  /// Of the first glove that is heard; the fingers that it measures at first, whenever it does.
+  bool posture(const Value& message, Time time) {
+    const std::string glove = text(message, "glove");
+    if (glove_.empty()) glove_ = glove;
+    const auto X_WH = pose(message, "X_WH");
+    const Value* tips = message.find("fingertips");
+    const auto* list = tips ? std::get_if<Value::List>(&tips->content) : nullptr;
+    if (!X_WH || !list || list->size() != model::finger_count) return false;
+    if (glove_ != glove) return true;
+    std::vector<std::string> fingers;
+    std::vector<double> numbers;
+    for (std::size_t i = 0; i < list->size(); ++i) {
+      const auto p_HF = vector((*list)[i], "p_HF");
+      if (!flag((*list)[i], "valid") || !p_HF) continue;
+      fingers.emplace_back(model::finger_names.name(static_cast<model::Finger>(i)));
+      const Eigen::Vector3d p_WF = *X_WH * *p_HF;
+      numbers.insert(numbers.end(), p_WF.begin(), p_WF.end());
+    }
+    if (log_.human_fingertips.empty()) log_.human_fingers = fingers;
+    if (fingers == log_.human_fingers && !fingers.empty())
+      log_.human_fingertips.add(
+          time, Eigen::Map<const Eigen::VectorXd>(numbers.data(),
+                                                  static_cast<Eigen::Index>(numbers.size())));
+    return true;
+  }
+
+  static bool place(std::map<std::string, Poses>& objects, const Value& message,
+                    std::string_view name, Time time) {
+    const auto X_WO = pose(message, "X_WO");
+    if (!X_WO) return false;
+    objects[as_name(text(message, name))].add(time, *X_WO);
+    return true;
+  }
+  bool body(const Value& message, Time time) {
+    log_.simulated = true;
+    return place(log_.objects, message, "body", time);
+  }
+  bool detection(const Value& message, Time time) { return place(seen_, message, "name", time); }
+
+  bool image(const Value& message, Time time) {
+    const auto width = number(message, "width"), height = number(message, "height");
+    if (!width || !height || *width < 1 || *height < 1 || *width > 65535 || *height > 65535)
+      return false;
+    Camera& camera = log_.cameras[as_name(text(message, "camera"))];
+    if (camera.times.empty()) {
+      camera.width = static_cast<int>(*width);
+      camera.height = static_cast<int>(*height);
+    }
+    if (camera.times.empty() || time > camera.times.back()) camera.times.push_back(time);
+    return true;
+  }
+
+  bool report(const Value& message, Time time) {
+    if (of_hand(message))
+      log_.judgements.push_back({time, text(message, "object"), flag(message, "held")});
+    return true;
+  }
+
+  bool progress(const Value& message, Time time) {
+    if (!of_hand(message)) return true;
+    const std::string task = text(message, "task"), state = text(message, "state");
+    if (state == "TASK_RUNNING") {
+      if (!running_ || running_->task != task) running_ = Attempt{time, time, task, {}};
+    } else if (running_ && running_->task == task) {
+      running_->end = time;
+      running_->success = state == "TASK_DONE";
+      log_.runs.push_back(*std::exchange(running_, std::nullopt));
+    }
+    return true;
+  }
+
+  bool order(const Value& message, Time time) {
+    if (text(message, "target") != demonstration) return true;
+    const std::string action = text(message, "action");
+    if (action == "ACTION_START") showing_ = Attempt{time, time, text(message, "argument"), {}};
+    if (action == "ACTION_STOP" && showing_) {
+      showing_->end = time;
+      log_.shown.push_back(*std::exchange(showing_, std::nullopt));
+    }
+    return true;
+  }
+
+  std::string hand_, arm_, glove_;
+  RecordingLog log_;
+  std::map<std::string, Poses> seen_;
+  std::optional<Attempt> running_, showing_;
+};
+
+/// Reads the messages of some topics, one after the other, and remembers what could not be.
+class Messages {
+ public:
+  explicit Messages(Reader& reader) : reader_(reader), types_(reader) {}
+
+  void read(const std::function<bool(const std::string&)>& wanted,
+            const std::function<bool(const std::string&, const Value&, Time)>& take) {
+    auto cursor = reader_.messages({.wanted = [&](const Channel& channel) {
+      const auto topic = recording::recorded_topic(channel, reader_.contents());
+      return topic.end.empty() && wanted(topic.name);
+    }});
+    while (true) {
+      const auto next = cursor.next();
+      if (!next) {
+        damage_.push_back(next.error());
+        continue;
+      }
+      if (!*next) break;
+      const auto& [channel, message] = **next;
+      const auto topic = recording::recorded_topic(*channel, reader_.contents()).name;
+      const auto* type = types_.of(*channel);
+      const auto value = type ? recording::types::decode(*type, message.data)
+                              : Expected<Value>(fail("its type is not described"));
+      const Time time = from_ns(static_cast<std::int64_t>(message.log_time));
+      if (message.log_time > max_log_time || !value || !take(topic, *value, time)) ++unused_[topic];
+    }
+  }
+
+  std::vector<Error> damage() const {
+    std::vector<Error> all = damage_;
+    for (const auto& [topic, count] : unused_)
+      all.push_back({fmt::format("{} messages of {} cannot be used", count, topic),
+                     reader_.file().name(), ""});
+    return all;
+  }
+
+ private:
+  Reader& reader_;
+  recording::RecordedTypes types_;
+  std::vector<Error> damage_;
+  std::map<std::string, std::uint64_t> unused_;
+};
+
+/// The hand that is meant: the given one, or the only one that got commands.
+Expected<std::string> hand_of(Reader& reader, const std::string& file, const std::string& wanted) {
+  std::set<std::string> hands;
+  Messages(reader).read([](const std::string& topic) { return topic == "robot/command"; },
+                        [&](const std::string&, const Value& message, Time) {
+                          hands.insert(text(message, "hand"));
+                          return true;
+                        });
+  std::string names;
+  for (const std::string& hand : hands) names += (names.empty() ? "" : ", ") + printable(hand);
+  if (hands.empty())
+    return fail("holds no command of a hand (robot/command)", file,
+                "prehend recording info FILE says what it holds", exit_no);
+  if (wanted.empty() && hands.size() > 1)
+    return wrong_use("holds several hands: " + names, file, "choose one with --hand");
+  if (!wanted.empty() && !hands.contains(wanted))
+    return wrong_use("holds no hand " + wanted + " but " + names, file);
+  return wanted.empty() ? *hands.begin() : wanted;
+}
+
+}  // namespace
+
+Expected<ReadLog> read_log(const std::filesystem::path& file, const std::string& hand) {
+  auto reader = Reader::open(file);
+  if (!reader) {
+    Error error = reader.error();
+    error.exit = ::access(file.c_str(), R_OK) == 0 ? exit_no : exit_broken;
+    return tl::unexpected(std::move(error));
+  }
+  const auto name = hand_of(*reader, file.string(), hand);
+  if (!name) return tl::unexpected(name.error());
+
+  Messages messages(*reader);
+  LogTaker taker(*name);
+  messages.read([](const std::string& topic) { return LogTaker::topics().contains(topic); },
+                [&](const std::string& topic, const Value& message, Time time) {
+                  return (taker.*LogTaker::topics().find(topic)->second)(message, time);
+                });
+  ReadLog read{taker.finish(), reader->contents().damage};
+  for (Error& error : messages.damage()) read.damage.push_back(std::move(error));
+  if (read.log.command_dof.empty())
+    return fail("holds no command that can be used", file.string(), "", exit_no);
+  if (!read.log.dof.empty() &&
+      read.log.dof.values.front().size() != read.log.command_dof.values.front().size())
+    return fail("its robot/command and robot/state are of different hands", file.string(), "",
+                exit_no);
+  return read;
+}
+
+Expected<std::vector<std::filesystem::path>> recordings_of(
+    const std::vector<std::string>& sources) {
+  std::vector<std::filesystem::path> all;
+  for (const std::string& source : sources) {
+    std::error_code problem;
+    if (!std::filesystem::is_directory(source, problem)) {
+      if (!std::filesystem::exists(source, problem)) return fail("is not there", source);
+      all.emplace_back(source);
+      continue;
+    }
+    std::vector<std::filesystem::path> found;
+    for (std::filesystem::recursive_directory_iterator each(source, problem), end;
+         !problem && each != end; each.increment(problem))
+      if (each->path().extension() == ".mcap" && each->is_regular_file(problem))
+        found.push_back(each->path());
+    if (problem) return fail(problem.message(), source);
+    if (found.empty()) return fail("holds no recording (*.mcap)", source, "", exit_no);
+    std::ranges::sort(found);
+    all.insert(all.end(), found.begin(), found.end());
+  }
+  return all;
+}
+
+}  // namespace prehend::recorder::dataset

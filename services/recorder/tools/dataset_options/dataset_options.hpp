@@ -1,0 +1,39 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "common/base/error.hpp"
+
+namespace prehend::recorder {
+
+/// Of `prehend recording export` where training data are written; prehend-dataset does it.
+struct DatasetOptions {
+  std::vector<std::string> sources;  // recordings, and folders of them
+  std::string format;
+  std::string output;
+  double rate = 30;  // Hz
+  std::string turns = "quaternion";
+  std::string size;  // of pictures, as 84x84; empty: as recorded
+  std::string hand;  // empty: the only one
+  std::string task;  // its words; empty: as recorded
+};
+
+/// The formats that are training data.
+const std::vector<std::string>& dataset_formats();
+
+/// All but sources, format and output.
+void add_dataset_options(CLI::App& app, DatasetOptions& options);
+
+/// As they are given to prehend-dataset.
+std::vector<std::string> to_arguments(const DatasetOptions& options);
+
+/// Says what cannot be meant.
+Expected<void> check(const DatasetOptions& options);
+/// Width and height, px; nothing where none is asked for.
+Expected<std::optional<std::pair<int, int>>> picture_size(const DatasetOptions& options);
+
+}  // namespace prehend::recorder
