@@ -20,6 +20,7 @@ void require_line(const Error& error) {
 
 void require_sound(const Take& take) {
   fuzz::require(!take.samples.empty() && !take.user.empty() && !take.label.empty(), "no take");
+  fuzz::require(!take.object || model::is_valid(*take.object), "no object");
   double t = take.samples.front().t;
   for (const HandSample& sample : take.samples) {
     fuzz::require(std::isfinite(sample.t) && sample.t >= t, "samples are not in order of time");
@@ -35,9 +36,13 @@ void require_sound(const Take& take) {
 
 int main(int argc, char** argv) {
   fuzz::Fuzzer fuzzer;
-  for (const std::uint64_t seed : {1, 2, 3})
-    fuzzer.seeds.push_back(
-        test::to_csv(test::made_takes({.people = 2, .trials = 1, .samples = 3, .seed = seed})));
+  for (const std::uint64_t seed : {1, 2, 3}) {
+    auto takes = test::made_takes({.people = 2, .trials = 1, .samples = 3, .seed = seed});
+    fuzzer.seeds.push_back(test::to_csv(takes));
+    for (Take& take : takes)
+      take.object = model::Shape{model::ShapeKind::cylinder, {0.015, 0.015, 0.12}};
+    fuzzer.seeds.push_back(takes_csv(takes));
+  }
   fuzzer.long_round = 100'000;
   fuzzer.mutate = [](Random& random, std::string text) {
     return random.index(2) == 0 ? fuzz::mutate_bytes(random, std::move(text))

@@ -1,6 +1,7 @@
 #include "services/demonstration/files/takes_file.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -20,11 +21,13 @@ namespace prehend::demonstration {
 namespace {
 
 constexpr std::array fingers{"index", "middle", "ring", "little"};
+constexpr std::array size_columns{"size_x_cm", "size_y_cm", "size_z_cm"};
 constexpr std::array keys{"user", "object", "trial", "t_ms"};
 constexpr std::string_view byte_order_mark = "\xef\xbb\xbf";
 constexpr double farthest = 0.5;   // m, between fingertips of a hand
 constexpr double fastest = 50;     // m/s
 constexpr double longest = 86400;  // s
+constexpr double largest = 2;      // m, of an object
 constexpr std::size_t max_name = 64;
 
 std::string_view trimmed(std::string_view text) {
@@ -55,7 +58,8 @@ std::string with_plain_names(std::string_view text) {
 }
 
 /// What tells one take from another.
-using Key = std::tuple<std::string, std::string, std::string, std::string, std::string, int>;
+using Key =
+    std::tuple<std::string, std::string, std::string, std::string, std::string, std::string, int>;
 
 class Reader {
  public:
@@ -145,19 +149,33 @@ class Reader {
     made_.unknown_numbers += unknown_;
     std::string task = name_of(row, "task");
     if (task.empty()) task = task_;
-    place(Key{task, user, object, name_of(row, "side"), name_of(row, "action"),
-              static_cast<int>(trial)},
-          sample);
+    std::string grasp = name_of(row, "grasp");
+    if (grasp.empty()) grasp = object;
+    Take& take = place(Key{task, user, object, grasp, name_of(row, "side"), name_of(row, "action"),
+                           static_cast<int>(trial)});
+    take.samples.push_back(sample);
+    if (!take.object) take.object = shape_of(row);
     return std::nullopt;
   }
 
-  void place(const Key& key, const HandSample& sample) {
+  Take& place(const Key& key) {
     const auto [found, is_new] = place_.emplace(key, made_.takes.size());
     if (is_new) {
-      const auto& [task, user, object, side, action, trial] = key;
-      made_.takes.push_back({user, task, object, side, action, trial, {}});
+      const auto& [task, user, object, grasp, side, action, trial] = key;
+      made_.takes.push_back({user, task, grasp, side, action, trial, {}, {}});
     }
-    made_.takes[found->second].samples.push_back(sample);
+    return made_.takes[found->second];
+  }
+
+  /// Nothing where the row does not say it, or says what no object is.
+  std::optional<model::Shape> shape_of(CsvRow& row) {
+    const auto kind = model::shape_from_string(trimmed(cell(row, "shape")));
+    if (!kind) return std::nullopt;
+    model::Shape made{*kind, {}};
+    for (Eigen::Index i = 0; i < 3; ++i)
+      made.size[i] =
+          number(cell(row, size_columns[static_cast<std::size_t>(i)]), 100 * largest) / 100;
+    return model::is_valid(made) ? std::optional(made) : std::nullopt;
   }
 
   void note(const std::string& what) {
@@ -203,6 +221,30 @@ Expected<Takes> parse_takes(std::string_view text, const std::string& name,
                             const std::string& task) {
   const std::string plain = with_plain_names(text);
   return Reader(plain, name, task).read();
+}
+
+std::string takes_csv(const std::vector<Take>& takes) {
+  std::string text = "user,task,object,grasp,side,action,trial,t_ms,hand_speed_m_s,wrist_speed_m_s";
+  for (const char* finger : fingers)
+    for (const char axis : {'x', 'y', 'z'}) text += fmt::format(",thumb_{}_{}_cm", finger, axis);
+  text += fmt::format(",shape,{}\n", fmt::join(size_columns, ","));
+  for (const Take& take : takes) {
+    const std::string shape =
+        take.object ? std::string(model::to_string(take.object->kind)) : std::string();
+    for (const HandSample& sample : take.samples) {
+      text += fmt::format("{},{},{},{},{},{},{},{:.1f},{:.4f},{:.4f}", take.user, take.task,
+                          shape.empty() ? take.label : shape, take.label, take.side, take.action,
+                          take.trial, 1000 * sample.t, sample.hand_speed, sample.wrist_speed);
+      // W has x forward, y left, z up; the table's axes are x up, y forward, z left.
+      for (const Eigen::Vector3d& tip : sample.p_thumb_tip_W)
+        text += fmt::format(",{:.3f},{:.3f},{:.3f}", 100 * tip.z(), 100 * tip.x(), 100 * tip.y());
+      text += "," + shape;
+      for (Eigen::Index i = 0; i < 3; ++i)
+        text += take.object ? fmt::format(",{:.3f}", 100 * take.object->size[i]) : ",";
+      text += "\n";
+    }
+  }
+  return text;
 }
 
 Expected<Takes> load_takes(const std::filesystem::path& folder) {

@@ -127,6 +127,27 @@ TEST(TakesFile, BadRowsAreCountedAndTheOthersStay) {
   EXPECT_EQ(told.find('\n'), std::string::npos);
 }
 
+TEST(TakesFile, KindAndObjectAreReadWhereTheyAreThere) {
+  auto rows = cells_of(test::to_csv(few()));
+  const std::vector<std::string> names{"grasp", "shape", "size_x_cm", "size_y_cm", "size_z_cm"};
+  rows[0].insert(rows[0].end(), names.begin(), names.end());
+  for (std::size_t i = 1; i < rows.size(); ++i)
+    rows[i].insert(rows[i].end(), {"tripod", "cylinder", "1.5", "1.5", "12"});
+  for (std::size_t i = 1; i <= 3; ++i) rows[i][rows[i].size() - 1] = "-12";     // first take
+  for (std::size_t i = 4; i <= 6; ++i) rows[i][rows[i].size() - 5] = "";        // second
+  for (std::size_t i = 7; i <= 9; ++i) rows[i][rows[i].size() - 4] = "teapot";  // third
+  const auto takes = parse_takes(csv_of(rows), "task1.csv", "1");
+  ASSERT_TRUE(takes) << takes.error().message();
+  ASSERT_EQ(takes->takes.size(), few().size());
+  EXPECT_EQ(takes->takes[0].label, "tripod");
+  EXPECT_FALSE(takes->takes[0].object) << "no object is lower than nothing";
+  EXPECT_EQ(takes->takes[1].label, few()[1].label) << "the object says it";
+  EXPECT_FALSE(takes->takes[2].object);
+  ASSERT_TRUE(takes->takes[3].object);
+  EXPECT_EQ(takes->takes[3].object->kind, model::ShapeKind::cylinder);
+  EXPECT_NEAR(takes->takes[3].object->size.z(), 0.12, 1e-9);
+}
+
 TEST(TakesFile, SamplesAreInOrderOfTime) {
   auto rows = cells_of(test::to_csv(few()));
   std::swap(rows[1], rows[3]);

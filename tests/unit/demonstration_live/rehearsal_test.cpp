@@ -6,7 +6,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
+#include <set>
 
 #include "common/arm/mounting.hpp"
 #include "common/base/paths.hpp"
@@ -85,10 +87,11 @@ TEST(Preshapes, AreOpenWithAndWithoutWhatDoesNotCloseAndThoseThatTheHandHas) {
   const auto& spread = barrett().dofs().front();
   ASSERT_EQ(spread.closing, 0);
   const auto made = preshapes_of(barrett());
-  ASSERT_EQ(made.size(), 3u);
+  ASSERT_EQ(made.size(), 4u);
   EXPECT_EQ(made[0], barrett().postures().at("open"));
   EXPECT_NEAR(made[1][0], (spread.upper - spread.lower) / 12, 1e-9);
-  EXPECT_NEAR(made[2][0], (spread.upper - spread.lower) / 3, 1e-9);
+  EXPECT_NEAR(made[2][0], (spread.upper - spread.lower) / 2, 1e-9);
+  EXPECT_NEAR(made[3][0], (spread.upper - spread.lower) / 3, 1e-9);
   for (const auto& each : made) EXPECT_EQ(each.tail(3), made[0].tail(3)) << "fingers are open";
   // All its DoFs close: only its own postures are left, and of these not the closed one.
   const auto jaw = model::HandModel::load(model::hand_directory("parallel_jaw")).value();
@@ -126,6 +129,31 @@ TEST(GraspCandidates, ThePersonsComesFirstAndEachPoseMeetsEachPreshapeOnce) {
   }
   EXPECT_EQ(with.size(), preshapes.size());
   for (const auto& [preshape, poses] : with) EXPECT_EQ(poses, made.size() / preshapes.size());
+}
+
+TEST(GraspCandidates, WhatIsLowIsAlsoTakenLower) {
+  const auto heights = [](const char* name) {
+    std::set<int> made;  // mm
+    for (const RobotGrasp& each :
+         grasp_candidates(barrett(), objects().find(name)->shape, from_the_side())) {
+      const Pose X_OG = each.X_OB * barrett().X_BG();
+      if (X_OG.linear().col(2).z() < -0.99)
+        made.insert(static_cast<int>(std::lround(1000 * X_OG.translation().z())));
+    }
+    return made;
+  };
+  EXPECT_EQ(heights("Wood cube").size(), 2u);
+  EXPECT_EQ(heights("Talc").size(), 1u) << "the table is far";
+}
+
+TEST(Rehearsal, FindsAPreshapeForWhatTheOpenHandCannotHold) {
+  // Two fingers of a Barrett hand stand farther apart than the cube is wide, until they are spread.
+  const std::vector<Thing> things{thing("Wood cube", 0.1, 0.05)};
+  const TaskModel task = put("Wood cube", the_table, {-0.1, -0.1, 0.0215});
+  const auto made = rehearse(barrett(), task, things, resting());
+  ASSERT_TRUE(made) << made.error().message();
+  EXPECT_LT(made->verdicts[0].error, 0.02);
+  EXPECT_GT(made->grasps[0].preshape[0], 1) << "the fingers are spread";
 }
 
 TEST(Rehearsal, SaysWhatCannotBeDone) {

@@ -3,8 +3,11 @@
 #include <Eigen/Core>
 #include <array>
 #include <limits>
+#include <optional>
 #include <string>
 #include <vector>
+
+#include "common/model/shape.hpp"
 
 namespace prehend::demonstration {
 
@@ -24,7 +27,8 @@ struct HandSample {
 struct Take {
   std::string user, task, label, side, action;
   int trial = 0;
-  std::vector<HandSample> samples;  // by time
+  std::vector<HandSample> samples;       // by time
+  std::optional<model::Shape> object{};  // what was grasped, as it was measured
 };
 
 }  // namespace prehend::demonstration

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <optional>
 
 #include "common/grasping/candidates.hpp"
 #include "common/model/placement.hpp"
@@ -16,10 +17,11 @@ using Eigen::AngleAxisd;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
 
-constexpr double same_place = 0.01, same_turn = 0.1;   // m, rad: no other grasp
-constexpr std::array turned_aside{1.0 / 12, 1.0 / 3};  // of its range: a DoF that does not close
-constexpr double same_preshape = 0.05;       // rad, or what stands for it (radian_of), of each DoF
-constexpr std::size_t another_preshape = 2;  // as unlikely as so many poses further on
+constexpr double same_place = 0.01, same_turn = 0.1;  // m, rad: no other grasp
+// Shares of its range by which a DoF that does not close is turned aside.
+constexpr std::array turned_aside{1.0 / 12, 1.0 / 2, 1.0 / 3};
+constexpr double same_preshape = 0.05;  // rad, or what stands for it (radian_of), of each DoF
+constexpr double lower = 0.008;         // m, than a hand's reach says
 
 Pose turned(double degrees, const Pose& X_OG) {
   const AngleAxisd turn(degrees * std::numbers::pi / 180, Vector3d::UnitZ());
@@ -45,6 +47,16 @@ bool alike(const model::HandModel& hand, const VectorXd& one, const VectorXd& ot
   return true;
 }
 
+/// The same a little lower, for a grasp from above that is kept high by the table; none for others.
+/// Reach speaks of the open hand; fingers that stand otherwise come down less.
+std::optional<Pose> lowered(const model::HandModel& hand, const model::Shape& shape, Pose X_OG) {
+  const double room =
+      X_OG.translation().z() - (model::half_extents(shape).z() - hand.reach().engage);
+  if (X_OG.linear().col(2).z() > -0.99 || room < lower) return std::nullopt;
+  X_OG.translation().z() -= lower;
+  return X_OG;
+}
+
 /// Where the grasp frame may come to lie, as the person took it first; each once.
 std::vector<Pose> grasp_poses(const model::HandModel& hand, const model::Shape& shape,
                               const Pose& X_OG) {
@@ -57,6 +69,7 @@ std::vector<Pose> grasp_poses(const model::HandModel& hand, const model::Shape& 
         }))
       return;
     found.push_back(*made);
+    if (const auto below = lowered(hand, shape, *made)) found.push_back(*below);
   };
   offer(X_OG);
   for (const double turn : {30, -30, 60, -60, 90, -90, 180}) offer(turned(turn, X_OG));
@@ -91,11 +104,10 @@ std::vector<RobotGrasp> grasp_candidates(const model::HandModel& hand, const mod
   const std::vector<VectorXd> preshapes = preshapes_of(hand);
   std::vector<RobotGrasp> made;
   // Along diagonals: what is likely in both respects first.
-  const std::size_t last = poses.size() + another_preshape * preshapes.size();
-  for (std::size_t rank = 0; rank < last; ++rank)
-    for (std::size_t k = 0; k < preshapes.size() && another_preshape * k <= rank; ++k)
-      if (const std::size_t pose = rank - another_preshape * k; pose < poses.size())
-        made.push_back({poses[pose] * hand.X_BG().inverse(), preshapes[k]});
+  for (std::size_t rank = 0; rank < poses.size() + preshapes.size(); ++rank)
+    for (std::size_t k = 0; k < preshapes.size() && k <= rank; ++k)
+      if (rank - k < poses.size())
+        made.push_back({poses[rank - k] * hand.X_BG().inverse(), preshapes[k]});
   return made;
 }
 

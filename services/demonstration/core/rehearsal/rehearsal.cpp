@@ -11,6 +11,9 @@ namespace prehend::demonstration {
 
 namespace {
 
+using Eigen::AngleAxisd;
+using Eigen::Vector3d;
+
 constexpr int steps_a_command = 5;    // 100 Hz, as robot/state
 constexpr double max_step_time = 60;  // s
 constexpr int more_tries = 2;         // once one grasp has done it, for a better one

@@ -7,5 +7,6 @@ namespace prehend::demonstration {
 /// Each adds its subcommand, which answers with the exit code.
 void add_train(tool::Program& program);
 void add_evaluate(tool::Program& program);
+void add_draw(tool::Program& program);
 
 }  // namespace prehend::demonstration

@@ -28,8 +28,19 @@ struct Arguments {
   std::string folder, training, model, families = "bottle+cup,knife+pen";
   TrainerOptions options;
   unsigned threads = 0;
-  bool json = false;
+  bool with_object = false, json = false;
 };
+
+std::size_t errors_of(const std::vector<Judged>& grasps) {
+  return static_cast<std::size_t>(std::count_if(grasps.begin(), grasps.end(),
+                                                [](const Judged& each) { return !each.right(); }));
+}
+
+/// Share of the errors that are none any more.
+double fewer(const std::vector<Judged>& before, const std::vector<Judged>& after) {
+  const auto errors = static_cast<double>(errors_of(before));
+  return errors > 0 ? 1 - static_cast<double>(errors_of(after)) / errors : 0;
+}
 
 std::vector<std::string> split(const std::string& text, char separator) {
   std::vector<std::string> parts(1);
@@ -58,7 +69,7 @@ std::vector<std::size_t> families_of(const std::vector<std::string>& classes,
   return made;
 }
 
-Json document_of(const TaskResult& result, const std::vector<Judged>& grasps,
+Json document_of(const TaskResult& result, Method method, const std::vector<Judged>& grasps,
                  const std::string& families) {
   Json made{{"accuracy", accuracy(grasps)}, {"brier", brier(grasps)}};
   made["deviation_between_people"] = deviation_between_people(grasps);
@@ -74,6 +85,12 @@ Json document_of(const TaskResult& result, const std::vector<Judged>& grasps,
     if (bin.count > 0)
       made["reliability"].push_back({{"said", bin.said}, {"held", bin.held}, {"count", bin.count}});
   made["confusion"] = confusion(grasps, result.classes.size());
+  if (const auto told = result.with_object.find(method); told != result.with_object.end())
+    made["with_object"] = {{"accuracy", accuracy(told->second)},
+                           {"brier", brier(told->second)},
+                           {"errors", errors_of(told->second)},
+                           {"errors_without", errors_of(grasps)},
+                           {"fewer_errors", fewer(grasps, told->second)}};
   return made;
 }
 
@@ -89,7 +106,7 @@ Json document_of(const std::vector<TaskResult>& results, const Takes& takes,
     for (const Method method : methods)
       if (const auto found = result.methods.find(method); found != result.methods.end())
         task["methods"][std::string(to_string(method))] =
-            document_of(result, found->second, families);
+            document_of(result, method, found->second, families);
     task["classes"] = result.classes;
   }
   document["rows"] = takes.rows;
@@ -121,6 +138,17 @@ void print_methods(const TaskResult& result, const std::string& families) {
     fmt::print(" ±{:.1f} % |", 100 * deviation_between_people(grasps));
     if (!family.empty()) fmt::print(" {:.1f} % |", 100 * family_accuracy(grasps, family));
     fmt::print("\n");
+  }
+}
+
+void print_objects(const TaskResult& result) {
+  fmt::print("\n| object known | right | Brier | errors fewer |\n|---|---|---|---|\n");
+  for (const Method method : methods) {
+    const auto told = result.with_object.find(method);
+    if (told == result.with_object.end()) continue;
+    fmt::print("| {} | {:.1f} % | {:.3f} | {:.0f} % |\n", to_string(method),
+               100 * accuracy(told->second), brier(told->second),
+               100 * fewer(result.methods.at(method), told->second));
   }
 }
 
@@ -174,9 +202,10 @@ Expected<std::vector<TaskResult>> results_of(const Takes& takes, const Arguments
                    fmt::join(both, ", "));
   }
   Progress progress("training");
-  return judge(takes.takes, arguments.training.empty() ? nullptr : &training.takes,
-               arguments.options, arguments.threads,
-               [&](std::size_t done, std::size_t all) { progress.show(done, all); });
+  return judge(
+      takes.takes, arguments.training.empty() ? nullptr : &training.takes, arguments.options,
+      arguments.threads, [&](std::size_t done, std::size_t all) { progress.show(done, all); },
+      arguments.with_object);
 }
 
 int evaluate(const Arguments& arguments) {
@@ -198,6 +227,7 @@ int evaluate(const Arguments& arguments) {
   for (const TaskResult& result : *results) {
     if (result.methods.empty()) continue;
     print_methods(result, arguments.families);
+    if (!result.with_object.empty()) print_objects(result);
     print_hybrid(result);
   }
   return exit_done;
@@ -213,7 +243,12 @@ void add_evaluate(tool::Program& program) {
       "learned from all others, or by what was learned from another folder or before.");
   command->add_option("folder", arguments->folder, "holds task*.csv")->required();
   auto* training = command->add_option("--train", arguments->training, "learn from this folder");
-  command->add_option("--model", arguments->model, "a trained model")->excludes(training);
+  auto* model =
+      command->add_option("--model", arguments->model, "a trained model")->excludes(training);
+  command
+      ->add_flag("--with-object", arguments->with_object,
+                 "also says how many are recognised once the object's shape and size are known")
+      ->excludes(model);
   command
       ->add_option("--families", arguments->families,
                    "kinds of grasps that belong together: A+B,C+D")

@@ -5,5 +5,6 @@ int main(int argc, char** argv) {
   prehend::tool::Program program("demonstration", "Which grasp does a hand show?");
   add_train(program);
   add_evaluate(program);
+  add_draw(program);
   return program.run(argc, argv);
 }

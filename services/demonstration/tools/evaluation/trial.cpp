@@ -4,6 +4,7 @@
 #include <set>
 
 #include "common/base/workers.hpp"
+#include "services/demonstration/core/recognition/object_likelihood.hpp"
 
 namespace prehend::demonstration {
 
@@ -14,6 +15,7 @@ struct Job {
   std::size_t task = 0;  // index of the result
   std::vector<const Take*> training, judged;
   std::map<Method, std::vector<Judged>> methods;
+  std::map<Method, std::vector<Judged>> with_object;
   std::optional<Error> trouble;
 };
 
@@ -50,7 +52,28 @@ void judge_all(const std::vector<Recogniser>& recognisers, const std::vector<con
       methods[recogniser.method()].push_back(judged_by(recogniser, *take, classes));
 }
 
-void run(Job& job, const std::vector<std::string>& classes, const TrainerOptions& options) {
+/// The same answers times how well each kind explains the object. judged: of these takes.
+std::vector<Judged> told_object(std::vector<Judged> judged, const std::vector<const Take*>& takes,
+                                const ObjectLikelihood& likelihood) {
+  for (std::size_t i = 0; i < judged.size(); ++i) {
+    const Take& take = *takes[i];
+    if (!take.object) continue;
+    Distribution& answer = judged[i].answer;
+    answer = with_prior(answer, likelihood.of(*take.object)).value_or(answer);
+  }
+  return judged;
+}
+
+Expected<void> tell_objects(Job& job, const std::vector<std::string>& classes) {
+  const auto likelihood = ObjectLikelihood::learn(job.training, classes);
+  if (!likelihood) return tl::unexpected(likelihood.error());
+  for (const auto& [method, judged] : job.methods)
+    job.with_object[method] = told_object(judged, job.judged, *likelihood);
+  return {};
+}
+
+void run(Job& job, const std::vector<std::string>& classes, const TrainerOptions& options,
+         bool with_object) {
   const auto recognisers =
       train_recognisers(job.training, {methods.begin(), methods.end()}, options);
   if (!recognisers) {
@@ -58,6 +81,19 @@ void run(Job& job, const std::vector<std::string>& classes, const TrainerOptions
     return;
   }
   judge_all(*recognisers, job.judged, classes, job.methods);
+  if (!with_object) return;
+  if (auto told = tell_objects(job, classes); !told) job.trouble = told.error();
+}
+
+/// What came of a job goes to what comes of its task.
+void collect(Job& job, TaskResult& result) {
+  const auto append = [](auto& from, auto& to) {
+    for (auto& [method, judged] : from)
+      std::move(judged.begin(), judged.end(), std::back_inserter(to[method]));
+  };
+  if (job.trouble) result.trouble = job.trouble;
+  append(job.methods, result.methods);
+  append(job.with_object, result.with_object);
 }
 
 std::vector<std::string> classes_of(const std::vector<const Take*>& takes,
@@ -72,7 +108,7 @@ std::vector<Job> folds_by_person(std::size_t task, const std::vector<const Take*
   for (const Take* take : takes) people[take->user].push_back(take);
   std::vector<Job> jobs;
   for (const auto& [user, own] : people) {
-    Job job{task, {}, own, {}, {}};
+    Job job{task, {}, own, {}, {}, {}};
     for (const Take* take : takes)
       if (take->user != user) job.training.push_back(take);
     jobs.push_back(std::move(job));
@@ -90,34 +126,30 @@ std::map<std::string, std::vector<const Take*>> by_task(const std::vector<Take>&
 
 std::vector<TaskResult> judge(const std::vector<Take>& takes, const std::vector<Take>* training,
                               const TrainerOptions& options, unsigned threads,
-                              const std::function<void(std::size_t, std::size_t)>& progress) {
+                              const std::function<void(std::size_t, std::size_t)>& progress,
+                              bool with_object) {
   const auto trained = training ? by_task(*training) : decltype(by_task(takes)){};
   std::vector<TaskResult> results;
   std::vector<Job> jobs;
   for (const auto& [task, own] : by_task(takes)) {
     const auto found = trained.find(task);
     const auto shown = found == trained.end() ? std::vector<const Take*>{} : found->second;
-    results.push_back({task, classes_of(own, classes_of(shown, {})), {}, {}});
-    auto made = training ? std::vector<Job>{{results.size() - 1, shown, own, {}, {}}}
+    results.push_back({task, classes_of(own, classes_of(shown, {})), {}, {}, {}});
+    auto made = training ? std::vector<Job>{{results.size() - 1, shown, own, {}, {}, {}}}
                          : folds_by_person(results.size() - 1, own);
     std::move(made.begin(), made.end(), std::back_inserter(jobs));
   }
   share_work(
       jobs.size(), threads,
-      [&](std::size_t i) { run(jobs[i], results[jobs[i].task].classes, options); },
+      [&](std::size_t i) { run(jobs[i], results[jobs[i].task].classes, options, with_object); },
       [&](std::size_t done) { progress(done, jobs.size()); });
-  for (Job& job : jobs) {
-    TaskResult& result = results[job.task];
-    if (job.trouble) result.trouble = job.trouble;
-    for (auto& [method, judged] : job.methods)
-      std::move(judged.begin(), judged.end(), std::back_inserter(result.methods[method]));
-  }
+  for (Job& job : jobs) collect(job, results[job.task]);
   return results;
 }
 
 TaskResult judge_with(const std::string& task, const std::vector<const Take*>& takes,
                       const std::vector<Recogniser>& recognisers) {
-  TaskResult result{task, {}, {}, {}};
+  TaskResult result{task, {}, {}, {}, {}};
   std::vector<std::string> known;
   for (const Recogniser& recogniser : recognisers)
     known.insert(known.end(), recogniser.classes().begin(), recogniser.classes().end());

@@ -18,7 +18,8 @@ struct TaskResult {
   std::string task;
   std::vector<std::string> classes;
   std::map<Method, std::vector<Judged>> methods;
-  std::optional<Error> trouble;  // why there are no answers
+  std::map<Method, std::vector<Judged>> with_object;  // the same takes, where the object is known
+  std::optional<Error> trouble;                       // why there are no answers
 };
 
 /// Takes by task, in order of name.
@@ -27,9 +28,11 @@ std::map<std::string, std::vector<const Take*>> by_task(const std::vector<Take>&
 /// Each task by itself: every person's takes are judged by recognisers that were trained on all
 /// others; with `training`, by those that were trained on it. A kind of grasp that nobody trained
 /// is answered wrongly. `threads`: 0 for all cores. progress: recognisers done, of how many.
+/// with_object: also says what is answered once the object is known, as far as takes say it.
 std::vector<TaskResult> judge(const std::vector<Take>& takes, const std::vector<Take>* training,
                               const TrainerOptions& options, unsigned threads,
-                              const std::function<void(std::size_t, std::size_t)>& progress);
+                              const std::function<void(std::size_t, std::size_t)>& progress,
+                              bool with_object = false);
 
 /// By recognisers that are there already, of one task.
 TaskResult judge_with(const std::string& task, const std::vector<const Take*>& takes,
