@@ -47,6 +47,23 @@ Nearest nearest(const model::Capsule& a, const model::Capsule& b) {
   return found;
 }
 
+Joints levers(const model::ArmModel& arm, const std::vector<model::Capsule>& carried) {
+  const auto count = static_cast<Eigen::Index>(arm.joints.size());
+  Joints lever = Joints::Zero(count);
+  for (Eigen::Index i = 0; i < count; ++i) {
+    double length = 0;
+    for (Eigen::Index j = i; j < count; ++j) {
+      if (j > i) length += arm.joints[static_cast<std::size_t>(j)].X_PJ.translation().norm();
+      std::vector<model::Capsule> shapes = arm.links[static_cast<std::size_t>(j) + 1].capsules;
+      if (j + 1 == count) shapes.insert(shapes.end(), carried.begin(), carried.end());
+      for (const model::Capsule& shape : shapes)
+        lever[i] =
+            std::max(lever[i], length + shape.radius + std::max(shape.a.norm(), shape.b.norm()));
+    }
+  }
+  return lever;
+}
+
 Collision::Collision(const model::ArmModel& arm, Surroundings surroundings)
     : table_(surroundings.table) {
   for (std::size_t link = 0; link < arm.links.size(); ++link)

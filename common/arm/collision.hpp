@@ -15,6 +15,10 @@ struct Nearest {
 };
 Nearest nearest(const model::Capsule& a, const model::Capsule& b);
 
+/// How far from each joint anything that it moves can be, m: nothing moves by more than the sum of
+/// all levers times what their joints turn. carried: at the last link, in its frame.
+Joints levers(const model::ArmModel& arm, const std::vector<model::Capsule>& carried);
+
 /// What an arm may hit: itself, and what lies below a height.
 struct Surroundings {
   std::optional<double> table;          // m, height of its plane in A

@@ -120,22 +120,8 @@ Controller::Controller(const model::ArmModel& arm, ControllerOptions options)
       collision_(arm, options_.surroundings),
       X_AW_(options_.X_WA.inverse()),
       X_BE_(options_.X_EB.inverse()),
-      bend_(0.5 * reach_bound(arm)) {
-  const auto count = static_cast<Eigen::Index>(arm.joints.size());
-  lever_.setZero(count);
-  for (Eigen::Index i = 0; i < count; ++i) {
-    double length = 0;
-    for (Eigen::Index j = i; j < count; ++j) {
-      if (j > i) length += arm.joints[static_cast<std::size_t>(j)].X_PJ.translation().norm();
-      std::vector<model::Capsule> shapes = arm.links[static_cast<std::size_t>(j) + 1].capsules;
-      if (j + 1 == count)
-        shapes.insert(shapes.end(), options_.surroundings.carried.begin(),
-                      options_.surroundings.carried.end());
-      for (const model::Capsule& shape : shapes)
-        lever_[i] =
-            std::max(lever_[i], length + shape.radius + std::max(shape.a.norm(), shape.b.norm()));
-    }
-  }
+      bend_(0.5 * reach_bound(arm)),
+      lever_(levers(arm, options_.surroundings.carried)) {
   start(arm.home);
 }
 

@@ -93,7 +93,7 @@ class Controller {
   Collision collision_;
   Pose X_AW_, X_BE_;
   double bend_;   // m: how much the ways of E bend with the joints
-  Joints lever_;  // m: how far from a joint anything that it moves can be
+  Joints lever_;  // m, see levers()
   Joints q_, v_;
 };
 

@@ -27,7 +27,8 @@ std::string layer_of(std::string_view path) {
 // The gate is one, too, though every robot's service shares it.
 bool is_core(std::string_view path) {
   return layer_of(path) == "core" || path.starts_with("common/gate/") ||
-         path.starts_with("common/arm/");
+         path.starts_with("common/arm/") || path.starts_with("common/carrying/") ||
+         path.starts_with("common/planning/");
 }
 
 bool layer_may_include(std::string_view from, std::string_view to) {

@@ -1,9 +1,13 @@
 // Demonstrations over real DDS: a person who does not exist shows a task to real processes, which
 // learn it, keep it and do it again with a simulated hand; and what is wrong is said in one line,
 // before anything moves.
+#include <cstdlib>
 #include <nlohmann/json.hpp>
 
 #include "common/base/file_text.hpp"
+#include "common/base/paths.hpp"
+#include "common/model/catalogue.hpp"
+#include "common/model/placement.hpp"
 #include "services/demonstration/files/task_file.hpp"
 #include "tests/integration/rig.hpp"
 
@@ -129,6 +133,53 @@ TEST_F(DemonstrationLab, ShownOnceDoneAgainElsewhere) {
   EXPECT_EQ(document["object"]["name"], "Talc");
   EXPECT_LT(document["object"]["position_error_m"].get<double>(), 0.01);
   EXPECT_EQ(document["understood"]["phases"].size(), 7u);
+}
+
+/// Three objects, each to a place of its own on the table.
+demonstration::TaskModel tidying() {
+  demonstration::TaskModel task{"TIDY", 1, {}};
+  const auto put = [&](const char* object, double x, double y, double z) {
+    task.steps.push_back(
+        {.object = object,
+         .X_OG = make_pose({0, 0, 0.01},
+                           model::grasp_axes(Eigen::Vector3d::UnitY(), Eigen::Vector3d::UnitX())),
+         .X_RO = make_pose({x, y, z}),
+         .via_height = 0.1,
+         .upright = true});
+  };
+  put("Talc", 0.24, -0.2, 0.0525);
+  put("Cup", -0.24, -0.2, 0.05);
+  put("Pringles", 0.0, -0.22, 0.12);
+  return task;
+}
+
+TEST_F(DemonstrationLab, AnArmMovesThreeObjectsOfATaskFile) {
+  if (!std::getenv("PREHEND_LONG"))
+    GTEST_SKIP() << "PREHEND_LONG=1 moves three objects by an arm (a minute and a half)";
+  const auto catalogue =
+      model::Catalogue::load(share_directory() / "models/objects/catalogue.toml").value();
+  demonstration::TaskModel task = tidying();
+  for (demonstration::Step& step : task.steps)
+    step.X_RO.translation().z() = model::half_extents(catalogue.find(step.object)->shape).z();
+  const std::string file = (folder_ / "TIDY.task").string();
+  ASSERT_TRUE(demonstration::save_task(file, task));
+  const Answer answer = run("prehend",
+                            {"demo", "--arm", "puma560", "--task", file, "--json", "--timeout",
+                             "280", "--domain", std::to_string(domain_)},
+                            300);
+  ASSERT_EQ(answer.exit_code, 0) << answer.output << answer.log;
+  const json document = json::parse(answer.output);
+  EXPECT_EQ(document["arm"]["name"], "puma560");
+  EXPECT_LE(document["arm"]["worst_joint_speed"].get<double>(), 1.001);
+  ASSERT_EQ(document["task"]["steps"].size(), 3u);
+  for (const json& step : document["task"]["steps"]) {
+    EXPECT_EQ(step["done"], true) << step;
+    EXPECT_LT(step["error_m"].get<double>(), 0.02);
+    EXPECT_LT(step["error_rad"].get<double>(), 0.1745);
+  }
+  const Answer strange = run("prehend", {"demo", "--arm", "claw", "--task", file, "--json"}, 30);
+  EXPECT_EQ(strange.exit_code, 2);
+  EXPECT_NE(strange.log.find("there is no such arm"), std::string::npos) << strange.log;
 }
 
 }  // namespace

@@ -34,11 +34,11 @@ grasping::Body body_of(const model::CatalogueObject& object) {
   return {object.name, object.shape, object.mass, object.material, std::nullopt};
 }
 
-Expected<std::unique_ptr<Simulation>> Simulation::create(const model::HandModel& hand,
-                                                         const Options& options,
-                                                         std::unique_ptr<CarryingArm> arm) {
+Expected<std::unique_ptr<Simulation>> Simulation::create(
+    const model::HandModel& hand, const Options& options,
+    std::unique_ptr<carrying::CarryingArm> arm) {
   grasping::WorldOptions how{.rate = options.rate, .brake = options.brake};
-  if (arm) how.base = CarryingArm::base();
+  if (arm) how.base = carrying::CarryingArm::base();
   auto world = grasping::World::create(hand, arm ? arm->home() : resting_place,
                                        hand.postures().at("open"), how);
   if (!world) return tl::unexpected(world.error());
@@ -47,7 +47,8 @@ Expected<std::unique_ptr<Simulation>> Simulation::create(const model::HandModel&
 }
 
 Simulation::Simulation(const model::HandModel& hand, const Options& options,
-                       std::unique_ptr<grasping::World> world, std::unique_ptr<CarryingArm> arm)
+                       std::unique_ptr<grasping::World> world,
+                       std::unique_ptr<carrying::CarryingArm> arm)
     : hand_(hand),
       options_(options),
       world_(std::move(world)),
@@ -221,7 +222,7 @@ bool Simulation::step() {
   return true;
 }
 
-std::optional<ArmMotion> Simulation::arm_motion() const {
+std::optional<carrying::ArmMotion> Simulation::arm_motion() const {
   if (!arm_) return std::nullopt;
   return arm_->motion(*world_);
 }

@@ -10,10 +10,10 @@
 
 #include "common/base/error.hpp"
 #include "common/base/time.hpp"
+#include "common/carrying/carrying_arm.hpp"
 #include "common/grasping/world.hpp"
 #include "common/model/catalogue.hpp"
 #include "common/model/scene.hpp"
-#include "services/simulation/core/carrying_arm.hpp"
 #include "services/simulation/core/closure.hpp"
 #include "services/simulation/core/command.hpp"
 
@@ -35,9 +35,9 @@ grasping::Body body_of(const model::CatalogueObject& object);
 class Simulation {
  public:
   /// arm: carries the hand, which begins at its home; none: the hand flies.
-  static Expected<std::unique_ptr<Simulation>> create(const model::HandModel& hand,
-                                                      const Options& options = {},
-                                                      std::unique_ptr<CarryingArm> arm = nullptr);
+  static Expected<std::unique_ptr<Simulation>> create(
+      const model::HandModel& hand, const Options& options = {},
+      std::unique_ptr<carrying::CarryingArm> arm = nullptr);
 
   /// Objects as the scene says. Fails on what cannot be simulated.
   Expected<void> build(const model::Scene& scene, const model::Catalogue& catalogue);
@@ -73,12 +73,12 @@ class Simulation {
   bool is_braking() const { return braking_; }
   const grasping::World& world() const { return *world_; }
   /// What the arm does; nothing without one.
-  std::optional<ArmMotion> arm_motion() const;
-  const CarryingArm* arm() const { return arm_.get(); }
+  std::optional<carrying::ArmMotion> arm_motion() const;
+  const carrying::CarryingArm* arm() const { return arm_.get(); }
 
  private:
   Simulation(const model::HandModel& hand, const Options& options,
-             std::unique_ptr<grasping::World> world, std::unique_ptr<CarryingArm> arm);
+             std::unique_ptr<grasping::World> world, std::unique_ptr<carrying::CarryingArm> arm);
   Expected<bool> add(const grasping::Body& body, const Pose& place);
   int find(const std::string& name) const;  // -1: there is none
   /// Nothing is where a body of this shape would stand, other than `itself`.
@@ -89,7 +89,7 @@ class Simulation {
   const model::HandModel& hand_;
   Options options_;
   std::unique_ptr<grasping::World> world_;
-  std::unique_ptr<CarryingArm> arm_;
+  std::unique_ptr<carrying::CarryingArm> arm_;
   ClosureDetector detector_;
   Duration period_;
   Time time_{}, goal_{};

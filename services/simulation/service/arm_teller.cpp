@@ -46,7 +46,7 @@ std::vector<double> to_message(const arm::Joints& q) {
 }
 
 /// Why the hand is not where it shall be; empty where that needs no words.
-std::string trouble_of(const ArmMotion& motion, const model::ArmModel& arm) {
+std::string trouble_of(const carrying::ArmMotion& motion, const model::ArmModel& arm) {
   if (motion.too_heavy)
     return fmt::format("{} does not lift what weighs {:.1f} kg with the hand; its payload is {} kg",
                        arm.name, motion.carried, arm.payload);
@@ -68,8 +68,8 @@ std::string trouble_of(const ArmMotion& motion, const model::ArmModel& arm) {
 
 }  // namespace
 
-Expected<std::unique_ptr<CarryingArm>> arm_of(const service::Config& config,
-                                              const model::HandModel& hand) {
+Expected<std::unique_ptr<carrying::CarryingArm>> arm_of(const service::Config& config,
+                                                        const model::HandModel& hand) {
   const std::string& name = config.text("robot.arm");
   if (name.empty()) return nullptr;
   auto arm = model::load_arm(name);
@@ -85,10 +85,10 @@ Expected<std::unique_ptr<CarryingArm>> arm_of(const service::Config& config,
   Expected<Pose> X_EB = arm->X_EF * arm::mounted(hand, bracket);
   if (!config.numbers("robot.X_EB").empty()) X_EB = pose_from(config, "robot.X_EB");
   if (!X_EB) return tl::unexpected(X_EB.error());
-  return CarryingArm::create(std::move(*arm), hand, *X_WA, *X_EB);
+  return carrying::CarryingArm::create(std::move(*arm), hand, *X_WA, *X_EB);
 }
 
-ArmTeller::ArmTeller(service::Shell& shell, const CarryingArm& arm)
+ArmTeller::ArmTeller(service::Shell& shell, const carrying::CarryingArm& arm)
     : shell_(shell),
       arm_(arm),
       commands_(shell.publish(dds::arm_command)),
@@ -101,7 +101,8 @@ ArmTeller::ArmTeller(service::Shell& shell, const CarryingArm& arm)
   state_.X_WA(convert::to_message(arm.X_WA()));
 }
 
-void ArmTeller::tell(const ArmMotion& motion, const std::optional<Command>& command, Time now) {
+void ArmTeller::tell(const carrying::ArmMotion& motion, const std::optional<Command>& command,
+                     Time now) {
   const std::int64_t origin = command ? to_ns(command->origin) : 0;
   command_.stamp_ns(to_ns(now));
   command_.origin_ns(origin);
@@ -130,7 +131,7 @@ void ArmTeller::tell(const ArmMotion& motion, const std::optional<Command>& comm
 }
 
 /// Only of what lasts.
-void ArmTeller::complain(const ArmMotion& motion, Time now) {
+void ArmTeller::complain(const carrying::ArmMotion& motion, Time now) {
   const std::string trouble = trouble_of(motion, arm_.model());
   if (is_troubled_ == trouble.empty()) since_ = now;
   is_troubled_ = !trouble.empty();

@@ -10,6 +10,7 @@
 #include <map>
 #include <set>
 
+#include "common/arm/mounting.hpp"
 #include "common/base/paths.hpp"
 #include "common/model/catalogue.hpp"
 #include "common/model/placement.hpp"
@@ -174,6 +175,63 @@ TEST(TaskPerformer, FailsWhereTheObjectDoesNotComeAlong) {
                              resting(), {.max_tries = 1});
   ASSERT_FALSE(made);
   EXPECT_THAT(made.error().message(), HasSubstr("lift: was not lifted"));
+}
+
+/// The Puma with Barrett's hand, where the configuration's defaults have it.
+planning::Robot puma() {
+  static const model::ArmModel arm = model::ArmModel::load(model::arm_directory("puma560")).value();
+  const Eigen::AngleAxisd turn(EIGEN_PI / 2, Eigen::Vector3d::UnitZ());
+  return {&arm, &barrett(), make_pose({0, -0.7, 0}, turn.toRotationMatrix()),
+          arm.X_EF * arm::mounted(barrett(), 0.7)};
+}
+
+RehearsalOptions by_arm(const planning::Robot& robot) {
+  RehearsalOptions options;
+  options.robot = robot;
+  options.posture = robot.arm->home;
+  return options;
+}
+
+TEST(Rehearsal, AnArmPutsAnObjectToItsPlaceAndGoesHome) {
+  const planning::Robot robot = puma();
+  const std::vector<Thing> things{thing("Talc", 0.1, -0.05), thing("Cup", -0.2, 0.05)};
+  const HandGoal from{robot.hand_at(robot.arm->home), barrett().postures().at("open")};
+  const TaskModel task = put("Talc", the_table, {0.15, -0.25, things[0].X_WO.translation().z()});
+  const auto made = rehearse(barrett(), task, things, from, by_arm(robot));
+  ASSERT_TRUE(made) << made.error().message();
+  EXPECT_LT(made->verdicts[0].error, 0.02);
+  EXPECT_LT(made->verdicts[0].max_tilt, 0.26);
+
+  // The same in a world, to the end.
+  auto world = grasping::World::create(barrett(), from.X_WB, from.dof).value();
+  for (const Thing& each : things) ASSERT_TRUE(world->add_body(each.body, each.X_WO));
+  auto arm = arm_of(robot, robot.arm->home).value();
+  auto performer = TaskPerformer::create(barrett(), task, shapes_of(things), places_of(*world),
+                                         made->grasps, from, {}, {}, {robot});
+  ASSERT_TRUE(performer);
+  ASSERT_TRUE(perform_in(*world, *performer, 60, arm.get()));
+  EXPECT_TRUE(performer->done()) << performer->reason();
+  EXPECT_LT((arm->posture() - robot.arm->home).cwiseAbs().maxCoeff(), 0.05);
+}
+
+TEST(Rehearsal, WhatAnArmDoesNotReachIsSaidBeforeItMoves) {
+  const planning::Robot robot = puma();
+  const std::vector<Thing> things{thing("Talc", 0.1, -0.05)};
+  const HandGoal from{robot.hand_at(robot.arm->home), barrett().postures().at("open")};
+  const auto far = [&](double x, double y) {
+    const std::vector<Thing> there{thing("Talc", x, y)};
+    return rehearse(barrett(), put("Talc", the_table, {0, -0.2, 0.05}), there, from, by_arm(robot));
+  };
+  const auto made = far(0.1, 1.5);
+  ASSERT_FALSE(made);
+  EXPECT_THAT(made.error().message(), HasSubstr("approach: is out of the arm's reach"));
+  // Within reach, but its place is not: it is taken, and put back.
+  RehearsalOptions once = by_arm(robot);
+  once.max_tries = 1;
+  const auto back =
+      rehearse(barrett(), put("Talc", the_table, {0.1, 1.5, 0.05}), things, from, once);
+  ASSERT_FALSE(back);
+  EXPECT_THAT(back.error().message(), HasSubstr("carry: is out of the arm's reach"));
 }
 
 TEST(TaskTrial, WhatWasShownOnceIsUnderstoodAndDoneElsewhere) {

@@ -1,6 +1,6 @@
 // A hand that an arm carries, behind operators of all kinds: what must hold in every step of the
 // world for every arm and hand; stops; starts far away; and loads.
-#include "services/simulation/core/carrying_arm.hpp"
+#include "common/carrying/carrying_arm.hpp"
 
 #include <gtest/gtest.h>
 
@@ -16,6 +16,8 @@ namespace {
 
 using namespace prehend;
 using namespace prehend::simulation;
+using carrying::ArmMotion;
+using carrying::CarryingArm;
 using arm::Hindrance;
 using arm::Joints;
 using Eigen::Vector3d;

@@ -16,7 +16,7 @@ using Places = std::vector<Eigen::Vector2d>;
 Expected<Eigen::Vector2d> draw(Random& random, const Places& taken, const TableOptions& options) {
   for (int n = 0; n < max_draws; ++n) {
     const double x = random.uniform(-options.half_width, options.half_width),
-                 y = random.uniform(-options.half_depth, options.half_depth);
+                 y = options.middle + random.uniform(-options.half_depth, options.half_depth);
     const Eigen::Vector2d place(x, y);
     if (std::none_of(taken.begin(), taken.end(), [&](const Eigen::Vector2d& other) {
           return (other - place).norm() < options.apart;
@@ -27,6 +27,13 @@ Expected<Eigen::Vector2d> draw(Random& random, const Places& taken, const TableO
 }
 
 }  // namespace
+
+void reachable(TableOptions& options) {
+  options.half_width = 0.3;
+  options.half_depth = 0.17;
+  options.middle = -0.12;
+  options.apart = 0.22;
+}
 
 Expected<model::Scene> drawn_table(const model::Catalogue& catalogue, std::uint64_t seed,
                                    const TableOptions& options) {

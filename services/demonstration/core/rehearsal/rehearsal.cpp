@@ -5,15 +5,20 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 namespace prehend::demonstration {
 
 namespace {
 
+using Eigen::AngleAxisd;
+using Eigen::Vector3d;
+
 constexpr int steps_a_command = 5;    // 100 Hz, as robot/state
 constexpr double max_step_time = 60;  // s
 constexpr int more_tries = 2;         // once one grasp has done it, for a better one
 constexpr double sure = 0.25;         // of what is permitted: no other grasp needs to be tried
+constexpr const char* out_of_reach = "approach";  // of a grasp that could not even be tried
 constexpr double beside = 0.003, aslant = 0.035;  // m, rad (2°), that a hand may stand off
 
 /// One step as a task of its own.
@@ -28,6 +33,7 @@ struct Trial {
   std::unique_ptr<grasping::World> world;
   RobotGrasp grasp;
   Verdict verdict;
+  arm::Joints posture;  // of the arm, at the end
 };
 
 /// How much of what is permitted a trial uses, of the worst; the world is never as it was thought.
@@ -42,15 +48,23 @@ double used(const Trial& trial, const Step& step, const VerdictOptions& limits) 
 Expected<Trial> try_step(const model::HandModel& hand, const TaskModel& task,
                          const grasping::World& before, const Shapes& shapes,
                          const RobotGrasp& grasp, const RehearsalOptions& options) {
-  Trial made{before.clone(), grasp, {}};
+  Trial made{before.clone(), grasp, {}, options.posture};
+  std::unique_ptr<carrying::CarryingArm> arm;
+  if (options.robot) {
+    auto carried = arm_of(*options.robot, options.posture);
+    if (!carried) return tl::unexpected(carried.error());
+    arm = std::move(*carried);
+  }
   PerformerOptions once = options.performer;
   once.retries = 0;  // a grasp that does it at the first attempt is looked for
-  auto performer = TaskPerformer::create(
-      hand, task, shapes, places_of(*made.world), {grasp},
-      {made.world->commanded_base(), made.world->commanded_dof()}, once, options.verdict);
+  auto performer =
+      TaskPerformer::create(hand, task, shapes, places_of(*made.world), {grasp},
+                            {made.world->commanded_base(), made.world->commanded_dof()}, once,
+                            options.verdict, {options.robot, false, true});
   if (!performer) return tl::unexpected(performer.error());
-  if (auto ok = perform_in(*made.world, *performer, max_step_time); !ok)
+  if (auto ok = perform_in(*made.world, *performer, max_step_time, arm.get()); !ok)
     return tl::unexpected(ok.error());
+  if (arm) made.posture = arm->posture();
   made.verdict = performer->verdicts().front();
   return made;
 }
@@ -81,13 +95,25 @@ Expected<Tried> try_surely(const model::HandModel& hand, const TaskModel& task,
   };
   auto trial = try_step(hand, task, before, shapes, grasp, options);
   if (!trial) return tl::unexpected(trial.error());
-  if (!trial->verdict.done) return fail(trial->verdict.reason);
+  if (!trial->verdict.done)
+    return fail(trial->verdict.reason, trial->verdict.reached ? "" : out_of_reach);
   double worst = used_by(trial);
   for (const double side : {1.0, -1.0})
     if (std::isfinite(worst))
       worst = std::max(worst, used_by(try_step(hand, task, before, shapes,
                                                disturbed(hand, grasp, side), options)));
   return Tried{std::move(*trial), worst};
+}
+
+/// The same grasps turned half about the approach: another posture of an arm, and for most hands
+/// as good.
+void add_rolled(const model::HandModel& hand, std::vector<RobotGrasp>& grasps) {
+  const Pose roll(AngleAxisd(std::numbers::pi, Vector3d::UnitZ()));
+  for (std::size_t i = 0, count = grasps.size(); i < count; ++i) {
+    RobotGrasp rolled = grasps[i];
+    rolled.X_OB = rolled.X_OB * hand.X_BG() * roll * hand.X_BG().inverse();
+    grasps.push_back(std::move(rolled));
+  }
 }
 
 /// The first grasp that does a step and leaves room for what may be otherwise, or else the one that
@@ -97,13 +123,15 @@ Expected<Tried> best_trial(const model::HandModel& hand, const TaskModel& task,
                            const RehearsalOptions& options, const std::function<void(int)>& tell) {
   const Step& step = task.steps.front();
   auto candidates = grasp_candidates(hand, shapes.at(step.object), step.X_OG);
-  if (static_cast<int>(candidates.size()) > options.max_tries)
-    candidates.resize(static_cast<std::size_t>(options.max_tries));
-  int left = more_tries;
+  if (options.robot) add_rolled(hand, candidates);
+  int left = more_tries, tries = 0;
   Expected<Tried> best = fail("the hand cannot reach around it");
-  for (std::size_t k = 0; k < candidates.size() && left >= 0; ++k) {
+  for (std::size_t k = 0; k < candidates.size() && tries < options.max_tries && left >= 0; ++k) {
     tell(static_cast<int>(k));
     auto tried = try_surely(hand, task, before, shapes, candidates[k], options);
+    const bool is_reached = tried || tried.error().where != out_of_reach;
+    if (!is_reached && tries > 0) continue;  // there is something better to say
+    tries += is_reached;
     if (!best || (tried && tried->worst < best->worst)) best = std::move(tried);
     if (!best || !std::isfinite(best->worst)) continue;
     if (best->worst <= sure) break;
@@ -126,22 +154,36 @@ Shapes shapes_of(const std::vector<Thing>& things) {
   return made;
 }
 
-Expected<void> perform_in(grasping::World& world, TaskPerformer& performer, double longest) {
+Expected<std::unique_ptr<carrying::CarryingArm>> arm_of(const planning::Robot& robot,
+                                                        const arm::Joints& posture) {
+  auto made = carrying::CarryingArm::create(*robot.arm, *robot.hand, robot.X_WA, robot.X_EB);
+  if (made) (*made)->start(posture);
+  return made;
+}
+
+Expected<void> perform_in(grasping::World& world, TaskPerformer& performer, double longest,
+                          carrying::CarryingArm* arm) {
   for (int n = 0; !performer.over(); ++n) {
     const double t = n * steps_a_command * world.time_step();
     if (t > longest) return fail("takes longer than it should");
     const grasping::HandMotion motion = world.hand_motion();
-    const HandGoal goal =
-        performer.step({Time(seconds(t)), motion.X_WB, motion.dof, motion.joint}, places_of(world));
+    const HandGoal goal = performer.step({Time(seconds(t)), motion.X_WB, motion.dof, motion.joint,
+                                          arm ? arm->posture() : arm::Joints()},
+                                         places_of(world));
     if (auto told = world.command(goal.X_WB, goal.dof); !told) return told;
-    for (int i = 0; i < steps_a_command; ++i) world.step();
+    if (arm) arm->follow(goal.X_WB);
+    for (int i = 0; i < steps_a_command; ++i) {
+      if (arm) arm->step(world);
+      world.step();
+    }
   }
   return {};
 }
 
 Expected<Rehearsal> rehearse(const model::HandModel& hand, const TaskModel& task,
                              const std::vector<Thing>& things, const HandGoal& from,
-                             const RehearsalOptions& options) {
+                             const RehearsalOptions& given) {
+  RehearsalOptions options = given;
   const auto order = order_of(task);
   if (!order) return tl::unexpected(order.error());
   auto created = grasping::World::create(hand, from.X_WB, from.dof);
@@ -168,6 +210,7 @@ Expected<Rehearsal> rehearse(const model::HandModel& hand, const TaskModel& task
     world = std::move(best->trial.world);
     made.grasps[i] = best->trial.grasp;
     made.verdicts[i] = best->trial.verdict;
+    options.posture = best->trial.posture;
   }
   return made;
 }

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "common/carrying/carrying_arm.hpp"
 #include "common/grasping/world.hpp"
 #include "services/demonstration/core/rehearsal/candidates.hpp"
 #include "services/demonstration/core/reproduction/task_performer.hpp"
@@ -18,9 +19,11 @@ struct Thing {
 };
 
 struct RehearsalOptions {
-  int max_tries = 24;  // of each step
+  int max_tries = 24;  // of each step; a grasp to which the arm has no way does not count
   PerformerOptions performer;
   VerdictOptions verdict;
+  std::optional<planning::Robot> robot;  // an arm that carries the hand; none: it flies
+  arm::Joints posture;                   // of that arm
   /// Told before each try: which step of the task, which try of it, both from 0.
   std::function<void(std::size_t step, int attempt)> tell = [](std::size_t, int) {};
 };
@@ -37,8 +40,14 @@ Expected<Rehearsal> rehearse(const model::HandModel& hand, const TaskModel& task
                              const std::vector<Thing>& things, const HandGoal& from,
                              const RehearsalOptions& options = {});
 
-/// Lets a performer move the hand of a world until it is over, at most so long, s.
-Expected<void> perform_in(grasping::World& world, TaskPerformer& performer, double longest);
+/// Lets a performer move the hand of a world, which an arm may carry, until it is over, at most so
+/// long, s.
+Expected<void> perform_in(grasping::World& world, TaskPerformer& performer, double longest,
+                          carrying::CarryingArm* arm = nullptr);
+
+/// The arm of a robot, for a world; at rest in this posture.
+Expected<std::unique_ptr<carrying::CarryingArm>> arm_of(const planning::Robot& robot,
+                                                        const arm::Joints& posture);
 
 /// Places and shapes of things, by name.
 Places places_of(const grasping::World& world);

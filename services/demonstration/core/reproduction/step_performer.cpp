@@ -35,8 +35,12 @@ std::string_view to_string(StepPart part) {
 }
 
 StepPerformer::StepPerformer(const model::HandModel& hand, StepOrder order, HandGoal from,
-                             const PerformerOptions& options)
-    : hand_(hand), order_(std::move(order)), options_(options), goal_(std::move(from)) {}
+                             const PerformerOptions& options, Pilot pilot)
+    : hand_(hand),
+      order_(std::move(order)),
+      options_(options),
+      pilot_(std::move(pilot)),
+      goal_(std::move(from)) {}
 
 /// Against the direction in which the hand comes.
 Pose StepPerformer::back(const Pose& X_WB, double by) const {
@@ -71,21 +75,57 @@ void StepPerformer::go(std::vector<Pose> poses, double speed, const RobotNow& ro
   since_ = robot.stamp;
 }
 
+double StepPerformer::high() const {
+  return std::max(X_WO_before_.translation().z(), order_.X_WO_goal.translation().z()) +
+         std::max(order_.via_height, options_.min_lift);
+}
+
+bool StepPerformer::travel(const Pose& to, std::vector<Pose> then, std::size_t straight,
+                           const RobotNow& robot, const Pose& X_WO) {
+  const bool held = part_ == StepPart::carry;
+  const auto way =
+      pilot_({robot.arm, to, then, goal_.dof, order_.object, X_WO, held, order_.upright});
+  if (!way) {
+    failure_ = way.error().what;
+    failed_part_ = part_;
+    return false;
+  }
+  then.resize(straight);
+  then.insert(then.begin(), to);
+  way_ = way->then(Way(std::move(then), options_.speed, options_.turn_speed));
+  since_ = robot.stamp;
+  return true;
+}
+
+void StepPerformer::approach(const RobotNow& robot, const Pose& X_WO) {
+  const Pose X_WB = X_WO * order_.grasp.X_OB, before = back(X_WB, options_.stand_off);
+  X_WO_before_ = X_WO;
+  goal_.dof = order_.grasp.preshape;
+  // From an object that it stood around, the hand goes the way it came.
+  const Pose away = tries_ > 0 ? back(goal_.X_WB, options_.stand_off) : goal_.X_WB;
+  if (!pilot_) return go({away, raised(away), raised(before), before, X_WB}, options_.speed, robot);
+  // An arm that could not lift there needs not go there.
+  const Pose lifted = at_height(X_WB, X_WB.translation().z() + high() - X_WO.translation().z());
+  over_ = !travel(before, {X_WB, lifted}, 1, robot, X_WO);
+}
+
+void StepPerformer::carry(const RobotNow& robot, const Pose& X_WO) {
+  X_BO_ = robot.X_WB.inverse() * X_WO;
+  const Pose X_OB = X_BO_.inverse(), over = at_height(order_.X_WO_goal, high()) * X_OB;
+  if (!pilot_) return go({over}, options_.speed, robot);
+  const Pose down = order_.X_WO_goal * X_OB;
+  if (travel(over, {down, back(down, options_.stand_off)}, 0, robot, X_WO)) return;
+  // Back to where the hand took it: the arm has been there.
+  order_.X_WO_goal = X_WB_gripped_ * X_BO_;
+  enter(StepPart::put_down, robot, X_WO);
+}
+
 void StepPerformer::enter(StepPart part, const RobotNow& robot, const Pose& X_WO) {
   part_ = part;
   since_ = robot.stamp;
-  const double height =
-      std::max(X_WO_before_.translation().z(), order_.X_WO_goal.translation().z()) +
-      std::max(order_.via_height, options_.min_lift);
   switch (part) {
-    case StepPart::approach: {
-      const Pose X_WB = X_WO * order_.grasp.X_OB, before = back(X_WB, options_.stand_off);
-      // From an object that it stood around, the hand goes the way it came.
-      const Pose away = tries_ > 0 ? back(goal_.X_WB, options_.stand_off) : goal_.X_WB;
-      X_WO_before_ = X_WO;
-      goal_.dof = order_.grasp.preshape;
-      return go({away, raised(away), raised(before), before, X_WB}, options_.speed, robot);
-    }
+    case StepPart::approach:
+      return approach(robot, X_WO);
     case StepPart::release:
       goal_.dof = hand_.clamp(motors(robot));
       return;
@@ -94,12 +134,12 @@ void StepPerformer::enter(StepPart part, const RobotNow& robot, const Pose& X_WO
       stood_ = motors(robot);
       return;
     case StepPart::lift:
+      X_WB_gripped_ = goal_.X_WB;
       return go({at_height(goal_.X_WB,
-                           goal_.X_WB.translation().z() + height - X_WO_before_.translation().z())},
+                           goal_.X_WB.translation().z() + high() - X_WO_before_.translation().z())},
                 options_.careful, robot);
     case StepPart::carry:
-      X_BO_ = robot.X_WB.inverse() * X_WO;
-      return go({at_height(order_.X_WO_goal, height) * X_BO_.inverse()}, options_.speed, robot);
+      return carry(robot, X_WO);
     case StepPart::put_down:
       X_BO_ = robot.X_WB.inverse() * X_WO;
       return go({at_height(order_.X_WO_goal, order_.X_WO_goal.translation().z() + above) *
@@ -107,6 +147,7 @@ void StepPerformer::enter(StepPart part, const RobotNow& robot, const Pose& X_WO
                 options_.careful, robot);
     case StepPart::retract: {
       const Pose away = back(goal_.X_WB, options_.stand_off);
+      if (pilot_) return go({away}, options_.speed, robot);
       return go({away, raised(away)}, options_.speed, robot);
     }
   }
@@ -129,6 +170,7 @@ void StepPerformer::give_up(const std::string& why, const RobotNow& robot, const
 
 void StepPerformer::next(const RobotNow& robot, const Pose& X_WO) {
   if (part_ == StepPart::retract) {
+    if (std::exchange(again_, false)) return enter(StepPart::approach, robot, X_WO);
     over_ = true;
     return;
   }
@@ -136,6 +178,8 @@ void StepPerformer::next(const RobotNow& robot, const Pose& X_WO) {
   if (part_ == StepPart::close && moved.head<2>().norm() > options_.pushed &&
       try_again(robot, X_WO))
     return;
+  // An arm plans its way from where the hand is clear of the object.
+  if (part_ == StepPart::release && again_ && pilot_) return enter(StepPart::retract, robot, X_WO);
   if (part_ == StepPart::release && std::exchange(again_, false))
     return enter(StepPart::approach, robot, X_WO);
   enter(static_cast<StepPart>(static_cast<int>(part_) + 1), robot, X_WO);
@@ -154,8 +198,8 @@ void StepPerformer::follow(const RobotNow& robot, const Pose& X_WO) {
                        angle_between(robot.X_WB.linear(), goal_.X_WB.linear()) < arrived_turn;
   if (!arrived) {
     if (t < way_.duration() + options_.patience) return;
-    failure_ = "the hand does not get where it is told";
-    failed_part_ = part_;
+    if (!failure_) failed_part_ = part_;
+    if (!failure_) failure_ = "the hand does not get where it is told";
     over_ = true;
     return;
   }
@@ -217,6 +261,7 @@ HandGoal StepPerformer::step(const RobotNow& robot, const Pose& X_WO) {
     begun_ = true;
     last_ = robot.stamp;
     enter(StepPart::approach, robot, X_WO);
+    if (over_) return goal_;  // an arm cannot get there
   }
   if (part_ == StepPart::close)
     close(robot, X_WO);

@@ -7,6 +7,7 @@
 #include "common/base/time.hpp"
 #include "common/model/hand_model.hpp"
 #include "common/model/shape.hpp"
+#include "services/demonstration/core/reproduction/arm_pilot.hpp"
 #include "services/demonstration/core/reproduction/way.hpp"
 
 namespace prehend::demonstration {
@@ -16,6 +17,7 @@ struct RobotNow {
   Time stamp{};
   Pose X_WB = Pose::Identity();
   Eigen::VectorXd dof, joint;
+  arm::Joints arm = {};  // of the arm that carries it; empty: it flies
 };
 
 /// What it is told.
@@ -42,6 +44,7 @@ struct StepOrder {
   Pose X_WO_goal = Pose::Identity();
   double via_height = 0.1;  // m, above the higher one of start and end
   double travel = 0.4;      // m above W, of the base on its way from place to place
+  bool upright = false;     // on a way that is planned
 };
 
 struct PerformerOptions {
@@ -57,14 +60,15 @@ struct PerformerOptions {
   int retries = 2;       // of a grasp that pushed the object away or did not lift it
 };
 
-/// Does one step with a hand whose base moves freely: approach, close, lift, carry, put down,
-/// release, retract; lets go and begins again where a grasp did not come about. Says what to
+/// Does one step with a hand: approach, close, lift, carry, put down, release, retract; lets go and
+/// begins again where a grasp did not come about. A base that moves freely travels high above all;
+/// for an arm a pilot plans the long ways. Says what to
 /// command at each state of the robot; time is that of the states. Keeps a reference to the hand.
 class StepPerformer {
  public:
-  /// from: what the hand was told last.
+  /// from: what the hand was told last. pilot: of its arm, if it has one.
   StepPerformer(const model::HandModel& hand, StepOrder order, HandGoal from,
-                const PerformerOptions& options);
+                const PerformerOptions& options, Pilot pilot = {});
 
   /// The next command. X_WO: where the object is.
   HandGoal step(const RobotNow& robot, const Pose& X_WO);
@@ -80,6 +84,12 @@ class StepPerformer {
  private:
   void enter(StepPart part, const RobotNow& robot, const Pose& X_WO);
   void go(std::vector<Pose> poses, double speed, const RobotNow& robot);
+  /// To `to` as the pilot says, and straight on. False: he knows no way, and that is the failure.
+  bool travel(const Pose& to, std::vector<Pose> then, std::size_t straight, const RobotNow& robot,
+              const Pose& X_WO);
+  void approach(const RobotNow& robot, const Pose& X_WO);
+  void carry(const RobotNow& robot, const Pose& X_WO);
+  double high() const;  // m, of the object on its way
   void follow(const RobotNow& robot, const Pose& X_WO);
   void close(const RobotNow& robot, const Pose& X_WO);
   void open(const RobotNow& robot, const Pose& X_WO);
@@ -95,6 +105,7 @@ class StepPerformer {
   const model::HandModel& hand_;
   StepOrder order_;
   PerformerOptions options_;
+  Pilot pilot_;
   HandGoal goal_;
   StepPart part_ = StepPart::approach, failed_part_ = StepPart::approach;
   bool begun_ = false, over_ = false, again_ = false;
@@ -104,6 +115,7 @@ class StepPerformer {
   Eigen::VectorXd stood_;                // fingers, when they were last seen to move
   Pose X_WO_before_ = Pose::Identity();  // of the object
   Pose X_BO_ = Pose::Identity();         // in the hand
+  Pose X_WB_gripped_ = Pose::Identity();
   std::optional<std::string> failure_;
   double max_tilt_ = 0;
 };

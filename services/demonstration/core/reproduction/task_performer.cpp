@@ -33,7 +33,8 @@ Expected<TaskPerformer> TaskPerformer::create(const model::HandModel& hand, Task
                                               Shapes shapes, const Places& places,
                                               std::vector<RobotGrasp> grasps, HandGoal from,
                                               const PerformerOptions& options,
-                                              const VerdictOptions& verdict) {
+                                              const VerdictOptions& verdict,
+                                              const ArmOptions& arm) {
   if (auto ok = check(task); !ok) return tl::unexpected(ok.error());
   auto order = order_of(task);
   if (!order) return tl::unexpected(order.error());
@@ -57,6 +58,7 @@ Expected<TaskPerformer> TaskPerformer::create(const model::HandModel& hand, Task
   made.grasps_ = std::move(grasps);
   made.options_ = options;
   made.limits_ = verdict;
+  made.arm_ = arm;
   made.goal_ = std::move(from);
   made.order_ = std::move(*order);
   return made;
@@ -68,12 +70,14 @@ std::size_t TaskPerformer::current() const {
 
 double TaskPerformer::share() const {
   const double part = performer_ ? static_cast<double>(performer_->part()) / part_count : 0;
-  return over() ? 1 : (static_cast<double>(at_) + part) / static_cast<double>(order_.size());
+  return at_ == order_.size()
+             ? 1
+             : (static_cast<double>(at_) + part) / static_cast<double>(order_.size());
 }
 
 bool TaskPerformer::done() const {
-  return over() && std::all_of(verdicts_.begin(), verdicts_.end(),
-                               [](const Verdict& verdict) { return verdict.done; });
+  return at_ == order_.size() && std::all_of(verdicts_.begin(), verdicts_.end(),
+                                             [](const Verdict& verdict) { return verdict.done; });
 }
 
 std::string TaskPerformer::reason() const {
@@ -94,8 +98,27 @@ void TaskPerformer::begin() {
                                                          .grasp = grasps_[current()],
                                                          .X_WO_goal = demanded_[current()],
                                                          .via_height = step.via_height,
-                                                         .travel = travel_over(places_, shapes_)},
-                                               goal_, options_);
+                                                         .travel = travel_over(places_, shapes_),
+                                                         .upright = step.upright},
+                                               goal_, options_, pilot());
+}
+
+Pilot TaskPerformer::pilot() const {
+  if (!arm_.robot) return {};
+  return pilot_of(*arm_.robot, shapes_, places_,
+                  {options_.speed, options_.turn_speed, arm_.careful});
+}
+
+/// An arm goes home, if there is a way; else it stays where it is.
+void TaskPerformer::leave(const RobotNow& robot) {
+  if (!arm_.robot || !arm_.goes_home || at_ < order_.size()) return;
+  const auto way = pilot()({.from = robot.arm,
+                            .X_WB = arm_.robot->hand_at(arm_.robot->arm->home),
+                            .dof = goal_.dof,
+                            .object = {}});
+  if (!way) return;
+  way_home_ = *way;
+  left_ = robot.stamp;
 }
 
 void TaskPerformer::judge() {
@@ -107,6 +130,7 @@ void TaskPerformer::judge() {
   verdict.turn = visible_turn(shapes_.at(step.object), X_WO.linear(), goal.linear());
   verdict.max_tilt = performer_->max_tilt();
   verdict.reason.clear();
+  verdict.reached = !performer_->failure() || performer_->failed_part() != StepPart::approach;
   if (performer_->failure())
     verdict.reason =
         fmt::format("{}: {}", to_string(performer_->failed_part()), *performer_->failure());
@@ -129,6 +153,12 @@ void TaskPerformer::judge() {
 HandGoal TaskPerformer::step(const RobotNow& robot, const Places& places) {
   for (const auto& [name, X_WO] : places) places_[name] = X_WO;
   if (over()) return goal_;
+  if (way_home_) {
+    const double t = to_seconds(robot.stamp - left_);
+    goal_.X_WB = way_home_->at(t);
+    if (t > way_home_->duration()) way_home_.reset();
+    return goal_;
+  }
   if (!performer_) begin();
   if (!performer_->over()) {
     goal_ = performer_->step(robot, places_.at(task_.steps[current()].object));
@@ -140,6 +170,7 @@ HandGoal TaskPerformer::step(const RobotNow& robot, const Places& places) {
   // What comes after would count on this one.
   at_ = verdicts_[current()].done ? at_ + 1 : order_.size();
   performer_.reset();
+  leave(robot);
   return goal_;
 }
 

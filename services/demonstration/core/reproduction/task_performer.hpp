@@ -28,9 +28,18 @@ struct Verdict {
   bool done = false;
   double error = 0, turn = 0, max_tilt = 0;  // m, rad, rad
   std::string reason;                        // why it is not done
+  bool reached = true;                       // the hand has a way to it
 };
 
-/// Does a task again, step by step in its order, and judges it. Keeps a reference to the hand.
+/// An arm that carries the hand, and what it looks out for beside the task.
+struct ArmOptions {
+  std::optional<planning::Robot> robot = std::nullopt;  // none: the hand flies
+  bool goes_home = true;                                // once all is over, or has failed
+  bool careful = false;                                 // see PilotOptions
+};
+
+/// Does a task again, step by step in its order, and judges it. With an arm it goes home in the
+/// end, whatever came of it. Keeps a reference to the hand.
 class TaskPerformer {
  public:
   /// grasps: of each step of the task. Fails on a task that is not sound, and on objects or
@@ -38,12 +47,13 @@ class TaskPerformer {
   static Expected<TaskPerformer> create(const model::HandModel& hand, TaskModel task, Shapes shapes,
                                         const Places& places, std::vector<RobotGrasp> grasps,
                                         HandGoal from, const PerformerOptions& options = {},
-                                        const VerdictOptions& verdict = {});
+                                        const VerdictOptions& verdict = {},
+                                        const ArmOptions& arm = {});
 
   /// The next command. Objects of the task that are not seen any more stay where they were.
   HandGoal step(const RobotNow& robot, const Places& places);
 
-  bool over() const { return at_ == order_.size(); }
+  bool over() const { return at_ == order_.size() && !way_home_; }
   /// All steps are done as they should be.
   bool done() const;
   std::size_t current() const;  // step of the task, from 0
@@ -58,6 +68,8 @@ class TaskPerformer {
   TaskPerformer(const model::HandModel& hand) : hand_(&hand) {}
   void begin();
   void judge();
+  void leave(const RobotNow& robot);
+  Pilot pilot() const;
 
   const model::HandModel* hand_;
   TaskModel task_;
@@ -73,6 +85,9 @@ class TaskPerformer {
   std::vector<Pose> demanded_;  // of each step, once it has begun
   std::vector<Verdict> verdicts_;
   Time settled_{};
+  ArmOptions arm_;
+  std::optional<Way> way_home_;
+  Time left_{};  // for home
 };
 
 }  // namespace prehend::demonstration

@@ -25,7 +25,16 @@ Way::Way(std::vector<Pose> poses, double speed, double turn_speed) : poses_(std:
   }
 }
 
+Way Way::then(const Way& next) const {
+  Way made = next;
+  made.planned_ = planned_;
+  made.planned_time_ = planned_time_;
+  return made;
+}
+
 Pose Way::at(double t) const {
+  if (planned_ && (t < planned_time_ || poses_.empty())) return planned_(t);
+  t -= planned_time_;
   for (std::size_t i = 1; i < poses_.size(); ++i) {
     if (t >= ends_[i]) continue;
     return interpolate(poses_[i - 1], poses_[i],

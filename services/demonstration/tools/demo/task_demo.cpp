@@ -10,10 +10,12 @@
 #include <set>
 #include <thread>
 
+#include "common/arm/mounting.hpp"
 #include "common/base/file_text.hpp"
 #include "common/base/log.hpp"
 #include "common/base/paths.hpp"
 #include "common/dds/topics.hpp"
+#include "common/model/arm_choice.hpp"
 #include "common/service/lab.hpp"
 #include "common/service/membership.hpp"
 #include "services/demonstration/core/person/table.hpp"
@@ -61,6 +63,7 @@ struct Ears {
   dds::Reader<v1::TaskProgress> progress;
   dds::Reader<v1::GraspReport> reports;
   dds::Reader<v2::HandCommand> commands;
+  dds::Reader<v1::ArmState> arms;
 
   static Expected<Ears> create(const service::Config& config) {
     auto made = dds::Participant::create(service::membership(config, "prehend", "viewer"));
@@ -71,6 +74,8 @@ struct Ears {
     auto progress = made->reader(dds::task_progress);
     auto reports = made->reader(dds::grasp_report);
     auto commands = made->reader(dds::robot_command);
+    auto arms = made->reader(dds::arm_state);
+    if (!arms) return tl::unexpected(arms.error());
     if (!statuses) return tl::unexpected(statuses.error());
     if (!frames) return tl::unexpected(frames.error());
     if (!segments) return tl::unexpected(segments.error());
@@ -79,7 +84,7 @@ struct Ears {
     if (!commands) return tl::unexpected(commands.error());
     return Ears{std::move(*made),     std::move(*statuses), std::move(*frames),
                 std::move(*segments), std::move(*progress), std::move(*reports),
-                std::move(*commands)};
+                std::move(*commands), std::move(*arms)};
   }
 };
 
@@ -115,6 +120,7 @@ class TaskDemo {
     sets_ = options_.lab.overrides();
     sets_.push_back(fmt::format("lab.rig=demo-{}-{:x}", ::getpid(),
                                 std::chrono::system_clock::now().time_since_epoch().count()));
+    if (!options_.arm.empty()) sets_.push_back("robot.arm=" + arm_setting());
     if (!options_.hand.empty()) sets_.push_back("simulation.hand=" + options_.hand);
     auto folder = service::TemporaryFolder::create(options_.keep);
     if (!folder) return tl::unexpected(folder.error());
@@ -123,13 +129,40 @@ class TaskDemo {
     const auto config = service::Config::load(options_.lab.file(), sets_);
     if (!config) return tl::unexpected(config.error());
     outcome_.hand = config->text("simulation.hand");
+    if (auto ok = expect_arm(config->text("robot.arm")); !ok) return ok;
     const auto catalogue = model::Catalogue::load(config->path("lab.catalogue"));
     if (!catalogue) return tl::unexpected(catalogue.error());
     return is_shown() ? prepare_show(*catalogue) : prepare_known(*catalogue);
   }
 
+  /// What runs elsewhere takes a folder by its whole path.
+  std::string arm_setting() const {
+    if (options_.arm.find('/') == std::string::npos) return options_.arm;
+    return std::filesystem::absolute(options_.arm).string();
+  }
+
+  Expected<void> expect_arm(const std::string& name) {
+    if (name.empty()) return {};
+    auto arm = model::load_arm(name);
+    if (!arm) return tl::unexpected(arm.error());
+    const auto hand = model::HandModel::load(model::hand_directory(outcome_.hand));
+    if (!hand) return tl::unexpected(hand.error());
+    if (const auto fits = arm::check_fit(*arm, *hand); !fits) return fits;
+    outcome_.arm = TaskDemoOutcome::Arm{arm->name};
+    arm_ = std::move(*arm);
+    return {};
+  }
+
+  /// Objects of a task, on a table.
+  TableOptions table() const {
+    TableOptions made;
+    if (arm_) reachable(made);
+    return made;
+  }
+
   Expected<void> prepare_show(const model::Catalogue& catalogue) {
-    TableOptions table{.objects = {options_.object}};
+    TableOptions table = this->table();
+    table.objects = {options_.object};
     for (const char* other : {"Cup", "Wood cube", "Vitamins"})
       if (other != options_.object && table.objects.size() < 3) table.objects.push_back(other);
     const auto shown = draw_show(catalogue, table);
@@ -164,7 +197,7 @@ class TaskDemo {
     task_file_ = std::filesystem::absolute(options_.task);
     const auto task = load_task(task_file_);
     if (!task) return tl::unexpected(task.error());
-    TableOptions table;
+    TableOptions table = this->table();
     const auto need = [&](const std::string& name) {
       auto& known = table.objects;
       if (name != the_table && std::find(known.begin(), known.end(), name) == known.end())
@@ -242,8 +275,23 @@ class TaskDemo {
       if (!sample.info.gone && !outcome_.grasp)
         outcome_.grasp = {static_cast<int>(sample.data.contacts().size()), sample.data.epsilon(),
                           sample.data.volume(), sample.data.force_closure(), sample.data.held()};
+    for (const auto& sample : ears_->arms.take())
+      if (!sample.info.gone && arm_) hear(sample.data);
     for (const auto& sample : ears_->commands.take())
       if (!sample.info.gone) outcome_.grasp_type = to_string(sample.data.grasp_type());
+  }
+
+  /// As `prehend demo --arm` counts it, but to the end of the task.
+  void hear(const v1::ArmState& state) {
+    for (std::size_t i = 0; i < arm_->joints.size() && i < state.velocity().size(); ++i)
+      outcome_.arm->worst_joint_speed =
+          std::max(outcome_.arm->worst_joint_speed,
+                   std::abs(state.velocity()[i]) / arm_->joints[i].velocity);
+    ++arm_states_;
+    hindered_ += state.hindrance() == v1::HINDRANCE_JOINT_LIMIT ||
+                 state.hindrance() == v1::HINDRANCE_COLLISION ||
+                 state.hindrance() == v1::HINDRANCE_REACH;
+    outcome_.arm->out_of_reach = static_cast<double>(hindered_) / arm_states_;
   }
 
   void hear(const v1::DemonstratedSegment& segment) {
@@ -324,6 +372,8 @@ class TaskDemo {
   std::optional<service::TemporaryFolder> folder_;
   std::filesystem::path task_file_;
   Eigen::Vector2d place_ = Eigen::Vector2d::Zero();  // where the object is put, as shown
+  std::optional<model::ArmModel> arm_;
+  int arm_states_ = 0, hindered_ = 0;
   std::optional<Ears> ears_;
   std::optional<service::Lab> lab_;  // after the folder: stopped before it is removed
   std::set<std::string> up_;

@@ -16,6 +16,7 @@ struct TaskDemoOptions {
   service::LabArguments lab;
   std::string task = "pick-and-place";  // or a file NAME.task, which needs not be shown
   std::string object = "Talc", hand;    // empty: the lab's
+  std::string arm;                      // that carries the hand; empty: the lab's, mostly none
   std::uint64_t seed = 1;
   double timeout = 120;  // s
   bool keep = false;     // scenes, tasks and logs
@@ -38,11 +39,17 @@ struct TaskDemoOutcome {
     bool done = false;
     double error = 0, turn = 0;  // m, rad
   };
+  struct Arm {
+    std::string name;
+    double worst_joint_speed = 0;  // by its joint's limit
+    double out_of_reach = 0;       // share of the time
+  };
   TaskModel task;             // as it was understood
   std::vector<Phase> phases;  // that were seen
   std::string hand, grasp_type;
   std::uint64_t frames = 0;
   std::optional<double> place_error;  // m, of where the object was seen to be put; if it was shown
+  std::optional<Arm> arm;             // that carried the hand
   std::optional<Grasp> grasp;         // as the simulation judged it
   bool done = false;
   std::string reason;

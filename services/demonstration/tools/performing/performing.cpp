@@ -11,6 +11,7 @@
 #include "common/base/log.hpp"
 #include "common/convert/convert.hpp"
 #include "common/dds/topics.hpp"
+#include "common/model/arm_choice.hpp"
 #include "common/model/catalogue.hpp"
 #include "common/model/grasp_taxonomy.hpp"
 #include "services/demonstration/core/rehearsal/rehearsal.hpp"
@@ -50,18 +51,23 @@ std::string cut(const std::string& text) {
 class Performing {
  public:
   Performing(service::Shell& shell, const TaskModel& task, const PerformingOptions& options,
-             model::Catalogue catalogue, model::GraspTaxonomy taxonomy)
+             model::Catalogue catalogue, model::GraspTaxonomy taxonomy,
+             std::optional<model::ArmModel> arm)
       : shell_(shell),
         task_(task),
         options_(options),
         catalogue_(std::move(catalogue)),
         taxonomy_(std::move(taxonomy)),
+        arm_(std::move(arm)),
         hand_name_(shell.config().text("mapping.hand_name")),
         commands_(shell.publish(dds::robot_command)),
         progress_(shell.publish(dds::task_progress)),
         begun_(shell.now()) {
     shell.subscribe(dds::robot_state,
                     Handler<v1::HandState>([this](auto& s, auto& i) { on_state(s, i); }));
+    if (arm_)
+      shell.subscribe(dds::arm_state,
+                      Handler<v1::ArmState>([this](auto& s, auto& i) { on_arm(s, i); }));
     shell.subscribe(dds::robot_gate,
                     Handler<v1::GateState>([this](auto& s, auto& i) { on_gate(s, i); }));
     shell.subscribe(dds::object_state,
@@ -94,9 +100,23 @@ class Performing {
     time_ += std::clamp(stamp - stamp_, Duration::zero(), max_step);
     stamp_ = stamp;
     robot_ = RobotNow{time_, *X_WB, convert::from_message(message.dof()),
-                      convert::from_message(message.joint())};
+                      convert::from_message(message.joint()), posture_};
     heard_ = shell_.now();
     if (performer_ && !made_) advance();
+  }
+
+  /// How the arm holds the hand follows from what it says.
+  void on_arm(const v1::ArmState& message, const dds::SampleInfo& info) {
+    if (info.gone || message.arm().to_string() != shell_.config().text("robot.arm_name")) return;
+    const auto X_WA = convert::from_message(message.X_WA());
+    const auto X_WB = convert::from_message(message.X_WB());
+    const Eigen::VectorXd joint = convert::from_message(message.joint());
+    if (!X_WA || !X_WB || !joint.allFinite() ||
+        joint.size() != static_cast<Eigen::Index>(arm_->joints.size()))
+      return shell_.status().drop("state of the arm not usable");
+    posture_ = joint;
+    X_WA_ = *X_WA;
+    X_EB_ = (*X_WA * arm::end_pose(*arm_, posture_)).inverse() * *X_WB;
   }
 
   void on_gate(const v1::GateState& message, const dds::SampleInfo& info) {
@@ -150,6 +170,7 @@ class Performing {
   void look(Time now) {
     std::string missing;
     if (!robot_) missing = "robot/state";
+    if (arm_ && posture_.size() == 0) missing = "arm/state";
     for (const Step& step : task_.steps)
       for (const std::string& name : {step.object, step.reference})
         if (name != the_table && !places_.contains(name)) missing = name;
@@ -158,6 +179,7 @@ class Performing {
     if (now - begun_ < look_time && (places_.empty() || now - begun_ < 4 * look_around || !gate_))
       return;
     if (!robot_) return refuse({"no robot hand is there", hand_name_, "prehend status"});
+    if (missing == "arm/state") return refuse({"no arm is there", arm_->name, "prehend status"});
     if (!missing.empty())
       return refuse(
           {"is not in this lab", missing, "the task " + task_.name + " needs it", exit_no});
@@ -182,9 +204,12 @@ class Performing {
       else
         log::warning("{} is not in the catalogue: it is not looked out for", name);
     from_ = {robot_->X_WB, hand_->clamp(robot_->dof)};
+    if (arm_) carried_ = planning::Robot{&*arm_, hand_.get(), X_WA_, X_EB_};
     options_.tell("rehearsing");
-    thinking_ = std::thread([this] {
+    thinking_ = std::thread([this, posture = robot_->arm] {
       RehearsalOptions options;
+      options.robot = carried_;
+      options.posture = posture;
       rehearsal_ = rehearse(*hand_, task_, things_, from_, options);
       thought_ = true;
     });
@@ -204,7 +229,7 @@ class Performing {
     Places known;
     for (const Thing& thing : things_) known[thing.body.name] = places_.at(thing.body.name);
     auto performer = TaskPerformer::create(*hand_, task_, shapes_of(things_), known,
-                                           (*rehearsal_)->grasps, from_);
+                                           (*rehearsal_)->grasps, from_, {}, {}, {carried_});
     if (!performer) return refuse(performer.error());
     performer_.emplace(std::move(*performer));
     started_ = now;
@@ -295,10 +320,14 @@ class Performing {
   const PerformingOptions& options_;
   model::Catalogue catalogue_;
   model::GraspTaxonomy taxonomy_;
+  const std::optional<model::ArmModel> arm_;  // that carries the hand, if any
   std::string hand_name_, model_;
   service::Shell::Output<v2::HandCommand> commands_;
   service::Shell::Output<v1::TaskProgress> progress_;
   std::unique_ptr<const model::HandModel> hand_;
+  arm::Joints posture_;  // of the arm, once it has said so
+  Pose X_WA_ = Pose::Identity(), X_EB_ = Pose::Identity();
+  std::optional<planning::Robot> carried_;
   std::optional<RobotNow> robot_;
   std::optional<v1::GateState> gate_;
   Places places_;
@@ -325,7 +354,14 @@ Expected<Performed> perform(service::Shell& shell, const TaskModel& task,
   if (!catalogue) return tl::unexpected(catalogue.error());
   auto taxonomy = model::GraspTaxonomy::of_the_house();
   if (!taxonomy) return tl::unexpected(taxonomy.error());
-  Performing performing(shell, task, options, std::move(*catalogue), std::move(*taxonomy));
+  std::optional<model::ArmModel> arm;
+  if (const std::string& name = shell.config().text("robot.arm"); !name.empty()) {
+    auto loaded = model::load_arm(name);
+    if (!loaded) return tl::unexpected(loaded.error());
+    arm = std::move(*loaded);
+  }
+  Performing performing(shell, task, options, std::move(*catalogue), std::move(*taxonomy),
+                        std::move(arm));
   if (const auto ended = shell.run(); !ended) return tl::unexpected(ended.error());
   return performing.outcome();
 }

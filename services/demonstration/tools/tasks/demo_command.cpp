@@ -53,6 +53,10 @@ Json document_of(const TaskDemoOutcome& outcome, const TaskDemoOptions& options)
                   {"done", outcome.done},
                   {"reason", outcome.reason},
                   {"steps", Json::array()}}}};
+  if (const auto& arm = outcome.arm)
+    document["arm"] = {{"name", arm->name},
+                       {"worst_joint_speed", arm->worst_joint_speed},
+                       {"out_of_reach", arm->out_of_reach}};
   for (const auto& phase : outcome.phases)
     document["understood"]["phases"].push_back({{"phase", phase.name},
                                                 {"object", phase.object},
@@ -85,7 +89,8 @@ void print(const TaskDemoOutcome& outcome) {
   if (outcome.place_error)
     fmt::print("  the place is {:.1f} mm from where the person put it\n",
                1000 * *outcome.place_error);
-  fmt::print("done again by {}, from elsewhere: {}\n", outcome.hand,
+  fmt::print("done again by {}{}, from elsewhere: {}\n", outcome.hand,
+             outcome.arm ? " on " + outcome.arm->name : "",
              outcome.done ? "as it was shown" : "no: " + outcome.reason);
   for (const auto& step : outcome.steps)
     fmt::print("  {:16} {:8} {:5.1f} mm {:5.1f}° off\n", step.object,
@@ -125,6 +130,8 @@ void add_demo(tool::Program& program) {
   command->add_option("--object", demo_options.object, "what is put elsewhere")
       ->capture_default_str();
   command->add_option("--hand", demo_options.hand, "the robot hand");
+  command->add_option("--arm", demo_options.arm,
+                      "the arm that carries it, a name or folder: puma560; else it flies");
   command->add_option("--seed", demo_options.seed, "draws person, places, times and noise");
   command->add_option("--timeout", demo_options.timeout, "s until it gives up")
       ->check(CLI::Range(1.0, 3600.0));

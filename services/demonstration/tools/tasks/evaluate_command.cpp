@@ -4,8 +4,11 @@
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <numbers>
 
+#include "common/arm/mounting.hpp"
 #include "common/base/paths.hpp"
+#include "common/model/arm_choice.hpp"
 #include "services/demonstration/tools/tasks/commands.hpp"
 #include "services/demonstration/tools/trials/trial.hpp"
 
@@ -15,11 +18,19 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 struct EvaluateArguments {
-  std::string hand = model::lab_hand();
+  std::string hand = model::lab_hand(), arm;
   int tasks = 20, max_steps = 4;
   std::uint64_t seed = 1;
   bool json = false;
 };
+
+/// Where the configuration's defaults have it.
+planning::Robot standing(const model::ArmModel& arm, const model::HandModel& hand) {
+  constexpr double before = 0.7, bracket = 0.7;  // m, rad
+  const Eigen::AngleAxisd turn(std::numbers::pi / 2, Eigen::Vector3d::UnitZ());
+  return {&arm, &hand, make_pose({0, -before, 0}, turn.toRotationMatrix()),
+          arm.X_EF * arm::mounted(hand, bracket)};
+}
 
 Json entry_of(const TaskTrial& trial, std::uint64_t seed) {
   return {{"seed", seed},
@@ -38,11 +49,23 @@ int evaluate(const EvaluateArguments& arguments) {
   const auto catalogue =
       model::Catalogue::load(share_directory() / "models" / "objects" / "catalogue.toml");
   if (!catalogue) return tool::complain(catalogue.error());
-  Json document{{"hand", hand->name()}, {"tasks", Json::array()}};
+  std::optional<model::ArmModel> arm;
+  std::optional<planning::Robot> robot;
+  if (!arguments.arm.empty()) {
+    auto loaded = model::load_arm(arguments.arm);
+    if (!loaded) return tool::complain(loaded.error());
+    if (const auto fits = arm::check_fit(*loaded, *hand); !fits)
+      return tool::complain(fits.error());
+    arm = std::move(*loaded);
+    robot = standing(*arm, *hand);
+  }
+  Json document{{"hand", hand->name()},
+                {"arm", arm ? Json(arm->name) : Json(nullptr)},
+                {"tasks", Json::array()}};
   int understood = 0, rehearsed = 0, done = 0;
   for (int n = 0; n < arguments.tasks; ++n) {
     const std::uint64_t seed = arguments.seed + static_cast<std::uint64_t>(n);
-    const TaskTrial trial = try_task(*hand, *catalogue, 1 + n % arguments.max_steps, seed);
+    const TaskTrial trial = try_task(*hand, *catalogue, 1 + n % arguments.max_steps, seed, robot);
     understood += trial.understood;
     rehearsed += trial.rehearsed;
     done += trial.done;
@@ -75,6 +98,8 @@ void add_evaluate(tool::Program& program) {
       "Tasks that are drawn, shown once by people who do not exist, and done again elsewhere in a "
       "simulated\nworld: how many are understood and done as they were shown?");
   command->add_option("--hand", arguments->hand, "the robot hand")->capture_default_str();
+  command->add_option("--arm", arguments->arm,
+                      "the arm that carries it, a name or folder: puma560; else it flies");
   command->add_option("--tasks", arguments->tasks, "how many")
       ->check(CLI::Range(1, 10000))
       ->capture_default_str();

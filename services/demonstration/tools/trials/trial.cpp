@@ -62,9 +62,22 @@ bool is_right(const TaskModel& task, const std::vector<Transfer>& transfers) {
 }
 
 void perform(const model::HandModel& hand, const TaskModel& task, const std::vector<Thing>& things,
-             std::uint64_t seed, TaskTrial& trial) {
-  const HandGoal from{make_pose({0, -0.4, 0.6}), hand.postures().at("open")};
-  const auto rehearsed = rehearse(hand, task, things, from);
+             std::uint64_t seed, const std::optional<planning::Robot>& robot, TaskTrial& trial) {
+  HandGoal from{make_pose({0, -0.4, 0.6}), hand.postures().at("open")};
+  std::unique_ptr<carrying::CarryingArm> arm;
+  RehearsalOptions how;
+  if (robot) {
+    how.robot = robot;
+    how.posture = robot->arm->home;
+    auto made = arm_of(*robot, robot->arm->home);
+    if (!made) {
+      trial.reason = made.error().message();
+      return;
+    }
+    arm = std::move(*made);
+    from.X_WB = arm->home();
+  }
+  const auto rehearsed = rehearse(hand, task, things, from, how);
   if (!rehearsed) {
     trial.reason = rehearsed.error().message();
     return;
@@ -72,16 +85,18 @@ void perform(const model::HandModel& hand, const TaskModel& task, const std::vec
   trial.rehearsed = true;
   Random random(seed * 31 + 7);
   const std::vector<Thing> truth = disturbed(things, random);
-  auto world = grasping::World::create(hand, from.X_WB, from.dof);
+  grasping::WorldOptions physics;
+  if (arm) physics.base = carrying::CarryingArm::base();
+  auto world = grasping::World::create(hand, from.X_WB, from.dof, physics);
   if (!world) return;
   for (const Thing& thing : truth) (*world)->add_body(thing.body, thing.X_WO);
   auto performer = TaskPerformer::create(hand, task, shapes_of(things), places_of(**world),
-                                         rehearsed->grasps, from);
+                                         rehearsed->grasps, from, {}, {}, {robot});
   if (!performer) {
     trial.reason = performer.error().message();
     return;
   }
-  if (const auto performed = perform_in(**world, *performer, longest); !performed) {
+  if (const auto performed = perform_in(**world, *performer, longest, arm.get()); !performed) {
     trial.reason = performed.error().message();
     return;
   }
@@ -123,7 +138,7 @@ Expected<Demonstration> watched(const Person& person, const std::string& task, s
 }
 
 TaskTrial try_task(const model::HandModel& hand, const model::Catalogue& catalogue, int steps,
-                   std::uint64_t seed) {
+                   std::uint64_t seed, const std::optional<planning::Robot>& robot) {
   TaskTrial trial{.steps = steps};
   const auto refuse = [&](const Error& error) {
     trial.reason = error.message();
@@ -134,6 +149,7 @@ TaskTrial try_task(const model::HandModel& hand, const model::Catalogue& catalog
                      .apart = 0.24,
                      .half_width = 0.45,
                      .half_depth = 0.32};
+  if (robot) reachable(table);
   auto shown = drawn_table(catalogue, seed, table);
   if (!shown) return refuse(shown.error());
   shown->demonstrator.reach = hand.reach();
@@ -161,7 +177,7 @@ TaskTrial try_task(const model::HandModel& hand, const model::Catalogue& catalog
   std::vector<Thing> things;
   for (const model::PlacedObject& placed : again->objects)
     things.push_back(thing_of(placed, catalogue));
-  perform(hand, *task, things, seed, trial);
+  perform(hand, *task, things, seed, robot, trial);
   return trial;
 }
 

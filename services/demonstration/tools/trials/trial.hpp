@@ -1,12 +1,14 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "common/base/error.hpp"
 #include "common/model/catalogue.hpp"
 #include "common/model/hand_model.hpp"
+#include "common/planning/scene.hpp"
 #include "services/demonstration/core/observation/watcher.hpp"
 #include "services/demonstration/core/person/person.hpp"
 #include "services/demonstration/core/reproduction/task_performer.hpp"
@@ -30,7 +32,9 @@ struct TaskTrial {
 
 /// A task with so many steps, each with another object that the hand can take. The world in which
 /// it is done differs from that in which it was rehearsed by 1 mm and 1°.
+/// robot: an arm that carries the hand; then things stand on that part of the table that it
+/// reaches.
 TaskTrial try_task(const model::HandModel& hand, const model::Catalogue& catalogue, int steps,
-                   std::uint64_t seed);
+                   std::uint64_t seed, const std::optional<planning::Robot>& robot = std::nullopt);
 
 }  // namespace prehend::demonstration

@@ -1,4 +1,4 @@
-#include "services/simulation/core/carrying_arm.hpp"
+#include "common/carrying/carrying_arm.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,7 @@
 #include "common/arm/inverse.hpp"
 #include "common/arm/mounting.hpp"
 
-namespace prehend::simulation {
+namespace prehend::carrying {
 namespace {
 
 using Eigen::Vector3d;
@@ -50,7 +50,16 @@ CarryingArm::CarryingArm(model::ArmModel arm, const model::HandModel& hand,
     moment += hand.links()[i].mass * (X_BL[i] * hand.links()[i].com_L);
   burden_.com_L = X_LB * Vector3d(moment / std::max(burden_.mass, 1e-6));
   burden_.p_L = X_LB * hand.links().front().com_L;
-  acceleration_.setZero(controller_.posture().size());
+  start(arm_.home);
+}
+
+void CarryingArm::start(const arm::Joints& q) {
+  controller_.start(q);
+  acceleration_.setZero(q.size());
+  load_ = {};
+  lifted_ = 0;
+  too_heavy_ = pushed_ = false;
+  wish_.reset();
   guidance_ = controller_.brake(0);
   guidance_.hindrance = arm::Hindrance::none;
   X_WB_ = guidance_.X_WB;
@@ -153,4 +162,4 @@ ArmMotion CarryingArm::motion(const grasping::World& world) const {
   return motion;
 }
 
-}  // namespace prehend::simulation
+}  // namespace prehend::carrying

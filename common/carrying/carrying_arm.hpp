@@ -10,7 +10,7 @@
 #include "common/model/arm_model.hpp"
 #include "common/model/hand_model.hpp"
 
-namespace prehend::simulation {
+namespace prehend::carrying {
 
 /// What an arm was told in the last step, and what it does.
 struct ArmMotion {
@@ -42,8 +42,9 @@ class CarryingArm {
   /// Where the hand is at home.
   Pose home() const;
 
-  void follow(const Pose& X_WB);  // from now on
-  void brake();                   // as hard as it can, and stays there until the next wish
+  void start(const arm::Joints& q);  // it is there, at rest; at first: at home
+  void follow(const Pose& X_WB);     // from now on
+  void brake();                      // as hard as it can, and stays there until the next wish
   bool rests() const;
 
   /// The joints of the next step of the world, which carries the hand there.
@@ -51,7 +52,9 @@ class CarryingArm {
   ArmMotion motion(const grasping::World& world) const;
 
   const model::ArmModel& model() const { return arm_; }
+  const arm::Joints& posture() const { return controller_.posture(); }
   const Pose& X_WA() const { return options_.X_WA; }
+  const Pose& X_EB() const { return options_.X_EB; }
 
  private:
   CarryingArm(model::ArmModel arm, const model::HandModel& hand, arm::ControllerOptions options);
@@ -73,4 +76,4 @@ class CarryingArm {
   arm::Joints acceleration_;
 };
 
-}  // namespace prehend::simulation
+}  // namespace prehend::carrying
