@@ -94,6 +94,7 @@ inline constexpr Topic<v1::ArmStatePubSubType> arm_state{
     {.name = "arm/state",
      .qos = {.reliable = false},
      .writers = Role::simulation | Role::robot,
+     .readers = Role::performer,
      .open = true,
      .rate = "100 Hz, of a robot with an arm"}};
 

@@ -189,7 +189,8 @@ Expected<void> set_from_override(Values& values, const std::string& text) {
 Expected<Config> Config::load(const std::filesystem::path& file,
                               const std::vector<std::string>& overrides) {
   Config config;
-  config.directory_ = std::filesystem::absolute(file).parent_path();
+  std::error_code nowhere;  // a file without a name is refused when it is read
+  config.directory_ = std::filesystem::absolute(file, nowhere).parent_path();
   for (const ConfigKey& key : config_keys()) config.values_.emplace(key.name, key.fallback);
   auto done = check_environment();
   if (done) done = set_from_file(config.values_, file);

@@ -18,6 +18,12 @@ std::filesystem::path write(const std::string& text) {
   return file;
 }
 
+TEST(Config, AFileWithoutANameIsRefused) {
+  const auto config = Config::load("");  // it was an exception that nobody caught
+  ASSERT_FALSE(config);
+  EXPECT_FALSE(config.error().message().empty());
+}
+
 TEST(Config, LaterSourcesWin) {
   const auto file = write("[glove]\nrate = 40\nuser = \"ann\"\n[camera]\nfocal = [500, 510.5]\n");
   auto config = Config::load(file);
