@@ -29,6 +29,7 @@ Log::Log(Log&& other) noexcept
     : options_(std::move(other.options_)),
       descriptor_(std::exchange(other.descriptor_, -1)),
       bytes_(other.bytes_),
+      torn_(other.torn_),
       refusals_(std::move(other.refusals_)) {}
 
 Log::~Log() {
@@ -45,11 +46,19 @@ std::filesystem::path Log::file() const {
 }
 
 Expected<void> Log::open_file() {
-  descriptor_ = ::open(file(0).c_str(), O_WRONLY | O_APPEND | O_CREAT | O_CLOEXEC, 0640);
+  // Not to wait for who reads a pipe, and not to write through a link into another file.
+  descriptor_ = ::open(file(0).c_str(),
+                       O_RDWR | O_APPEND | O_CREAT | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC, 0640);
   struct stat status {};
   if (descriptor_ < 0 || ::fstat(descriptor_, &status) != 0)
     return fail(std::strerror(errno), file(0).string());
+  if (!S_ISREG(status.st_mode)) {
+    ::close(std::exchange(descriptor_, -1));
+    return fail("is no file", file(0).string(), "take it away, or name another safety.audit");
+  }
   bytes_ = static_cast<std::uintmax_t>(status.st_size);
+  char last = '\n';
+  torn_ = bytes_ > 0 && (::pread(descriptor_, &last, 1, status.st_size - 1) != 1 || last != '\n');
   return {};
 }
 
@@ -63,11 +72,14 @@ void Log::rotate() {
 }
 
 bool Log::write(const Record& record) {
-  const std::string line = to_line(record) + "\n";
+  std::string line = to_line(record) + "\n";
   if (bytes_ > 0 && bytes_ + line.size() > options_.max_bytes) rotate();
   if (descriptor_ < 0 && !open_file()) return false;
+  // Half a line, of a disk that was full or a loss of power, must not take this one with it.
+  if (torn_) line.insert(line.begin(), '\n');
   const ssize_t written = ::write(descriptor_, line.data(), line.size());
   if (written > 0) bytes_ += static_cast<std::uintmax_t>(written);
+  if (written > 0) torn_ = written != static_cast<ssize_t>(line.size());
   return written == static_cast<ssize_t>(line.size());
 }
 

@@ -51,6 +51,7 @@ class Log {
   LogOptions options_;
   int descriptor_ = -1;
   std::uintmax_t bytes_ = 0;
+  bool torn_ = false;                        // the last line has no end
   std::map<std::string, Counted> refusals_;  // by reason and writer
 };
 

@@ -10,6 +10,8 @@
 namespace prehend {
 namespace {
 
+constexpr unsigned max_threads = 256;
+
 /// What the threads share.
 struct Pool {
   std::mutex mutex;
@@ -44,6 +46,7 @@ struct Pool {
 void share_work(std::size_t count, unsigned threads, const std::function<void(std::size_t)>& work,
                 const std::function<void(std::size_t)>& done) {
   if (threads == 0) threads = std::max(1u, std::thread::hardware_concurrency());
+  threads = static_cast<unsigned>(std::min<std::size_t>({threads, count, max_threads}));
   Pool pool;
   pool.running = threads;
   std::vector<std::jthread> crew;

@@ -87,6 +87,10 @@ inline bool deserialize(fdds::TopicDataType& type, rtps::SerializedPayload_t& pa
                         void* message) {
   return type.deserialize(&payload, message);
 }
+/// Fast CDR 1 throws where a message ends too early.
+inline bool is_whole(fdds::TopicDataType&, const rtps::SerializedPayload_t&, const void*) {
+  return true;
+}
 inline bool find_key(fdds::TopicDataType& type, const void* message,
                      rtps::InstanceHandle_t& handle) {
   return type.getKey(const_cast<void*>(message), &handle, false);
@@ -140,6 +144,17 @@ inline bool serialize(fdds::TopicDataType& type, const void* message,
 inline bool deserialize(fdds::TopicDataType& type, rtps::SerializedPayload_t& payload,
                         void* message) {
   return type.deserialize(payload, message);
+}
+/// Whether a payload brought all of a message that was read from it. Where it ends between two
+/// members, Fast CDR 2 leaves those that are missing as they were, and is content. Its calculated
+/// sizes are bounds, so the message is written again.
+inline bool is_whole(fdds::TopicDataType& type, const rtps::SerializedPayload_t& payload,
+                     const void* message) {
+  constexpr rtps::octet first_of_xcdr2 = 6;  // encapsulations that are numbered so or higher
+  const auto written =
+      payload.data[1] < first_of_xcdr2 ? representation : fdds::XCDR2_DATA_REPRESENTATION;
+  rtps::SerializedPayload_t again(type.calculate_serialized_size(message, written));
+  return type.serialize(message, again, written) && again.length <= payload.length;
 }
 inline bool find_key(fdds::TopicDataType& type, const void* message,
                      rtps::InstanceHandle_t& handle) {

@@ -13,8 +13,9 @@ constexpr Duration on_its_way = milliseconds(1000);
 // Who has left is silent for this time; it is half of the usual lease.
 constexpr Duration gone = std::chrono::seconds(10), look_period = milliseconds(250);
 constexpr std::size_t max_departure = 2048;  // bytes
-// Who is met again has ended its handshake within this time, or at least begun it.
-constexpr Duration meeting = milliseconds(1200), longer_meeting = milliseconds(3000);
+// Who is met again has begun its handshake within this time, or even ended it. Whoever joins anew
+// for nothing loses half a second; whoever waits for what never comes loses all that it waits.
+constexpr Duration meeting = milliseconds(800), longer_meeting = milliseconds(1200);
 // Announcements come every half second.
 constexpr Duration recently = milliseconds(1100);
 constexpr Duration max_silence = std::chrono::seconds(120);

@@ -18,6 +18,8 @@
 #include "common/dds/peers.hpp"
 #include "common/dds/serialized_transport.hpp"
 #include "common/dds/server_watch.hpp"
+#include "common/dds/topics.hpp"
+#include "common/dds/within_process.hpp"
 
 namespace prehend::dds {
 
@@ -137,6 +139,24 @@ struct Participant::State {
   }
 };
 
+namespace {
+
+/// Whoever measures or moves something does so in one rig. Partitions are patterns: «*» would lead
+/// the robots of all.
+Expected<void> stays_in_one_rig(const ParticipantOptions& options) {
+  if (options.rig.find_first_of("*?[") == std::string::npos) return {};
+  const std::string& name = options.role.empty() ? options.name : options.role;
+  for (const auto& [role, its_name] : role_names)
+    if (its_name == name && std::ranges::any_of(topic_table, [each = role](const TopicInfo& topic) {
+          return topic.content == Content::data && may_write(each, topic);
+        }))
+      return wrong_use("is more than one rig: " + options.rig, "lab.rig",
+                       "a " + name + " takes part in one");
+  return {};
+}
+
+}  // namespace
+
 Participant::Participant(std::unique_ptr<State> state) : state_(std::move(state)) {}
 Participant::Participant(Participant&&) noexcept = default;
 Participant& Participant::operator=(Participant&&) noexcept = default;
@@ -166,6 +186,8 @@ Expected<Participant> Participant::create(const ParticipantOptions& options) {
 Expected<Participant> Participant::join(const ParticipantOptions& options) {
   if (options.domain < 0 || options.domain > 232)
     return fail("domain must lie in 0 to 232", "lab.domain");
+  static const bool first = (talk_over_the_network_within_process(), true);
+  static_cast<void>(first);
   auto state = std::make_unique<State>();
   state->options = options;
   Network network = options.network;
@@ -175,6 +197,7 @@ Expected<Participant> Participant::join(const ParticipantOptions& options) {
     network.keys = keys->folder;
     state->keys.emplace(std::move(*keys));
   }
+  if (auto one = stays_in_one_rig(options); !one) return tl::unexpected(one.error());
   auto qos = participant_qos(network, {options.listener != nullptr, options.serves});
   if (!qos) return tl::unexpected(qos.error());
   qos->name(options.name);

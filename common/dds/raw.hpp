@@ -55,7 +55,8 @@ template <class P>
   std::copy(sample.payload.begin(), sample.payload.end(), payload.data);
   payload.length = payload.max_size;
   NoThrowPubSubType<P> type;
-  return payload.length >= 4 && deserialize(type, payload, &message);
+  return payload.length >= 4 && deserialize(type, payload, &message) &&
+         is_whole(type, payload, &message);
 }
 
 /// A message as it is on the wire.

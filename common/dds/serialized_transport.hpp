@@ -56,12 +56,12 @@ std::shared_ptr<transport::TransportDescriptorInterface> serialized(
 /// Numbers of the packets that this process is processing in its serializers now.
 std::set<std::uint64_t> packets_in_process();
 
-/// Notices a deadlock: look() is to be called every half second, and is true when one packet has
-/// been in process at `max_looks` calls. Calls are counted, not time: time passes for a process
-/// that is stopped, too.
+/// Notices a deadlock: look() is to be called every quarter of a second, and is true when one
+/// packet has been in process at `max_looks` calls. Calls are counted, not time: time passes for a
+/// process that is stopped, too.
 class DeadlockWatchdog {
  public:
-  static constexpr int max_looks = 4;
+  static constexpr int max_looks = 7;
   bool look();
 
  private:

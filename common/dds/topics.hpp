@@ -13,6 +13,7 @@
 #include "idl/OperationPubSubTypes.h"
 #include "idl/PerceptionPubSubTypes.h"
 #include "idl/RobotPubSubTypes.h"
+#include "idl/TrainingPubSubTypes.h"
 #include "idl/WorldPubSubTypes.h"
 
 /// All topics, and the only place that lists them: readers, writers, permissions of keys, `check`,
@@ -33,6 +34,16 @@ inline constexpr Topic<v1::HandPosturePubSubType> hand_posture{
      .writers = Role::glove,
      .readers = Role::mapping | Role::demonstration | Role::operator_,
      .rate = "as glove/frame"}};
+
+/// Of the moment: a button that was held when something was recorded orders nothing.
+inline constexpr Topic<v1::GloveButtonPubSubType> glove_button{
+    {.name = "glove/button",
+     .qos = {.reliable = false},
+     .writers = Role::glove,
+     .readers = Role::simulation | Role::robot | Role::operator_,
+     .open = true,
+     .content = Content::order,
+     .rate = "as glove/frame, of a device with buttons"}};
 
 inline constexpr Topic<v1::CameraImagePubSubType> camera_image{{.name = "camera/image",
                                                                 .qos = {.reliable = false},
@@ -123,6 +134,7 @@ inline constexpr Topic<v1::DemonstratedGraspPubSubType> demonstration_grasp{
     {.name = "demonstration/grasp",
      .qos = {.writer_depth = 64, .reader_depth = 1},
      .writers = Role::demonstration,
+     .readers = Role::recognition,
      .open = true,
      .rate = "as hand/posture"}};
 
@@ -145,6 +157,14 @@ inline constexpr Topic<v1::TaskProgressPubSubType> task_progress{
      .writers = Role::performer,
      .open = true,
      .rate = "10 Hz while a task is done"}};
+
+inline constexpr Topic<v1::TrainingProgressPubSubType> mapping_training{
+    {.name = "mapping/training",
+     .qos = {.transient_local = true},
+     .writers = Role::mapping,
+     .open = true,
+     .content = Content::process,
+     .rate = "5 Hz while somebody teaches"}};
 
 inline constexpr Topic<v1::OperatorCommandPubSubType> operator_command{
     {.name = "operator/command",
@@ -206,18 +226,12 @@ inline constexpr Topic<v1::ServiceStatusPubSubType> service_status{
 
 /// In the order of the table in idl/README.md. What is not here has no reader and no writer
 /// (a static_assert of Participant).
-inline constexpr std::tuple typed_topics{glove_frame,         hand_posture,
-                                         camera_image,        object_detection,
-                                         robot_command,       robot_state,
-                                         robot_gate,          arm_command,
-                                         arm_state,           scene_state,
-                                         object_state,        grasp_report,
-                                         demonstration_grasp, demonstration_segment,
-                                         task_model,          task_progress,
-                                         operator_command,    operator_reply,
-                                         operator_consent,    lab_clock,
-                                         lab_progress,        lab_beacon,
-                                         service_status};
+inline constexpr std::tuple typed_topics{
+    glove_frame,      hand_posture,  glove_button,     camera_image,        object_detection,
+    robot_command,    robot_state,   robot_gate,       arm_command,         arm_state,
+    scene_state,      object_state,  grasp_report,     demonstration_grasp, demonstration_segment,
+    task_model,       task_progress, mapping_training, operator_command,    operator_reply,
+    operator_consent, lab_clock,     lab_progress,     lab_beacon,          service_status};
 
 template <class PubSub>
 inline constexpr bool is_listed = std::apply(

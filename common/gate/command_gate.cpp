@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "common/base/named_values.hpp"
+#include "common/base/time_between.hpp"
 
 namespace prehend::gate {
 namespace {
@@ -11,6 +12,8 @@ namespace {
 constexpr double far_off = 10;              // m: no hand works there
 constexpr double tolerated_outside = 0.01;  // of a DoF's range, beyond its limits
 constexpr std::size_t max_heard = 16;       // writers
+/// What somebody sets for ages and silences, at most: nobody means a minute, and nothing overflows.
+constexpr Duration max_set = std::chrono::minutes(1);
 
 constexpr auto refusal_names =
     named_values<Refusal>({{Refusal::not_finite, "command not finite"},
@@ -38,8 +41,9 @@ Expected<CommandGate> CommandGate::create(const model::HandModel& hand, GateOpti
       limits.effort.size() != static_cast<Eigen::Index>(hand.dofs().size()))
     return fail("limits are those of another hand", "gate");
   if (auto sound = check(limits); !sound) return tl::unexpected(sound.error());
-  if (options.max_age <= Duration::zero() || options.max_silence <= Duration::zero())
-    return fail("times must be positive", "gate");
+  for (const Duration set : {options.max_age, options.max_silence, options.max_consent_age})
+    if (set <= Duration::zero() || set > max_set)
+      return fail("times must be above 0 s and at most 60 s", "gate.max_age, gate.max_silence");
   return CommandGate(hand, std::move(options), std::move(limits), std::move(where));
 }
 
@@ -58,12 +62,15 @@ tl::expected<Passed, Refusal> CommandGate::admit(const Command& command, Time no
 
 void CommandGate::start() {
   if (!std::exchange(starts_, false)) return;
-  const auto here = where_ ? where_() : std::nullopt;
-  here ? motion_.start(*here) : motion_.start_anywhere();
+  // Where nobody knows that, what it was told last counts.
+  auto here = where_ ? where_() : std::nullopt;
+  if (!here) here = motion_.place();
+  if (here) motion_.start(*here);
 }
 
 void CommandGate::stop(const std::string& by, const std::string& reason, Time now) {
   if (!stop_) stop_ = Stop{by, reason, now};
+  stop_->newest = std::max(stop_->newest, now);
   starts_ = true;
 }
 
@@ -72,19 +79,27 @@ void CommandGate::release() {
   starts_ = true;
 }
 
+bool CommandGate::may_release(Time given) const {
+  return !stop_ || given > std::max(stop_->since, stop_->newest);
+}
+
 void CommandGate::consent(const WriterId& writer, bool held, Time stamp, Time now) {
-  if (std::chrono::abs(now - stamp) > options_.max_age) return;
-  // What comes late or twice must not undo that it was let go.
-  if (giver_ == writer && stamp <= told_) return;
+  if (!is_within(stamp, now, options_.max_age)) return;
   if (!held && holder_ != writer) return;
+  // What comes late or twice must not undo that it was let go, whoever spoke in between. Who spoke
+  // so long ago that it would be too old if it came again may be forgotten.
+  std::erase_if(told_, [&](const auto& entry) {
+    return entry.first != writer && between(entry.second, now) > options_.max_age;
+  });
+  const auto known = told_.find(writer);
+  if (known == told_.end() ? told_.size() >= max_heard : stamp <= known->second) return;
+  told_[writer] = stamp;
   holder_ = held ? std::optional(writer) : std::nullopt;
-  giver_ = writer;
-  told_ = stamp;
   held_ = now;
 }
 
 bool CommandGate::has_consent(Time now) const {
-  return !options_.deadman || (holder_ && now - held_ <= options_.max_consent_age);
+  return !options_.deadman || (holder_ && between(held_, now) <= options_.max_consent_age);
 }
 
 Passed CommandGate::go(const Place& place, Time now) {
@@ -94,8 +109,10 @@ Passed CommandGate::go(const Place& place, Time now) {
 
 std::optional<Refusal> CommandGate::judge(const Command& command, Time now) {
   if (const auto refused = judge_content(command)) return refused;
-  if (now - command.stamp > options_.max_age) return Refusal::too_old;
-  if (command.stamp - now > options_.max_age) return Refusal::from_future;
+  const Duration age = between(command.stamp, now);
+  if (age > options_.max_age) return Refusal::too_old;
+  if (age < -options_.max_age) return Refusal::from_future;
+  if (!make_room(command.writer, now)) return Refusal::second_writer;
   if (!is_newer(command, now)) return Refusal::not_newer;
   if (const auto leading = leader(now); leading && *leading != command.writer)
     return Refusal::second_writer;
@@ -128,27 +145,37 @@ std::optional<Refusal> CommandGate::judge_content(const Command& command) const 
 }
 
 /// By its number. Its stamp may be older: mapping answers a posture that came late after it has
-/// told the hand to stay, and the age is bounded. Who does not count is judged by stamps; who
-/// counts anew (a recording that begins again) is heard after a silence.
+/// told the hand to stay, and the age is bounded. Who never counts, but always says 0, is judged by
+/// stamps; who counts anew (a recording that begins again) is heard after a silence.
 bool CommandGate::is_newer(const Command& command, Time now) {
   const auto known = heard_.find(command.writer);
   if (known == heard_.end()) {
-    if (heard_.size() == max_heard)
-      heard_.erase(std::min_element(heard_.begin(), heard_.end(), [](const auto& a, const auto& b) {
-        return a.second.at < b.second.at;
-      }));
     heard_[command.writer] = {command.sequence, command.stamp, now};
     return true;
   }
   Heard& last = known->second;
-  const bool again = now - last.at > options_.max_silence || command.sequence == last.sequence;
+  const bool again =
+      between(last.at, now) > options_.max_silence || (command.sequence == 0 && last.sequence == 0);
   if (command.sequence <= last.sequence && !(again && command.stamp > last.stamp)) return false;
   last = {command.sequence, std::max(last.stamp, command.stamp), now};
   return true;
 }
 
+/// Forgets writers where they are too many, but none whose commands could be obeyed a second time.
+/// There is always room for who leads.
+bool CommandGate::make_room(const WriterId& writer, Time now) {
+  if (heard_.size() < max_heard || heard_.contains(writer)) return true;
+  auto oldest = heard_.end();
+  for (auto at = heard_.begin(); at != heard_.end(); ++at)
+    if (at->first != leader_ && (oldest == heard_.end() || at->second.at < oldest->second.at))
+      oldest = at;
+  if (writer != leader_ && between(oldest->second.stamp, now) <= options_.max_age) return false;
+  heard_.erase(oldest);
+  return true;
+}
+
 std::optional<WriterId> CommandGate::leader(Time now) const {
-  return leader_ && now - led_ <= options_.max_silence ? leader_ : std::nullopt;
+  return leader_ && between(led_, now) <= options_.max_silence ? leader_ : std::nullopt;
 }
 
 void CommandGate::take_over(const WriterId& writer, Time now) {

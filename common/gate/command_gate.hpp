@@ -73,9 +73,15 @@ class CommandGate {
   void take_over(const WriterId& writer, Time now);
   /// Nothing is obeyed any more until the release. A stop that is there already stays as it is.
   void stop(const std::string& by, const std::string& reason, Time now);
-  /// The next command counts from where the hand is, however it came there.
+  /// The stop is over.
   void release();
-  /// Somebody holds the deadman, or lets it go. Only who held it last can let it go.
+  /// The next command counts from where the hand is, however it came there.
+  void start_anew() { starts_ = true; }
+  /// A release that was given then: not before the last stop, of which whoever gave it knew
+  /// nothing.
+  bool may_release(Time given) const;
+  /// Somebody holds the deadman, or lets it go. Only who held it last can let it go. What is older
+  /// than something else that he has said is nothing.
   void consent(const WriterId& writer, bool held, Time stamp, Time now);
   /// There is consent, or none is asked for.
   bool has_consent(Time now) const;
@@ -83,6 +89,7 @@ class CommandGate {
   struct Stop {
     std::string by, reason;
     Time since{};
+    Time newest{};  // when it was asked for last
   };
   const std::optional<Stop>& stopped() const { return stop_; }
   /// While it is stopped: how far the hand may go by now on its way to a place of its own choice.
@@ -100,6 +107,7 @@ class CommandGate {
   std::optional<Refusal> judge(const Command& command, Time now);
   std::optional<Refusal> judge_content(const Command& command) const;
   bool is_newer(const Command& command, Time now);
+  bool make_room(const WriterId& writer, Time now);
   void lead(const WriterId& writer);
   void start();
 
@@ -111,9 +119,10 @@ class CommandGate {
   std::optional<WriterId> leader_;
   Time led_{};  // its last command that was in order
   std::optional<Stop> stop_;
-  std::optional<WriterId> holder_, giver_;  // of the deadman: now, and who said something last
-  Time held_{}, told_{};                    // when it came, and its stamp
-  bool starts_ = true;                      // the next command is the first of a lead
+  std::optional<WriterId> holder_;  // of the deadman
+  Time held_{};                     // when that came
+  std::map<WriterId, Time> told_;   // of the deadman: the newest stamp of each
+  bool starts_ = true;              // the next command is the first of a lead
   std::uint64_t leads_ = 0;
 };
 

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "common/base/named_values.hpp"
+#include "common/base/time_between.hpp"
 
 namespace prehend::gate {
 namespace {
@@ -15,10 +16,9 @@ using Eigen::Vector3d;
 constexpr Duration max_left = std::chrono::milliseconds(300);
 /// After a pause of any length one command goes as far as in this time, as mapping's do.
 constexpr Duration max_step = std::chrono::milliseconds(100);
-/// The first command from a known place has this much time.
+/// The first command from a known place has this much time at most.
 constexpr Duration first_step = std::chrono::milliseconds(20);
-constexpr double max_reserve = 0.05;  // s, of acceleration
-constexpr double rounding = 1e-9;     // relative, of speeds; m and rad, of ways in no time
+constexpr double rounding = 1e-9;  // relative, of speeds; m and rad, of ways in no time
 
 constexpr auto cut_names =
     named_values<Cut>({{Cut::joint_range, "command cut: joint range"},
@@ -59,9 +59,9 @@ std::string_view to_string(Cut cut) {
   return cut_names.name(cut, "command cut");
 }
 
-void Axis::rest() {
+void Axis::rest(double t) {
   velocity_.setZero();
-  reserve_ = max_reserve;
+  reserve_ = std::min(reserve_ + t, max_reserve);
 }
 
 Vector3d Axis::go(const Vector3d& way, double t, const MotionLimit& limit) {
@@ -91,24 +91,26 @@ MotionLimiter::MotionLimiter(Limits limits)
 
 void MotionLimiter::start(const Place& from) {
   place_ = from;
-  for (Axis& joint : joints_) joint.rest();
-  base_.rest();
-  turn_.rest();
   rested_ = true;
 }
 
 /// The time that this place has, s.
 double MotionLimiter::elapsed(Time stamp, Time now) {
-  if (std::exchange(rested_, false)) {
-    stamp_ = stamp - first_step;
-    now_ = now;
-    left_ = max_left;
-  }
-  left_ = std::min(left_ + std::max(now - now_, Duration::zero()), max_left);
-  now_ = now;
-  const Duration claimed = std::clamp(stamp - stamp_, Duration::zero(), max_step);
+  const Duration passed =
+      now_ ? std::max(between(*now_, now), Duration::zero()) : Duration(max_left);
+  left_ = left_ < max_left - passed ? left_ + passed : max_left;
+  now_ = now_ ? std::max(*now_, now) : now;
+  Duration claimed = std::clamp(between(stamp_, stamp), Duration::zero(), max_step);
+  const bool rested = std::exchange(rested_, false);
+  if (rested) claimed = std::min(passed, first_step);
   const Duration used = std::min(claimed, left_);
-  stamp_ = std::max(stamp_, stamp);
+  if (rested) {
+    const double rest = to_seconds(std::max(passed - used, Duration::zero()));
+    for (Axis& joint : joints_) joint.rest(rest);
+    base_.rest(rest);
+    turn_.rest(rest);
+  }
+  stamp_ = rested ? stamp : std::max(stamp_, stamp);
   left_ -= used;
   return to_seconds(used);
 }

@@ -46,7 +46,10 @@ struct Passed {
 /// base never leaves the line between two places of its box.
 class Axis {
  public:
-  void rest();
+  static constexpr double max_reserve = 0.05;  // s, of acceleration
+
+  /// At rest since so many seconds; what it may gain of speed comes back only with time.
+  void rest(double t = max_reserve);
   /// So much of the way as may be gone in this time, s.
   Eigen::Vector3d go(const Eigen::Vector3d& way, double t, const MotionLimit& limit);
   bool too_fast() const { return too_fast_; }  // the last way, for its speed
@@ -67,10 +70,10 @@ class MotionLimiter {
  public:
   explicit MotionLimiter(Limits limits);
 
-  /// The next place counts from here, at rest.
+  /// The next place counts from here, at rest. That gives no time that has not passed: however
+  /// often it is started, the bounds above hold. Before the first start a place is taken as it is,
+  /// but for ranges: nobody knows where the hand is.
   void start(const Place& from);
-  /// The next place is taken as it is, but for ranges: nobody knows where the hand is.
-  void start_anywhere() { place_.reset(); }
 
   /// stamp: when it was meant. now: by the clock here.
   Passed step(const Place& wanted, Time stamp, Time now);
@@ -87,9 +90,10 @@ class MotionLimiter {
   std::optional<Place> place_;
   std::vector<Axis> joints_;
   Axis base_, turn_;
-  bool rested_ = true;    // time begins with the next place
-  Time stamp_{}, now_{};  // the newest stamp; the last place came
-  Duration left_{};       // time that has passed here and was not used
+  bool rested_ = true;       // stamps begin with the next place
+  Time stamp_{};             // the newest one
+  std::optional<Time> now_;  // when the last place came
+  Duration left_{};          // time that has passed here and was not used
 };
 
 }  // namespace prehend::gate

@@ -46,6 +46,8 @@ std::filesystem::path arm_directory(const std::string& arm) {
   std::error_code none;
   for (const auto& folder : folders)
     if (std::filesystem::exists(folder / arm / "arm.toml", none)) return folder / arm;
+  // What is no name may be a folder that lies here.
+  if (std::filesystem::exists(std::filesystem::path(arm) / "arm.toml", none)) return arm;
   return folders.front() / arm;
 }
 

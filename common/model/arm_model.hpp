@@ -63,7 +63,7 @@ struct ArmModel {
 };
 
 /// The folder of an arm: what has a slash is a path, anything else a name in models/arms of what
-/// came with us or of the user's data folder.
+/// came with us or of the user's data folder, or else a folder that lies here.
 std::filesystem::path arm_directory(const std::string& arm);
 
 /// The arms that come with us and those of the user, sorted.

@@ -9,7 +9,7 @@
 #include <optional>
 #include <set>
 
-#include "common/base/file_text.hpp"
+#include "common/base/parse_file.hpp"
 #include "common/base/paths.hpp"
 
 namespace prehend::model {
@@ -146,14 +146,7 @@ Expected<GraspTaxonomy> GraspTaxonomy::parse(std::string_view text) {
 }
 
 Expected<GraspTaxonomy> GraspTaxonomy::load(const std::filesystem::path& file) {
-  const auto text = read_file(file);
-  if (!text) return tl::unexpected(text.error());
-  auto made = parse(*text);
-  if (!made)
-    return fail(made.error().what,
-                file.string() + (made.error().where.empty() ? "" : ", ") + made.error().where,
-                made.error().hint);
-  return made;
+  return parse_file(file, &GraspTaxonomy::parse);
 }
 
 Expected<GraspTaxonomy> GraspTaxonomy::of_the_house() {

@@ -357,27 +357,50 @@ Expected<HandModel> HandModel::parse(std::string_view urdf, std::string_view tom
   return std::move(loader.hand);
 }
 
-std::filesystem::path hand_directory(const std::string& hand) {
-  if (hand.find('/') != std::string::npos) return hand;
-  return share_directory() / "models" / "hands" / hand;
+namespace {
+
+/// Folders of hands: those that come with us first, then those that the user keeps.
+std::vector<std::filesystem::path> hand_folders() {
+  std::vector<std::filesystem::path> folders{share_directory() / "models" / "hands"};
+  if (const auto own = data_directory(); !own.empty()) folders.push_back(own / "models" / "hands");
+  return folders;
 }
 
-std::vector<std::string> hand_names() {
+bool is_hand(const std::filesystem::path& folder) {
+  std::error_code none;
+  return std::filesystem::exists(folder / "hand.toml", none);
+}
+
+std::vector<std::string> names_in(const std::filesystem::path& folder) {
   std::vector<std::string> names;
   std::error_code none;
-  for (const auto& entry :
-       std::filesystem::directory_iterator(share_directory() / "models" / "hands", none))
-    if (std::filesystem::exists(entry.path() / "hand.toml", none))
-      names.push_back(entry.path().filename().string());
+  for (const auto& entry : std::filesystem::directory_iterator(folder, none))
+    if (is_hand(entry.path())) names.push_back(entry.path().filename().string());
   std::sort(names.begin(), names.end());
   return names;
 }
 
+}  // namespace
+
+std::filesystem::path hand_directory(const std::string& hand) {
+  if (hand.find('/') != std::string::npos) return hand;
+  for (const auto& folder : hand_folders())
+    if (is_hand(folder / hand)) return folder / hand;
+  std::error_code none;
+  if (!hand.empty() && is_hand(hand)) return std::filesystem::absolute(hand, none);
+  return hand_folders().front() / hand;
+}
+
+std::vector<std::string> hand_names() {
+  return names_in(hand_folders().front());
+}
+
 Expected<std::filesystem::path> named_hand(const std::string& name) {
-  const auto names = hand_names();
-  if (std::find(names.begin(), names.end(), name) == names.end())
-    return fail("no hand of this name comes with us", "'" + name + "'");
-  return share_directory() / "models" / "hands" / name;
+  for (const auto& folder : hand_folders()) {
+    const auto names = names_in(folder);
+    if (std::find(names.begin(), names.end(), name) != names.end()) return folder / name;
+  }
+  return fail("no hand of this name comes with us or is the user's", "'" + name + "'");
 }
 
 std::string lab_hand() {
@@ -391,7 +414,8 @@ std::string lab_hand() {
 
 std::string hand_hint() {
   std::string names;
-  for (const std::string& name : hand_names()) names += (names.empty() ? "" : ", ") + name;
+  for (const auto& folder : hand_folders())
+    for (const std::string& name : names_in(folder)) names += (names.empty() ? "" : ", ") + name;
   return "choose one of " + names + ", or give the path of a folder";
 }
 

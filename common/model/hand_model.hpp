@@ -87,14 +87,14 @@ struct HandGate {
   std::optional<Eigen::VectorXd> lower, upper, velocity, acceleration, effort;
 };
 
-/// The folder of a hand: what has a slash is a path, anything else a name in models/hands.
+/// What has a slash is a path; a name is of ours, of data_directory()/models/hands, or of ./NAME.
 std::filesystem::path hand_directory(const std::string& hand);
 
 /// The hands that come with us, sorted: the folders in models/hands.
 std::vector<std::string> hand_names();
 
-/// The folder of a hand that somebody else names, in a message or a recording: one that comes with
-/// us, by its name alone, since a path would open any file.
+/// The folder of a hand that somebody else names, in a message or a recording: ours or the user's
+/// (data_directory()), by its name alone, since a path would open any file.
 Expected<std::filesystem::path> named_hand(const std::string& name);
 
 /// The hand of the lab that comes with us (lab.toml), for tools that read no configuration.

@@ -1,5 +1,7 @@
 #include "common/robot/gatekeeper.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <limits>
 #include <utility>
@@ -7,18 +9,15 @@
 #include "common/base/log.hpp"
 #include "common/convert/convert.hpp"
 #include "common/dds/topics.hpp"
+#include "common/robot/bounded_text.hpp"
 
 namespace prehend::robot {
 namespace {
 
-constexpr Duration patience = std::chrono::milliseconds(300);  // with silent commands
-constexpr Duration start_up = std::chrono::seconds(3);         // until some come
-constexpr Duration noticed = std::chrono::seconds(1);          // a second writer is, for so long
-constexpr Duration state_period = std::chrono::seconds(1);
-constexpr std::size_t max_counts = 32;  // idl/Robot.idl
+constexpr Duration start_up = std::chrono::seconds(3);  // until some come
+constexpr std::size_t max_counts = 32;                  // idl/Robot.idl
+constexpr std::int64_t max_buttons = 8;
 constexpr const char* target_name = "gate";
-
-constexpr const char* unled = "nobody sends robot/command; the hand stays as it is";
 
 gate::Command from_message(const v2::HandCommand& message, const dds::SampleInfo& info) {
   Pose nowhere;
@@ -33,6 +32,17 @@ gate::Command from_message(const v2::HandCommand& message, const dds::SampleInfo
                    convert::from_message(message.X_WB()).value_or(nowhere),
                    convert::from_message(message.effort())};
   return command;
+}
+
+/// Whose order it is, and for what: nobody's reply stands for another's, nor for another order.
+std::string owner_of(const v1::OperatorCommand& order, const dds::SampleInfo& info) {
+  return fmt::format("{} {:02x}", static_cast<int>(order.action()),
+                     fmt::join(info.participant, "."));
+}
+
+/// A robot that is real, unless somebody has said otherwise.
+bool wants_consent(const service::Config& config, bool real) {
+  return config.is_given("safety.deadman") ? config.flag("safety.deadman") : real;
 }
 
 gate::Limits limits_of(const model::HandModel& hand, const service::Config& config) {
@@ -53,18 +63,6 @@ gate::Limits limits_of(const model::HandModel& hand, const service::Config& conf
   return limits;
 }
 
-/// Of the lengths in the IDL.
-template <class Text>
-void put(Text& to, const std::string& from, std::size_t length) {
-  to = from.substr(0, length).c_str();
-}
-
-bool same(const v1::GateState& a, const v1::GateState& b) {
-  return a.leader() == b.leader() && a.refused() == b.refused() && a.placed() == b.placed() &&
-         a.stopped() == b.stopped() && a.consent() == b.consent() &&
-         a.stopped_by() == b.stopped_by() && a.reason() == b.reason();
-}
-
 }  // namespace
 
 Expected<std::unique_ptr<Gatekeeper>> Gatekeeper::create(service::Shell& shell,
@@ -74,11 +72,13 @@ Expected<std::unique_ptr<Gatekeeper>> Gatekeeper::create(service::Shell& shell,
   const std::string& on_stop = config.text("safety.on_stop");
   if (on_stop != "hold" && on_stop != "open")
     return wrong_use("is neither hold nor open", "safety.on_stop");
+  if (const auto button = config.integer("safety.button"); button < 0 || button > max_buttons)
+    return wrong_use("is no button", "safety.button", "1 to 8; 0: none gives consent");
   auto gate = gate::CommandGate::create(hand,
                                         {.hand = name,
                                          .max_age = seconds(config.number("gate.max_age")),
                                          .max_silence = seconds(config.number("gate.max_silence")),
-                                         .deadman = config.flag("safety.deadman")},
+                                         .deadman = wants_consent(config, robot.is_real)},
                                         limits_of(hand, config), robot.where);
   if (!gate) {
     gate.error().exit = exit_wrong_use;
@@ -100,10 +100,12 @@ Gatekeeper::Gatekeeper(service::Shell& shell, const model::HandModel& hand, cons
       opens_(shell.config().text("safety.on_stop") == "open"),
       states_(shell.publish(dds::robot_gate)),
       replies_(shell.publish(dds::operator_reply)),
-      last_obeyed_(shell.now() + start_up) {
+      last_obeyed_(shell.now() + start_up),
+      glove_(shell.config().text("glove.name")),
+      button_(shell.config().integer("safety.button")) {
   consented_ = gate_.has_consent(shell_.now());
   put(state_.hand(), name, 64);
-  state_.deadman(shell.config().flag("safety.deadman"));
+  state_.deadman(wants_consent(shell.config(), robot_.is_real));
   shell_.busy_while([this] { return leader_.has_value(); });
   if (shell_.config().flag("safety.start_stopped"))
     gate_.stop("safety.start_stopped", "not yet released", shell.now());
@@ -120,6 +122,11 @@ Gatekeeper::Gatekeeper(service::Shell& shell, const model::HandModel& hand, cons
                                                                const dds::SampleInfo& info) {
                      if (!info.gone) on_consent(consent, info);
                    }));
+  if (button_ != 0)
+    shell_.subscribe(dds::glove_button, std::function([this](const v1::GloveButton& button,
+                                                             const dds::SampleInfo& info) {
+                       if (!info.gone) on_button(button, info);
+                     }));
 }
 
 Gatekeeper::~Gatekeeper() {
@@ -160,7 +167,8 @@ void Gatekeeper::recall_stop(const std::string& name) {
   const auto stop = kept_->recall();
   if (!stop) return;
   gate_.release();  // of safety.start_stopped, which knows less
-  gate_.stop(stop->by, stop->reason, stop->since);
+  // A file may say any time; a release must be able to come after it.
+  gate_.stop(stop->by, stop->reason, std::min(stop->since, shell_.now()));
   note(audit::Event::stop, stop->by, stop->reason, shell_.now());
   log::warning("still stopped by {}{}{}; prehend release ends it", stop->by,
                stop->reason.empty() ? "" : ": ", stop->reason);
@@ -178,9 +186,10 @@ void Gatekeeper::note(audit::Event event, const std::string& who, const std::str
     shell_.status().drop("audit not written");
 }
 
-void Gatekeeper::note_refused(std::string_view reason, const gate::WriterId& writer, Time now) {
-  if (audit_ && !audit_->refuse({now, state_.hand().to_string(), audit::Event::refused,
-                                 name_of(writer), std::string(reason)}))
+void Gatekeeper::note_refused(audit::Event event, std::string_view reason,
+                              const gate::WriterId& writer, Time now) {
+  if (audit_ && !audit_->refuse(
+                    {now, state_.hand().to_string(), event, name_of(writer), std::string(reason)}))
     shell_.status().drop("audit not written");
 }
 
@@ -225,7 +234,7 @@ void Gatekeeper::count(std::string_view reason) {
 
 void Gatekeeper::refuse(gate::Refusal refusal, const dds::SampleInfo& info, Time now) {
   count(to_string(refusal));
-  note_refused(to_string(refusal), info.participant, now);
+  note_refused(audit::Event::refused, to_string(refusal), info.participant, now);
   // What is for another hand, or comes while it must not move, is no fault of the commands.
   if (refusal == gate::Refusal::another_hand || refusal == gate::Refusal::stopped ||
       refusal == gate::Refusal::no_consent)
@@ -239,9 +248,12 @@ void Gatekeeper::obey(const v2::HandCommand& message, const dds::SampleInfo& inf
   for (std::size_t i = 0; i < gate::cuts; ++i)
     if (passed.cut[i]) {
       count(to_string(static_cast<gate::Cut>(i)));
-      note_refused(to_string(static_cast<gate::Cut>(i)), info.participant, now);
+      note_refused(audit::Event::refused, to_string(static_cast<gate::Cut>(i)), info.participant,
+                   now);
     }
   if (auto obeyed = robot_.obey(message, passed.place, now); !obeyed) {
+    // The hand has not gone where the gate let it.
+    gate_.start_anew();
     count(obeyed.error().what);
     refused_ = Refused{obeyed.error().what, info.participant, now};
     return;
@@ -264,7 +276,9 @@ void Gatekeeper::on_order(const v1::OperatorCommand& order, const dds::SampleInf
     return;
   const Time now = shell_.now();
   const std::string by = service::given_by(order, shell_.writer_of(info));
-  if (const auto known = orders_.find(order.id().to_string())) return replies_.publish(*known);
+  const std::string owner = owner_of(order, info);
+  if (const auto known = orders_.find(order.id().to_string(), owner))
+    return replies_.publish(*known);
   const auto executed = execute(order, by, now);
   v1::OperatorReply reply;
   reply.id(order.id());
@@ -273,12 +287,12 @@ void Gatekeeper::on_order(const v1::OperatorCommand& order, const dds::SampleInf
   reply.done(executed.has_value());
   put(reply.message(), executed ? *executed : executed.error().message(), 255);
   // One that was refused may be given again, when clocks are known or the writer has come.
-  if (executed) orders_.add(reply);
+  if (executed) orders_.add(reply, owner);
   if (!executed) {
     shell_.status().drop("order refused");
-    // It is repeated until it expires.
+    // It is repeated until it expires. What it says beside the reason is the sender's to choose.
     if (orders_.refuse(order.id().to_string()))
-      note(audit::Event::order_refused, by, executed.error().message(), now);
+      note_refused(audit::Event::order_refused, executed.error().what, info.participant, now);
   }
   replies_.publish(reply);
   if (!shell_.lockstep()) {
@@ -295,8 +309,9 @@ Expected<std::string> Gatekeeper::execute(const v1::OperatorCommand& order, cons
   if (!shell_.lockstep())
     if (const auto meant = service::meant_now(order, by, now); !meant)
       return tl::unexpected(meant.error());
-  return order.action() == v1::ACTION_RELEASE ? release(by, argument, now)
-                                              : take_over(by, argument, now);
+  return order.action() == v1::ACTION_RELEASE
+             ? release(by, argument, from_ns(order.stamp_ns()), now)
+             : take_over(by, argument, now);
 }
 
 std::string Gatekeeper::stop(const std::string& by, const std::string& reason, Time now) {
@@ -317,7 +332,7 @@ std::string Gatekeeper::stop(const std::string& by, const std::string& reason, T
 }
 
 void Gatekeeper::fault(const std::string& reason, Time now) {
-  if (gate_.stopped()) return;
+  if (gate_.stopped()) return gate_.stop("the robot itself", reason, now);
   stop("the robot itself", reason, now);
   if (!shell_.lockstep()) {
     look_around(now);
@@ -326,13 +341,15 @@ void Gatekeeper::fault(const std::string& reason, Time now) {
 }
 
 void Gatekeeper::start_anew() {
-  if (!gate_.stopped()) gate_.release();
+  gate_.start_anew();
 }
 
 Expected<std::string> Gatekeeper::release(const std::string& by, const std::string& reason,
-                                          Time now) {
+                                          Time given, Time now) {
   if (reason.empty()) return fail("a release needs a reason", by);
   if (!gate_.stopped()) return "was not stopped";
+  if (!shell_.lockstep() && !gate_.may_release(given))
+    return fail("the release was given before the stop", by, "look again, then release anew");
   if (kept_)
     if (const auto gone = kept_->forget(); !gone)
       log::warning("the next process is stopped again: {}", gone.error().message());
@@ -362,11 +379,24 @@ Expected<std::string> Gatekeeper::take_over(const std::string& by, const std::st
 // --- consent
 
 void Gatekeeper::on_consent(const v1::OperatorConsent& consent, const dds::SampleInfo& info) {
-  if (consent.hand().to_string() != state_.hand().to_string()) return;
+  if (consent.hand().to_string() == state_.hand().to_string())
+    this->consent(consent.held(), from_ns(consent.stamp_ns()), info);
+}
+
+void Gatekeeper::on_button(const v1::GloveButton& button, const dds::SampleInfo& info) {
+  if (button.glove().to_string() != glove_) return;
+  // A recording may be played before it is known as one; a glove is heard again.
+  if (!shell_.lockstep() && !shell_.writer_of(info).starts_with("glove@")) return;
+  const auto& held = button.held();
+  consent(std::find(held.begin(), held.end(), button_) != held.end(), from_ns(button.stamp_ns()),
+          info);
+}
+
+void Gatekeeper::consent(bool held, Time stamp, const dds::SampleInfo& info) {
   // What somebody consented to then is not consent now.
   if (!shell_.lockstep() && shell_.writer_of(info).starts_with("replayer@")) return;
   const Time now = shell_.now();
-  gate_.consent(info.participant, consent.held(), from_ns(consent.stamp_ns()), now);
+  gate_.consent(info.participant, held, stamp, now);
   watch_consent(now);
 }
 
@@ -377,73 +407,6 @@ void Gatekeeper::watch_consent(Time now) {
   if (consented_ != has && state_.deadman())
     note(has ? audit::Event::consent : audit::Event::consent_end, "", "", now);
   consented_ = has;
-}
-
-// --- what is told
-
-std::string Gatekeeper::name_of(const gate::WriterId& writer) const {
-  return shell_.writer_of({.participant = writer});
-}
-
-/// That the hand holds still then is the robot's own doing.
-std::string Gatekeeper::missing(Time now) const {
-  if (const auto& stop = gate_.stopped())
-    return fmt::format("stopped by {}{}{}; prehend release ends it", stop->by,
-                       stop->reason.empty() ? "" : ": ", stop->reason);
-  if (!consented_) return "the deadman is not held; prehend consent holds it";
-  const bool silent = now - last_obeyed_ > patience;
-  // At the start commands are waited for, unless some come that cannot be obeyed.
-  const bool refused = refused_ && now - refused_->at <= patience && (silent || last_obeyed_ > now);
-  if (refused)
-    return "robot/command is refused: " + refused_->why + ", of " + name_of(refused_->writer) +
-           "; the hand stays as it is";
-  if (silent) return unled;
-  const auto leading = gate_.leader(now);
-  if (leading && second_ && now - second_->at <= noticed && second_->writer != *leading)
-    return "robot/command of " + name_of(second_->writer) + " is refused, for " +
-           name_of(*leading) + " leads";
-  return {};
-}
-
-void Gatekeeper::look_around(Time now) {
-  std::string found = missing(now);
-  if (found == missing_) return;
-  missing_ = std::move(found);
-  if (missing_.empty()) return shell_.status().running();
-  log::warning("{}", missing_);
-  shell_.status().degraded(missing_);
-}
-
-void Gatekeeper::tell(Time now) {
-  v1::GateState state = state_;
-  const auto leading = gate_.leader(now);
-  put(state.leader(), leading ? name_of(*leading) : "", 127);
-  const bool second =
-      leading && second_ && now - second_->at <= noticed && second_->writer != *leading;
-  put(state.refused(), second ? name_of(second_->writer) : "", 127);
-  const auto& stop = gate_.stopped();
-  state.placed(robot_.where().has_value());
-  state.stopped(stop.has_value());
-  state.consent(state.deadman() && consented_);
-  put(state.stopped_by(), stop ? stop->by : "", 127);
-  if (stop) {
-    put(state.reason(), stop->reason, 127);
-    state.since_ns(to_ns(stop->since));
-  }
-  if (now < next_state_ && same(state, state_)) return;
-  next_state_ = now + state_period;
-  state.sequence_number(state_.sequence_number() + 1);
-  state.stamp_ns(to_ns(now));
-  state.obeyed(obeyed_);
-  state.counts().clear();
-  for (const auto& [reason, number] : counts_) {
-    v1::GateCount entry;
-    put(entry.reason(), reason, 63);
-    entry.count(number);
-    state.counts().push_back(entry);
-  }
-  state_ = state;
-  states_.publish(state_);
 }
 
 }  // namespace prehend::robot

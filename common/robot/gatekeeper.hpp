@@ -16,6 +16,7 @@
 #include "common/service/order_book.hpp"
 #include "common/service/shell.hpp"
 #include "common/service/writers.hpp"
+#include "idl/Glove.h"
 #include "idl/Robot.h"
 
 namespace prehend::robot {
@@ -27,12 +28,16 @@ struct Robot {
       obey;
   /// Where the hand is kept now; nothing as long as it may be put anywhere.
   std::function<std::optional<gate::Place>()> where;
+  /// May it still be put anywhere, because nobody has led it yet and nothing carries it?
+  std::function<bool()> is_placed = {};
   /// Stays where it is, at once; a grip keeps its squeeze.
   std::function<void()> hold;
   /// Has its base come to rest after that? Until then it is told to go nowhere.
   std::function<bool()> rests = [] { return true; };
   /// Goes there, though nobody commands it: to open while it is stopped.
   std::function<void(const gate::Place& place, Time now)> go;
+  /// Can it hurt somebody? Then it wants consent unless safety.deadman says otherwise.
+  bool is_real = false;
 };
 
 /// The gate between robot/command and a robot hand, with all that the lab hears of it: the latched
@@ -72,10 +77,15 @@ class Gatekeeper {
   void on_order(const v1::OperatorCommand& order, const dds::SampleInfo& info);
   Expected<std::string> execute(const v1::OperatorCommand& order, const std::string& by, Time now);
   std::string stop(const std::string& by, const std::string& reason, Time now);
-  Expected<std::string> release(const std::string& by, const std::string& reason, Time now);
+  /// given: when the operator did.
+  Expected<std::string> release(const std::string& by, const std::string& reason, Time given,
+                                Time now);
   Expected<std::string> take_over(const std::string& by, const std::string& name, Time now);
 
   void on_consent(const v1::OperatorConsent& consent, const dds::SampleInfo& info);
+  void on_button(const v1::GloveButton& button, const dds::SampleInfo& info);
+  /// Consent of somebody, unless it is only played.
+  void consent(bool held, Time stamp, const dds::SampleInfo& info);
   void watch_consent(Time now);
   void watch_lead(Time now);
   Expected<void> open_audit(const std::string& name);
@@ -85,7 +95,9 @@ class Gatekeeper {
   Expected<void> keep_stop();
   /// A line of the audit log, where there is one.
   void note(audit::Event event, const std::string& who, const std::string& what, Time now);
-  void note_refused(std::string_view reason, const gate::WriterId& writer, Time now);
+  /// One of perhaps very many: the first of its kind, then their number.
+  void note_refused(audit::Event event, std::string_view reason, const gate::WriterId& writer,
+                    Time now);
 
   std::string missing(Time now) const;
   void look_around(Time now);
@@ -120,6 +132,8 @@ class Gatekeeper {
   std::optional<gate::WriterId> leader_;  // as noted
   std::string leader_name_;
   bool consented_ = false;
+  std::string glove_;        // whose button is the deadman
+  std::int64_t button_ = 0;  // its number; 0: none
   std::uint64_t obeyed_ = 0;
   Time next_state_{};
 };

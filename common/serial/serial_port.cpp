@@ -34,6 +34,10 @@ bool wait_for(int handle, short events, Duration timeout, short& seen) {
   return any;
 }
 
+bool is_pseudo_terminal(const std::string& real) {
+  return real.starts_with("/dev/pts/");
+}
+
 }  // namespace
 
 Expected<SerialPort> SerialPort::open(const std::string& path, int baud) {
@@ -53,7 +57,7 @@ Expected<SerialPort> SerialPort::open(const std::string& path, int baud) {
 }
 
 Expected<void> SerialPort::open_real(const std::string& real, int baud, const std::string& hint) {
-  if (real.starts_with("/dev/pts/")) {
+  if (is_pseudo_terminal(real)) {
     handle_ = ::open(real.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
     termios settings{};
     if (handle_ < 0 || ::tcgetattr(handle_, &settings) != 0)

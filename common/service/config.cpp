@@ -113,9 +113,13 @@ Expected<void> check_environment() {
 
 namespace {
 
-using Values = std::map<std::string, Setting, std::less<>>;
+/// Where values go, and the names of those that were given.
+struct Values {
+  std::map<std::string, Setting, std::less<>>& values;
+  std::set<std::string, std::less<>>& given;
+};
 
-Expected<void> set(Values& values, std::string_view name, const toml::node& node,
+Expected<void> set(const Values& values, std::string_view name, const toml::node& node,
                    const std::string& where) {
   const ConfigKey* key = find_key(name);
   if (!key) return fail(fmt::format("unknown key {}", name), where, nearest_key(name));
@@ -123,12 +127,13 @@ Expected<void> set(Values& values, std::string_view name, const toml::node& node
   if (!value)
     return fail(fmt::format("{} must be {}", name, type_name(key->fallback)), where,
                 std::string(key->help));
-  values.find(name)->second = std::move(*value);
+  values.values.find(name)->second = std::move(*value);
+  values.given.emplace(name);
   return {};
 }
 
 /// A value as it stands behind a key in TOML; bare words are texts.
-Expected<void> set_from_text(Values& values, std::string_view name, const std::string& text,
+Expected<void> set_from_text(const Values& values, std::string_view name, const std::string& text,
                              const std::string& where) {
   const ConfigKey* key = find_key(name);
   if (!key) return fail(fmt::format("unknown key {}", name), where, nearest_key(name));
@@ -143,7 +148,7 @@ Expected<void> set_from_text(Values& values, std::string_view name, const std::s
   }
 }
 
-Expected<void> set_from_file(Values& values, const std::filesystem::path& file) {
+Expected<void> set_from_file(const Values& values, const std::filesystem::path& file) {
   const auto place = [&](const toml::node& node) {
     return fmt::format("{}:{}", file.string(), node.source().begin.line);
   };
@@ -168,7 +173,7 @@ Expected<void> set_from_file(Values& values, const std::filesystem::path& file) 
   return {};
 }
 
-Expected<void> set_from_environment(Values& values) {
+Expected<void> set_from_environment(const Values& values) {
   for (const ConfigKey& key : config_keys()) {
     const std::string variable = variable_of(key);
     if (const char* text = std::getenv(variable.c_str()))
@@ -178,7 +183,7 @@ Expected<void> set_from_environment(Values& values) {
 }
 
 /// text: «table.key=value».
-Expected<void> set_from_override(Values& values, const std::string& text) {
+Expected<void> set_from_override(const Values& values, const std::string& text) {
   const std::size_t equals = text.find('=');
   if (equals == std::string::npos) return fail("must be table.key=value", "--set " + text);
   return set_from_text(values, text.substr(0, equals), text.substr(equals + 1), "--set " + text);
@@ -192,11 +197,12 @@ Expected<Config> Config::load(const std::filesystem::path& file,
   std::error_code nowhere;  // a file without a name is refused when it is read
   config.directory_ = std::filesystem::absolute(file, nowhere).parent_path();
   for (const ConfigKey& key : config_keys()) config.values_.emplace(key.name, key.fallback);
+  const Values values{config.values_, config.given_};
   auto done = check_environment();
-  if (done) done = set_from_file(config.values_, file);
-  if (done) done = set_from_environment(config.values_);
+  if (done) done = set_from_file(values, file);
+  if (done) done = set_from_environment(values);
   for (const std::string& text : overrides)
-    if (done) done = set_from_override(config.values_, text);
+    if (done) done = set_from_override(values, text);
   if (!done) return tl::unexpected(done.error());
   return config;
 }
@@ -208,6 +214,9 @@ const T& get(const std::map<std::string, Setting, std::less<>>& values, std::str
 }
 }  // namespace
 
+bool Config::is_given(std::string_view key) const {
+  return given_.contains(key);
+}
 bool Config::flag(std::string_view key) const {
   return get<bool>(values_, key);
 }
@@ -249,7 +258,8 @@ std::map<std::string, std::string> Config::texts() const {
     }
   };
   std::map<std::string, std::string> texts;
-  for (const auto& [key, value] : values_) texts.emplace(key, std::visit(ToText{}, value));
+  for (const auto& [key, value] : values_)
+    if (key != "safety.deadman" || is_given(key)) texts.emplace(key, std::visit(ToText{}, value));
   return texts;
 }
 

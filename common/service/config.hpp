@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
+#include <set>
 #include <string>
 #include <string_view>
 #include <variant>
@@ -42,15 +43,19 @@ class Config {
   const std::string& text(std::string_view key) const;
   const std::vector<double>& numbers(std::string_view key) const;
   const std::vector<std::string>& names(std::string_view key) const;
+  /// Has somebody set it? Else it has its default.
+  bool is_given(std::string_view key) const;
   /// A path; a relative one is meant from the folder of the file, "share:x" from share_directory().
   /// Empty stays empty.
   std::filesystem::path path(std::string_view key) const;
   /// Every key with its value as the text of an override, so that another process, perhaps another
-  /// day, can be given the same configuration.
+  /// day, can be given the same configuration. safety.deadman is there only where it was given: its
+  /// default depends on the robot.
   std::map<std::string, std::string> texts() const;
 
  private:
   std::map<std::string, Setting, std::less<>> values_;
+  std::set<std::string, std::less<>> given_;
   std::filesystem::path directory_;
 };
 

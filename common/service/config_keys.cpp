@@ -55,6 +55,7 @@ const std::vector<ConfigKey>& config_keys() {
       {"glove.range", std::int64_t{72}, "inches, of the tracker: 36, 72 or 144"},
       {"glove.hemisphere", Text("left"),
        "side of the transmitter where the hand is: front, rear, left, right, upper or lower"},
+      {"glove.buttons", false, "the tracker has a mouse; its buttons go to glove/button"},
       {"glove.file", Text(""), "recording to play"},
       {"glove.rate", 30.0, "Hz, of the synthetic hand, a joint-angle glove, and in point mode"},
 
@@ -76,9 +77,9 @@ const std::vector<ConfigKey>& config_keys() {
        "jpeg that always shows the last picture and what is in it"},
       {"recognition.accept", 0.7, "least probability of a published detection"},
 
-      {"mapping.hand", Text(""), "kind of robot hand: a folder in models/hands, or a path"},
+      {"mapping.hand", Text(""), "kind of robot hand: the name of a folder, or its path"},
       {"mapping.hand_name", Text("hand"), "key of robot/command"},
-      {"mapping.model", Text(""), "trained mapping model; empty: share:trained/HAND.mapping"},
+      {"mapping.model", Text(""), "trained mapping model; empty: that of the hand"},
       {"mapping.intelligent", true, "let detections improve the mapping"},
       {"mapping.placement", true, "let them correct the hand's placement as well"},
       {"mapping.clutch_speed", 0.1, "m/s, at which the hands come together after an interruption"},
@@ -87,7 +88,7 @@ const std::vector<ConfigKey>& config_keys() {
       {"mapping.mode", Text(""),
        "how fingers are answered, see services/mapping; empty: by the trained network"},
 
-      {"simulation.hand", Text(""), "kind of robot hand: a folder in models/hands, or a path"},
+      {"simulation.hand", Text(""), "kind of robot hand: the name of a folder, or its path"},
       {"simulation.hand_name", Text("hand"), "key of robot/command"},
       {"simulation.rate", 500.0, "Hz, physics steps"},
       {"simulation.state_rate", 100.0, "Hz, robot/state and object/state"},
@@ -103,7 +104,8 @@ const std::vector<ConfigKey>& config_keys() {
       {"demonstration.accept", 0.3, "least probability of a grasp that is named"},
 
       {"robot.device", Text("barrett"), "the robot at the end of the wire, see services/robot"},
-      {"robot.port", Text(""), "its serial port"},
+      {"robot.port", Text(""), "its serial port, or its controller in ROS 2"},
+      {"robot.network", Text("laptop"), "how nodes of ROS 2 are reached: laptop or lan"},
       {"robot.baud", std::int64_t{0}, "bits per second on that port; 0: as the robot is sold"},
       {"robot.wiring", Text(""),
        "which servo moves what; empty: dynamixel.toml in the folder of mapping.hand"},
@@ -122,6 +124,10 @@ const std::vector<ConfigKey>& config_keys() {
       {"robot.X_EB", Numbers{},
        "how the arm's end holds the hand's base; empty: on its flange, bent by robot.bracket"},
       {"robot.bracket", 0.7, "rad, by which a bracket bends the hand on the flange, 0 to 1.2"},
+
+      {"ros.trajectories", Text("joint_trajectory"),
+       "the topic of ROS 2 by whose trajectories prehend-ros-lead leads the hand"},
+      {"ros.network", Text("laptop"), "how nodes that lead are reached: laptop or lan"},
 
       {"gate.max_age", 0.2, "s: robots refuse commands that are older, or as far ahead"},
       {"gate.max_silence", 0.3, "s without a command, after which another writer may lead"},
@@ -145,6 +151,10 @@ const std::vector<ConfigKey>& config_keys() {
       {"console.viewers", Names{},
        "origins of other sites that may look, as https://app.foxglove.dev; none gives orders"},
 
+      {"teacher.folder", Text(""),
+       "where what is taught is kept; empty: prehend/taught in the user's data folder"},
+      {"teacher.users", std::int64_t{60}, "synthetic people that are learnt from beside the user"},
+
       {"metrics.address", Text("127.0.0.1"),
        "where `prehend metrics` answers; 0.0.0.0: at every interface"},
       {"metrics.port", std::int64_t{9478}, "its TCP port; 0: any that is free"},
@@ -156,7 +166,9 @@ const std::vector<ConfigKey>& config_keys() {
       {"safety.on_stop", Text("hold"),
        "what the fingers do at a stop: hold (keep their squeeze) or open; the base stays"},
       {"safety.deadman", false,
-       "robots move only while operator/consent is held (prehend consent)"},
+       "robots move only while somebody holds consent (prehend consent); not set: real ones do so"},
+      {"safety.button", std::int64_t{0},
+       "number of the button of glove.name that gives consent while it is held; 0: none"},
       {"safety.audit", Text(""),
        "folder where robots log who led and stopped them; empty: nowhere"},
       {"safety.state", Text(""),

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
+#include "common/base/time_between.hpp"
 
 namespace prehend::service {
 namespace {
@@ -16,8 +16,8 @@ std::string given_by(const v1::OperatorCommand& order, const std::string& writer
 }
 
 Expected<void> meant_now(const v1::OperatorCommand& order, const std::string& by, Time now) {
-  const Duration age = now - from_ns(order.stamp_ns());
-  if (std::chrono::abs(age) > max_age)
+  const Duration age = between(from_ns(order.stamp_ns()), now);
+  if (age > max_age || age < -max_age)
     return fail(fmt::format("the order is of {:.0f} s ago", to_seconds(age)), by);
   if (by.starts_with("replayer@")) return fail("an order that is played is not obeyed", by);
   return {};

@@ -4,6 +4,7 @@
 #include <deque>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "common/base/error.hpp"
 #include "common/base/time.hpp"
@@ -20,16 +21,18 @@ std::string given_by(const v1::OperatorCommand& order, const std::string& writer
 Expected<void> meant_now(const v1::OperatorCommand& order, const std::string& by, Time now);
 
 /// Replies to the last orders: one that comes again is answered as before and not executed again.
-/// Whoever gives an order may so repeat it until it is answered.
+/// Whoever gives an order may so repeat it until it is answered. `whose` tells orders of one id
+/// apart, where nobody shall be able to answer, or to use up, the order of another.
 class OrderBook {
  public:
-  std::optional<v1::OperatorReply> find(const std::string& id) const {
-    for (const v1::OperatorReply& reply : replies_)
-      if (reply.id().to_string() == id) return reply;
+  std::optional<v1::OperatorReply> find(const std::string& id,
+                                        const std::string& whose = {}) const {
+    for (const auto& [owner, reply] : replies_)
+      if (reply.id().to_string() == id && owner == whose) return reply;
     return std::nullopt;
   }
-  void add(const v1::OperatorReply& reply) {
-    replies_.push_back(reply);
+  void add(const v1::OperatorReply& reply, const std::string& whose = {}) {
+    replies_.emplace_back(whose, reply);
     if (replies_.size() > max_kept) replies_.pop_front();
   }
   /// Is it refused for the first time?
@@ -42,7 +45,7 @@ class OrderBook {
 
  private:
   static constexpr std::size_t max_kept = 64;
-  std::deque<v1::OperatorReply> replies_;
+  std::deque<std::pair<std::string, v1::OperatorReply>> replies_;
   std::deque<std::string> refused_;
 };
 

@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "common/base/time_between.hpp"
 #include "common/dds/participant.hpp"
 #include "common/service/clock_sync.hpp"
 #include "common/service/config.hpp"
@@ -168,12 +169,12 @@ class Shell::Listener : public eprosima::fastdds::dds::DataReaderListener {
 template <class T>
 void Shell::to_our_clock(dds::Sample<T>& sample) const {
   const ClockSync::Ahead by = ahead(sample.info);
-  sample.info.sent -= by.sent;
+  sample.info.sent = moved(sample.info.sent, by.sent);
   if (by.stamps == Duration::zero()) return;
-  sample.data.stamp_ns(sample.data.stamp_ns() - by.stamps.count());
+  sample.data.stamp_ns(to_ns(moved(from_ns(sample.data.stamp_ns()), by.stamps)));
   if constexpr (requires { sample.data.origin_ns(); })
     if (sample.data.origin_ns() != 0)
-      sample.data.origin_ns(sample.data.origin_ns() - by.stamps.count());
+      sample.data.origin_ns(to_ns(moved(from_ns(sample.data.origin_ns()), by.stamps)));
 }
 
 template <class P>

@@ -43,7 +43,7 @@ Watchdog::~Watchdog() {
 
 void Watchdog::watch() {
   const sigset_t waited = stop_signals();
-  const timespec while_waiting{0, 500'000'000};
+  const timespec while_waiting{0, 250'000'000};
   dds::DeadlockWatchdog deadlock;
   while (!left_) {
     if (sigtimedwait(&waited, nullptr, &while_waiting) > 0) {

@@ -17,6 +17,8 @@ class Keyboard {
   Keyboard(const Keyboard&) = delete;
   Keyboard& operator=(const Keyboard&) = delete;
 
+  /// False: nobody will ever press a key here.
+  bool is_there() const { return before_.has_value(); }
   /// The next key that was pressed: a character or a Key.
   std::optional<int> key();
 

@@ -1,11 +1,11 @@
 // What the console costs: a lab of 40 bodies that move at 60 Hz is watched by clients of this
 // process.
 //
-//   benchmark_console [--seconds S] [--lab] [--visits S] [--hold S]
+//   benchmark_console [--seconds S] [--lab] [--turns N] [--visits S] [--hold S]
 //
-// --lab: what 10 clients add to the latency from glove to world, with and without them in eight
-// turns. The lab tells the latency of its last 1024 frames, so a turn is to last longer than these:
-// 40 s.
+// --lab: what 10 clients add to the latency from glove to world, with and without them in four
+// turns, or more. The lab tells the latency of its last 1024 frames, so a turn is to last longer
+// than these: 35 s, so all of it not quite three minutes.
 // --visits: only the memory, while 50 clients at a time come and go that long.
 // --hold: prints the address and moves bodies and a hand that long, for who wants to look.
 // A floor is measured beside each figure: what the machine takes at that time to hand as many bytes
@@ -329,7 +329,7 @@ ordered_json come_and_go(const Console& console, double seconds) {
 }
 
 /// Median of the world's own p50 of «glove to accepted», with ten clients and without, in turns.
-ordered_json in_a_lab(double seconds, const std::filesystem::path& folder) {
+ordered_json in_a_lab(double seconds, int turns, const std::filesystem::path& folder) {
   const Place place;
   service::Lab lab((share_directory() / "lab.toml").string(),
                    {"lab.rig=" + place.rig, fmt::format("lab.domain={}", place.domain),
@@ -343,7 +343,7 @@ ordered_json in_a_lab(double seconds, const std::filesystem::path& folder) {
   for (const char* name : {"simulation", "mapping", "glove"})
     if (const auto started = lab.start_service(name); !started) give_up(started.error().message());
   std::vector<double> p50s[2], p99s[2];
-  for (int turn = -1; turn < 8; ++turn) {
+  for (int turn = -1; turn < turns; ++turn) {
     const bool watched = turn % 2 == 0;
     std::vector<std::unique_ptr<Watcher>> watchers;
     for (int i = 0; watched && i < 10; ++i)
@@ -380,18 +380,20 @@ int main(int argc, char** argv) {
   using namespace prehend;
   double seconds = 0, hold = 0, visits = 0;
   bool lab = false;
+  int turns = 4;
   for (int i = 1; i < argc; ++i) {
     const std::string_view argument = argv[i];
     if (argument == "--lab") lab = true;
     if (argument == "--seconds" && i + 1 < argc) seconds = std::atof(argv[++i]);
+    if (argument == "--turns" && i + 1 < argc) turns = std::atoi(argv[++i]);
     if (argument == "--visits" && i + 1 < argc) visits = std::atof(argv[++i]);
     if (argument == "--hold" && i + 1 < argc) hold = std::atof(argv[++i]);
   }
-  if (seconds <= 0) seconds = lab ? 40 : 8;
+  if (seconds <= 0) seconds = lab ? 35 : 8;
   const auto folder = service::TemporaryFolder::create(false);
   if (!folder) give_up(folder.error().message());
   if (lab) {
-    std::cout << in_a_lab(seconds, folder->path()).dump() << "\n";
+    std::cout << in_a_lab(seconds, std::max(turns, 2), folder->path()).dump() << "\n";
     return 0;
   }
   const Place place;

@@ -8,7 +8,9 @@
 //
 // The states come at 500 Hz, so 2 ms is what can be told apart.
 //
-//   benchmark_stop [--json] [--rounds N] [--brake M/S²]
+// With --flood another participant sends so many commands a second beside, which are refused.
+//
+//   benchmark_stop [--json] [--rounds N] [--brake M/S²] [--flood N/S]
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -121,6 +123,37 @@ void command(dds::Writer<v2::HandCommand>& writer, const std::atomic<bool>& ende
   }
 }
 
+/// Somebody else's commands, as many a second as that, in bursts every 2 ms, until it is destroyed.
+class Flood {
+ public:
+  Flood(int domain, const std::string& rig, int rate)
+      : participant_(
+            need(dds::Participant::create({.name = "flood", .domain = domain, .rig = rig}))),
+        writer_(need(participant_.writer(dds::robot_command))),
+        thread_([this, rate](const std::stop_token& stop) { send(stop, rate); }) {}
+
+ private:
+  void send(const std::stop_token& stop, int rate) {
+    v2::HandCommand message;
+    message.hand("hand");
+    message.model("barrett");
+    message.dof({0, 1, 1, 1});
+    message.X_WB(convert::to_message(make_pose(Vector3d(0.5, 0, 0.6))));
+    for (std::uint64_t i = 0; !stop.stop_requested();) {
+      for (int burst = 0; burst < rate / 500; ++burst) {
+        message.sequence_number(++i);
+        message.stamp_ns(to_ns(now()));
+        writer_.write(message);
+      }
+      std::this_thread::sleep_for(milliseconds(2));
+    }
+  }
+
+  dds::Participant participant_;
+  dds::Writer<v2::HandCommand> writer_;
+  std::jthread thread_;  // last: joined before the rest goes
+};
+
 void wait_until(const std::function<bool()>& condition, const char* what) {
   for (int i = 0; i < 20'000; ++i) {
     if (condition()) return;
@@ -153,7 +186,7 @@ void report(bool json, double brake, std::vector<double> stops, std::vector<doub
         stops.size(), p50, p99, max, speed, brake, 1e3 * speed / brake, hop50, hop99);
 }
 
-int run(bool json, int rounds, double brake) {
+int run(bool json, int rounds, double brake, int flood_rate) {
   const int domain = 20 + ::getpid() % 180;
   const std::string rig = fmt::format("stop-{}", ::getpid());
   States states;
@@ -176,6 +209,11 @@ int run(bool json, int rounds, double brake) {
   wait_until([&] { return matched(commands) && matched(orders); }, "a simulation");
   std::atomic<bool> ended = false;
   std::thread stream([&] { command(commands, ended); });
+  std::optional<Flood> flood;
+  if (flood_rate > 0) {
+    wait_until([&] { return states.is_steady(); }, "a steady motion");
+    flood.emplace(domain, rig, flood_rate);
+  }
   auto order = [&, number = 0](v1::OperatorAction action) mutable {
     v1::OperatorCommand message;
     message.id(fmt::format("order-{}", ++number).c_str());
@@ -201,6 +239,7 @@ int run(bool json, int rounds, double brake) {
   }
   ended = true;
   stream.join();
+  flood.reset();
   simulation.stop(std::chrono::seconds(5));
   std::filesystem::remove(std::filesystem::temp_directory_path() / (rig + ".log"));
   report(json, brake, stops, speeds, states.hops());
@@ -214,6 +253,7 @@ int main(int argc, char** argv) {
   bool json = false;
   int rounds = 100;
   double brake = 20;
+  int flood_rate = 0;
   for (int i = 1; i < argc; ++i) {
     const std::string_view argument = argv[i];
     if (argument == "--json") {
@@ -222,10 +262,12 @@ int main(int argc, char** argv) {
       rounds = std::max(1, std::atoi(argv[++i]));
     } else if (argument == "--brake" && i + 1 < argc) {
       brake = std::max(0.1, std::atof(argv[++i]));
+    } else if (argument == "--flood" && i + 1 < argc) {
+      flood_rate = std::max(0, std::atoi(argv[++i]));
     } else {
-      std::cerr << "benchmark_stop [--json] [--rounds N] [--brake M/S²]\n";
+      std::cerr << "benchmark_stop [--json] [--rounds N] [--brake M/S²] [--flood N/S]\n";
       return 2;
     }
   }
-  return prehend::run(json, rounds, brake);
+  return prehend::run(json, rounds, brake, flood_rate);
 }

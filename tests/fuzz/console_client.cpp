@@ -44,7 +44,29 @@ Hub make_hub() {
                       {{0, "/log", "json", "b", "jsonschema", "{}"}, true, "", ""}};
   options.parameters = {{"/robot_description", "<robot/>"}};
   options.recording = Span{1, 2};
+  options.services = services_for_orders();
   return Hub(std::move(options));
+}
+
+/// A call of one who may order is answered once; of others none gets so far.
+void call(const std::string& bytes) {
+  Hub hub = make_hub();
+  const Hub::Client viewer = hub.connect(), boss = hub.connect(true);
+  while (hub.next(boss)) {
+  }
+  hub.hear_bytes(viewer, bytes);
+  fuzz::require(hub.take_calls().empty(), "a viewer gives orders");
+  hub.hear_bytes(boss, bytes);
+  const std::vector<ServiceInfo> services = services_for_orders();
+  for (const Hub::Call& one : hub.take_calls()) {
+    const std::string action = services.at(one.asked.service).name.substr(order_services.size());
+    const auto order = read_order(action, one.asked.request);
+    if (order) fuzz::require(order->argument.size() < 128, "does not fit the contract");
+    hub.answer(one, order.map([](const Order&) { return std::string("{}"); }));
+  }
+  int answers = 0;
+  while (hub.next(boss)) ++answers;
+  fuzz::require(answers == (read_service_call(bytes) ? 1 : 0), "is not answered once");
 }
 
 void hear(const std::string& text) {
@@ -84,6 +106,10 @@ int main(int argc, char** argv) {
                          std::string("\x03\x00\x00\x00\x80\x3f\x01\x07\x06\x05\x04\x03\x02\x01"
                                      "\x00\x02\x00\x00\x00id",
                                      21));
+  // And a call of a service: the order to place an object.
+  fuzzer.seeds.push_back(fuzzer.seeds[4].substr(0, fuzzer.seeds[4].rfind('\n') + 1) +
+                         std::string("\x02\x08\0\0\0\x01\0\0\0\x04\0\0\0json", 17) +
+                         R"({"argument":"Talc","x":0.1,"y":-0.2})");
   std::string points = "[0.1,-0.2,0.3]";
   for (int i = 1; i < 21; ++i) points += ",[0.1,-0.2,0.3]";
   fuzzer.seeds.push_back(
@@ -108,6 +134,7 @@ int main(int argc, char** argv) {
     if (verdict.route == Route::socket)
       fuzz::require(asked.protocols.find(verdict.what) != std::string::npos, "was not offered");
     hear(body);
+    call(body);
     if (const auto line = hand_line(body, 1'700'000'000'000'000'000, Pose::Identity()))
       fuzz::require(nlohmann::json::parse(*line)["points_m"].size() >= 21, "is no hand");
     if (const auto consent = read_consent(body, 1'700'000'000'000'000'000))

@@ -113,7 +113,7 @@ int run(const Fuzzer& fuzzer, int argc, char** argv) {
   if (memory == MAP_FAILED) return 3;
   Shared& shared = *static_cast<Shared*>(memory);
 
-  long seconds = std::getenv("PREHEND_LONG") ? 60 : 5;
+  long seconds = std::getenv("PREHEND_LONG") ? 60 : 3;
   std::vector<std::string> files;
   for (int i = 1; i < argc; ++i) {
     const std::string argument = argv[i];

@@ -20,7 +20,7 @@ struct Fuzzer {
 };
 
 /// main() of a fuzzer: try k is made from Random(k), so that every run tries the same inputs, for
-/// 5 s, or 60 s if PREHEND_LONG is set. The target runs in a child process; if that crashes,
+/// 3 s, or 60 s if PREHEND_LONG is set. The target runs in a child process; if that crashes,
 /// throws, or needs more than 20 s for one input, the input is kept in a file that is named, and
 /// the result is 1. Also 1 when no mutated input is accepted or none refused: such a fuzzer sees
 /// nothing.

@@ -1,8 +1,10 @@
-// Damaged taxonomies of grasps: a reason, or classes whose numbers and fits are sound.
+// Damaged taxonomies of grasps and kinds of tasks: a reason, or classes whose numbers and fits are
+// sound, and tasks that have a name.
 #include "common/model/grasp_taxonomy.hpp"
 
 #include <cmath>
 
+#include "common/model/task_kinds.hpp"
 #include "tests/fuzz/fuzz.hpp"
 #include "tests/fuzz/mutation.hpp"
 
@@ -10,11 +12,19 @@ using namespace prehend;
 
 int main(int argc, char** argv) {
   fuzz::Fuzzer fuzzer;
-  fuzzer.seeds = {fuzz::read_file(PREHEND_SOURCE "/common/models/grasps/taxonomy.toml")};
+  fuzzer.seeds = {fuzz::read_file(PREHEND_SOURCE "/common/models/grasps/taxonomy.toml"),
+                  fuzz::read_file(PREHEND_SOURCE "/common/models/tasks/tasks.toml")};
   fuzzer.mutate = [](Random& random, std::string text) {
     return fuzz::mutate_text(random, std::move(text), fuzz::mutate_lines);
   };
   fuzzer.target = [](const std::string& text) {
+    const auto tasks = model::TaskKinds::parse(text);
+    fuzz::require(tasks || !tasks.error().what.empty(), "refused without a reason");
+    if (tasks) {
+      for (const model::TaskKind& kind : tasks->kinds())
+        fuzz::require(tasks->of_task(kind.name) != nullptr, "a kind that no task is of");
+      return true;
+    }
     const auto taxonomy = model::GraspTaxonomy::parse(text);
     fuzz::require(taxonomy || !taxonomy.error().what.empty(), "refused without a reason");
     if (!taxonomy) return false;

@@ -264,6 +264,107 @@ TEST_F(Console, WhoTakesNothingHarmsNobody) {
   EXPECT_TRUE(missed);
 }
 
+/// The bytes of a service's call, as a client of the protocol writes them.
+std::string call_bytes(std::uint32_t service, std::uint32_t call, const std::string& request) {
+  std::string bytes = "\x02";
+  for (const std::uint32_t number : {service, call, 4U})
+    for (int shift = 0; shift < 32; shift += 8) bytes += static_cast<char>(number >> shift & 0xffU);
+  return bytes + "json" + request;
+}
+
+// Orders of other programs than the page: services of the WebSocket, for those with its token.
+// Long: that none of the refused calls came is seen by what comes first.
+TEST_F(Console, OrdersAreServicesForThoseWithThePagesToken) {
+  auto orders = reader(dds::operator_command);
+  auto replies = writer(dds::operator_reply);
+  start_console();
+  meet(replies);
+  ASSERT_TRUE(hears_somebody(orders));
+  const std::string good = "/?orders=" + token(), protocol = "foxglove.sdk.v1";
+  const auto advertised = [](WebClient& client,
+                             double limit_s) -> std::map<std::string, std::uint32_t> {
+    const auto told = client.hear_until(limit_s, [](const WebClient::Message& message) {
+      return message.bytes.find("\"advertiseServices\"") != std::string::npos;
+    });
+    std::map<std::string, std::uint32_t> ids;
+    if (!told) return ids;
+    const json said = json::parse(told->bytes);
+    for (const json& service : said.at("services"))
+      ids[service["name"].get<std::string>()] = service["id"].get<std::uint32_t>();
+    return ids;
+  };
+  const std::string call = call_bytes(0, 1, R"({"argument":"not allowed"})");
+  const auto refused = [&](WebClient& client) {
+    client.say_bytes(call);
+    return client
+        .hear_until(20,
+                    [](const WebClient::Message& message) {
+                      return message.bytes.find("viewers only look") != std::string::npos;
+                    })
+        .has_value();
+  };
+  // Without the token, with a wrong one: they look, and their calls end here.
+  for (const char* target : {"/", "/?orders=guess"}) {
+    WebClient viewer(port_, protocol, "", target);
+    ASSERT_TRUE(viewer.open()) << viewer.answer();
+    EXPECT_TRUE(refused(viewer)) << target;
+  }
+  EXPECT_TRUE(WebClient(port_, protocol, "Origin: https://evil.example\r\n", good)
+                  .answer()
+                  .starts_with("HTTP/1.1 403 "));
+
+  WebClient client(port_, protocol, "", good);
+  const auto ids = advertised(client, 20);
+  ASSERT_TRUE(ids.contains("/operator/mode"));
+  const auto answer = [&](std::uint32_t number) {
+    return client.hear_until(20, [&](const WebClient::Message& message) {
+      if (message.binary) return message.bytes.starts_with(std::string("\x03"));
+      const json said = json::parse(message.bytes);
+      return said["op"] == "serviceCallFailure" && said["callId"] == number;
+    });
+  };
+  // Nobody executes it: that is the answer. The first order that comes is this one, none of those
+  // before.
+  std::optional<v1::OperatorCommand> order;
+  std::uint32_t number = 0;
+  ASSERT_TRUE(eventually(30, [&] {
+    client.say_bytes(call_bytes(ids.at("/operator/mode"), ++number, R"({"argument":"direct"})"));
+    order = hear<v1::OperatorCommand>(orders, 1, [](const auto&) { return true; });
+    return order.has_value();
+  }));
+  EXPECT_EQ(order->argument().to_string(), "direct");
+  EXPECT_EQ(order->action(), v1::ACTION_SET_MODE);
+  const auto late = answer(number);
+  ASSERT_TRUE(late);
+  EXPECT_EQ(json::parse(late->bytes)["message"], "nobody answered within 3 s");
+
+  // What is said of it is its answer: that it is done, or why not.
+  for (const bool done : {true, false}) {
+    client.say_bytes(
+        call_bytes(ids.at("/operator/mode"), ++number, R"({"argument":"intelligent"})"));
+    order = hear<v1::OperatorCommand>(
+        orders, 20, [](const auto& one) { return one.argument().to_string() == "intelligent"; });
+    ASSERT_TRUE(order);
+    v1::OperatorReply reply;
+    reply.id(order->id());
+    reply.service("mapping");
+    reply.done(done);
+    reply.message(done ? "intelligent" : "not now");
+    replies.write(reply);
+    const auto said = answer(number);
+    ASSERT_TRUE(said);
+    EXPECT_EQ(said->binary, done) << said->bytes;
+    EXPECT_NE(said->bytes.find(done ? R"("message":"intelligent")" : "mapping: not now"),
+              std::string::npos)
+        << said->bytes;
+  }
+  client.say_bytes(
+      call_bytes(ids.at("/operator/place"), ++number, R"({"argument":"Talc","x":9,"y":0})"));
+  const auto wrong = answer(number);
+  ASSERT_TRUE(wrong);
+  EXPECT_NE(wrong->bytes.find("beside the table"), std::string::npos) << wrong->bytes;
+}
+
 /// Where a glove would listen.
 class Datagrams {
  public:

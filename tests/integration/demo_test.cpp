@@ -1,61 +1,14 @@
-// The main job, as a user runs it: `prehend demo` with all services as processes.
+// `prehend demo` where something is missing, wrong or ends early, and recordings as gloves.
 #include <csignal>
-#include <nlohmann/json.hpp>
 #include <span>
 
-#include "tests/integration/rig.hpp"
+#include "tests/integration/demo_rig.hpp"
 #include "tests/support/shared_data.hpp"
 
 namespace prehend::integration {
 namespace {
 
 using nlohmann::json;
-
-class Demo : public Rig {
- protected:
-  /// The demonstration has 45 s, and some more to start and stop processes.
-  Answer demo(Strings arguments) {
-    arguments.insert(arguments.begin(), {"demo", "--json", "--domain", std::to_string(domain_)});
-    return run("prehend", arguments, 55);
-  }
-};
-
-class DemoOfSeed : public Demo, public testing::WithParamInterface<const char*> {};
-
-TEST_P(DemoOfSeed, HoldsTheRightObjectIntelligently) {
-  const Answer answer = demo({"--seed", GetParam()});
-  ASSERT_EQ(answer.exit_code, 0) << answer.output << answer.log;
-  const json document = json::parse(answer.output);
-  EXPECT_EQ(document["grasp"]["held"], true);
-  EXPECT_GT(document["grasp"]["epsilon"].get<double>(), 0);
-  EXPECT_GE(document["grasp"]["contacts"].get<int>(), 2);
-  EXPECT_EQ(document["mapping"]["mode"], "intelligent");
-  EXPECT_EQ(document["mapping"]["hand"], "barrett");
-  EXPECT_EQ(document["object"]["name"], document["target"]);
-  EXPECT_LT(document["object"]["position_error_m"].get<double>(), 0.02);
-  EXPECT_EQ(document["glove"]["device"], "nest_of_birds");
-  EXPECT_GT(document["glove"]["frames"].get<int>(), 30);
-  EXPECT_GT(document["latency_ms"]["p50"].get<double>(), 0);
-  EXPECT_GE(document["latency_ms"]["p99"].get<double>(),
-            document["latency_ms"]["p50"].get<double>());
-}
-
-INSTANTIATE_TEST_SUITE_P(BoxAndCylinder, DemoOfSeed, testing::Values("1", "2"));
-
-// Other hands than the first one: DLR's closed on nothing for a while, since its fingers met the
-// table, and of a jaw with one drive no closure was ever reported.
-class DemoOfHand : public Demo, public testing::WithParamInterface<const char*> {};
-
-TEST_P(DemoOfHand, HoldsTheObject) {
-  const Answer answer = demo({"--seed", "1", "--hand", GetParam()});
-  ASSERT_EQ(answer.exit_code, 0) << answer.output << answer.log;
-  const json document = json::parse(answer.output);
-  EXPECT_EQ(document["grasp"]["held"], true);
-  EXPECT_EQ(document["mapping"]["mode"], "intelligent");
-  EXPECT_EQ(document["mapping"]["hand"], GetParam());
-}
-
-INSTANTIATE_TEST_SUITE_P(Others, DemoOfHand, testing::Values("dlr", "parallel_jaw"));
 
 TEST_F(Demo, WithoutRecognitionItMapsDirectly) {
   const Answer answer = demo({"--seed", "1", "--without", "recognition"});
@@ -66,20 +19,6 @@ TEST_F(Demo, WithoutRecognitionItMapsDirectly) {
   EXPECT_EQ(document["mapping"]["weight"], 0);
   EXPECT_EQ(answer.exit_code, document["grasp"]["held"].get<bool>() ? 0 : 1);
 }
-
-// The same grasp through devices that have nothing in common but hand/posture.
-class DemoOfDevice : public Demo, public testing::WithParamInterface<const char*> {};
-
-TEST_P(DemoOfDevice, HoldsTheObject) {
-  const Answer answer = demo({"--seed", "1", "--glove", GetParam()});
-  ASSERT_EQ(answer.exit_code, 0) << answer.output << answer.log;
-  const json document = json::parse(answer.output);
-  EXPECT_EQ(document["grasp"]["held"], true);
-  EXPECT_EQ(document["glove"]["device"], GetParam());
-  EXPECT_GT(document["glove"]["frames"].get<int>(), 30);
-}
-
-INSTANTIATE_TEST_SUITE_P(Emulated, DemoOfDevice, testing::Values("joint_glove", "landmarks"));
 
 // One of each format; all of them with --long. Nobody in them reaches for anything, so what counts
 // is that every frame is played and the grasp judged.
@@ -131,6 +70,24 @@ TEST_F(Demo, LeavesNoProcessBehind) {
   const auto exit = process.wait(seconds(15));
   ASSERT_TRUE(exit) << "it does not end";
   EXPECT_EQ(exit->code, 1);
+  EXPECT_TRUE(processes_with(rig).empty());
+}
+
+// The page has buttons for teaching: somebody is there whom they speak to, and goes with the rest.
+TEST_F(Demo, WithAPageThereIsATeacher) {
+  service::Process process =
+      start_program("prehend", {"demo", "--watch", "--domain", std::to_string(domain_), "--set",
+                                "console.port=0", "--set", "teacher.folder=" + folder_.string()});
+  const std::string rig = "lab.rig=demo-" + std::to_string(process.pid()) + "-";
+  ASSERT_TRUE(eventually(30, [&] {
+    const auto teachers = processes_with(program("prehend-teacher"));
+    const auto here = processes_with(rig);
+    return std::any_of(here.begin(), here.end(), [&](pid_t one) {
+      return std::find(teachers.begin(), teachers.end(), one) != teachers.end();
+    });
+  }));
+  process.signal(SIGINT);
+  ASSERT_TRUE(process.wait(seconds(15))) << "it does not end";
   EXPECT_TRUE(processes_with(rig).empty());
 }
 

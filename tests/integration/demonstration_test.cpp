@@ -10,11 +10,14 @@
 #include "common/model/placement.hpp"
 #include "services/demonstration/files/task_file.hpp"
 #include "tests/integration/rig.hpp"
+#include "tests/integration/shown_hand.hpp"
 
 namespace prehend::integration {
 namespace {
 
 using nlohmann::json;
+
+constexpr const char* glove_name = "glove";
 
 class DemonstrationLab : public Rig {
  protected:
@@ -101,6 +104,69 @@ TEST_F(DemonstrationLab, WhatIsWrongIsSaidInOneLineAndNothingIsLost) {
             std::string::npos);
   EXPECT_NE(said({"--end"}).find("no hand was seen"), std::string::npos);
   EXPECT_FALSE(std::filesystem::exists(std::filesystem::path(tasks()) / "TEA.task"));
+}
+
+// Pressed once it begins, pressed again it ends; another button does nothing.
+TEST_F(DemonstrationLab, TheTrackersButtonBeginsAndEnds) {
+  auto service = start("demonstration", sets());
+  wait_for("demonstration");
+  auto replies = reader(dds::operator_reply);
+  auto buttons = writer(dds::glove_button);
+  auto shown =
+      start_program("prehend", with_lab({"demonstrate", "--name", "TEA", "--button", "2"}));
+  meet(buttons);
+  const auto say = [&](const std::vector<std::uint8_t>& held) {
+    v1::GloveButton message;
+    message.glove(glove_name);
+    message.stamp_ns(now_ns());
+    message.held(held);
+    buttons.write(message);
+    std::this_thread::sleep_for(std::chrono::milliseconds(30));
+  };
+  for (int i = 0; i < 5; ++i) {
+    say({});
+    say({1});
+  }
+  EXPECT_TRUE(replies.take().empty()) << "that is another button";
+  ASSERT_TRUE(eventually(30, [&] {
+    say({1});
+    say({1, 2});
+    return shown.exit().has_value();
+  }));
+  EXPECT_EQ(shown.exit()->code, 1) << "no hand was there to show anything";
+  std::vector<std::string> said;
+  for (const auto& sample : replies.take())
+    if (said.empty() || said.back() != sample.data.message().to_string())
+      said.push_back(sample.data.message().to_string());
+  ASSERT_EQ(said.size(), 2u);
+  EXPECT_EQ(said[0], "watching TEA");
+  EXPECT_NE(said[1].find("no hand was seen"), std::string::npos) << said[1];
+}
+
+// Two gloves of one name: the lab goes on with the first, and says so in one line.
+TEST_F(DemonstrationLab, ASecondHandIsNotFollowedAndTheLabSaysSo) {
+  auto service = start("demonstration", sets());
+  wait_for("demonstration");
+  auto hand = writer(dds::hand_posture);
+  meet(hand);
+  auto other_lab = dds::Participant::create(
+      {.name = "other", .domain = domain_, .rig = name_, .network = network_});
+  ASSERT_TRUE(other_lab);
+  auto other = other_lab->writer(dds::hand_posture);
+  ASSERT_TRUE(other);
+  meet(*other);
+  std::uint64_t frame = 0;
+  std::string line;
+  EXPECT_TRUE(eventually(30, [&] {
+    hand.write(shown_hand({}, ++frame));
+    other->write(shown_hand({}, frame));
+    for (const auto& sample : statuses_.take())
+      if (!sample.info.gone && sample.data.state() == v1::STATE_DEGRADED)
+        line = sample.data.message().to_string();
+    return !line.empty();
+  }));
+  EXPECT_EQ(line, "a second hand is shown; the first one is followed");
+  EXPECT_FALSE(service.exit());
 }
 
 TEST_F(DemonstrationLab, ATaskThatCannotBeDoneMovesNothing) {

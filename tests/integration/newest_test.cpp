@@ -7,7 +7,6 @@
 
 #include "common/dds/raw.hpp"
 #include "tests/integration/fault_rig.hpp"
-#include "tests/support/delivery.hpp"
 
 namespace prehend::integration {
 namespace {
@@ -51,7 +50,6 @@ class Newest : public testing::Test {
  protected:
   void SetUp() override {
     if (const auto why = Hosts::unavailable()) GTEST_SKIP() << *why;
-    test::deliver_within_process(false);  // both are in this process
     hosts_.emplace();
     for (const char* name : {"here", "there"}) hosts_->add(name);
     for (std::size_t i = 0; i < 2; ++i)
@@ -66,7 +64,6 @@ class Newest : public testing::Test {
   void TearDown() override {
     lines_.clear();
     for (auto& end : ends_) end.reset();
-    test::deliver_within_process(true);
   }
 
   int domain_ = static_cast<int>(now_ns() / 1000 % 200);

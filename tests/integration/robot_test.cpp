@@ -1,8 +1,11 @@
 // The robot service with an emulated BarrettHand at the end of a pseudo-terminal: real processes,
 // the real protocol, and what goes wrong with both.
+#include <sys/stat.h>
+
 #include <csignal>
 #include <nlohmann/json.hpp>
 
+#include "common/base/file_text.hpp"
 #include "common/convert/convert.hpp"
 #include "tests/integration/rig.hpp"
 
@@ -21,7 +24,7 @@ class Robot : public Rig {
     return process;
   }
   Strings settings(Strings more = {}) const {
-    more.insert(more.end(), {"robot.port=" + port()});
+    more.insert(more.end(), {"robot.port=" + port(), "safety.deadman=false"});
     return more;
   }
   void serve(const Strings& more = {}) { service_.emplace(start("robot", settings(more))); }
@@ -158,30 +161,162 @@ TEST_F(Robot, WhatMustNotMoveDoesNotHome) {
   EXPECT_TRUE(wait(30, [&] { return heard_ > 0; })) << status_.message();
 }
 
-TEST_F(Robot, ServosAreLedAndStopped) {
-  model_ = "parallel_jaw";
+// The stop that the service has kept holds for who talks to the robot without it.
+TEST_F(Robot, HomeDoesNotMoveOneThatIsStopped) {
+  emulator_.emplace(emulate());
+  serve();
+  ASSERT_TRUE(wait(30, [&] { return says("configured, not homed"); }));
+  meet(orders_);
+  order(v1::ACTION_STOP, "somebody is in the cell");
+  ASSERT_TRUE(wait(10, [&] { return gate_.stopped(); }));
+  EXPECT_EQ(service_->stop(seconds(10)).code, 0);
+  const Strings home = with_lab({"home", "--json", "--set", settings()[0]});
+  const Answer refused = run("prehend-robot-tool", home, 30);
+  EXPECT_EQ(refused.exit_code, 1) << refused.output;
+  EXPECT_NE(refused.log.find("somebody is in the cell"), std::string::npos) << refused.log;
+  const Answer check =
+      run("prehend-robot-tool", with_lab({"check", "--json", "--set", settings()[0]}), 30);
+  EXPECT_EQ(json::parse(check.output)["state"], "configured") << "it was homed";
+  // Whatever else stands in the place of the stop is one, and nobody waits for it.
+  for (const auto& file : std::filesystem::directory_iterator(folder_ / "state")) {
+    std::filesystem::remove(file.path());
+    ASSERT_EQ(::mkfifo(file.path().c_str(), 0600), 0);
+  }
+  EXPECT_EQ(run("prehend-robot-tool", home, 30).exit_code, 1);
+}
+
+// Whoever is at the other end of a wire may be real, also where a program (socat) brings the line
+// to a pseudo-terminal. So consent is asked for, unless somebody says that it need not.
+TEST_F(Robot, WhatSpeaksAtTheEndOfAWireAsksForConsent) {
+  emulator_.emplace(emulate({"--homed"}));
+  service_.emplace(start("robot", {"robot.port=" + port()}));
+  ASSERT_TRUE(wait(30, [&] { return heard_ > 0; })) << status_.message();
+  EXPECT_TRUE(wait(30, [&] { return gate_.deadman(); }));
+  meet(commands_);
+  const double where = finger(1);
+  EXPECT_FALSE(lead(0.5, 1, [&] { return std::abs(finger(1) - where) > 0.02; }));
+  EXPECT_TRUE(wait(10, [&] { return dropped("command without consent") > 0; }))
+      << status_.message();
+  service_->stop(seconds(10));
+  service_.reset();
+  gate_ = {};
+  serve();
+  ASSERT_TRUE(wait(30, [&] { return gate_.hand().size() > 0; }));
+  EXPECT_FALSE(gate_.deadman()) << "somebody has said so";
+}
+
+/// A robot of one joint, by whatever driver: it is ready, follows, and obeys a stop until it is
+/// released.
+class RobotOfOneJoint : public Robot {
+ protected:
+  RobotOfOneJoint() { model_ = "parallel_jaw"; }
+  void check(const Strings& sets) {
+    Strings check{"check", "--json"};
+    for (const std::string& set : sets) check.insert(check.end(), {"--set", set});
+    const Answer answer = run("prehend-robot-tool", with_lab(check), 30);
+    ASSERT_EQ(answer.exit_code, 0) << answer.log;
+    EXPECT_EQ(json::parse(answer.output)["state"], "ready");
+    EXPECT_EQ(json::parse(answer.output)["joints_rad"].size(), 1u);
+  }
+  void lead_stop_and_release(const Strings& sets) {
+    service_.emplace(start("robot", sets));
+    ASSERT_TRUE(wait(30, [&] { return heard_ > 0; })) << status_.message();
+    meet(commands_);
+    ASSERT_TRUE(lead(0.02, 30, [&] { return std::abs(finger(0) - 0.02) < 5e-4; })) << finger(0);
+    order(v1::ACTION_STOP, "test");
+    ASSERT_TRUE(wait(10, [&] { return gate_.stopped(); }));
+    EXPECT_FALSE(lead(0.04, 1, [&] { return std::abs(finger(0) - 0.02) > 2e-3; }));
+    order(v1::ACTION_RELEASE, "the test goes on");
+    ASSERT_TRUE(wait(10, [&] { return !gate_.stopped(); }));
+    EXPECT_TRUE(lead(0.04, 20, [&] { return std::abs(finger(0) - 0.04) < 5e-4; })) << finger(0);
+  }
+};
+
+TEST_F(RobotOfOneJoint, ServosAreLedAndStopped) {
   emulator_.emplace(emulate({"--device", "dynamixel", "--hand", model_}));
   const Strings servos = settings({"robot.device=dynamixel", "mapping.hand=" + model_});
-  Strings check{"check", "--json"};
-  for (const std::string& set : servos) check.insert(check.end(), {"--set", set});
-  const Answer answer = run("prehend-robot-tool", with_lab(check), 30);
-  ASSERT_EQ(answer.exit_code, 0) << answer.log;
-  EXPECT_EQ(json::parse(answer.output)["state"], "ready");
-  EXPECT_EQ(json::parse(answer.output)["joints_rad"].size(), 1u);
-
-  service_.emplace(start("robot", servos));
-  ASSERT_TRUE(wait(30, [&] { return heard_ > 0; }));
-  meet(commands_);
-  ASSERT_TRUE(lead(0.02, 30, [&] { return std::abs(finger(0) - 0.02) < 5e-4; })) << finger(0);
-  order(v1::ACTION_STOP, "test");
-  ASSERT_TRUE(wait(10, [&] { return gate_.stopped(); }));
-  EXPECT_FALSE(lead(0.04, 1, [&] { return std::abs(finger(0) - 0.02) > 2e-3; }));
-  order(v1::ACTION_RELEASE, "the test goes on");
-  ASSERT_TRUE(wait(10, [&] { return !gate_.stopped(); }));
-  EXPECT_TRUE(lead(0.04, 20, [&] { return std::abs(finger(0) - 0.04) < 5e-4; })) << finger(0);
+  ASSERT_NO_FATAL_FAILURE(check(servos));
+  ASSERT_NO_FATAL_FAILURE(lead_stop_and_release(servos));
   emulator_->stop(seconds(10));
   ASSERT_TRUE(lead(0.01, 20, [&] { return gate_.stopped(); }));
   EXPECT_EQ(gate_.stopped_by().to_string(), "the robot itself");
+}
+
+/// A controller of ROS 2, in a namespace of its own, in a domain that no lab uses.
+class RobotOfRos : public RobotOfOneJoint {
+ protected:
+  RobotOfRos() { ::setenv("ROS_DOMAIN_ID", std::to_string(216 + ::getpid() % 16).c_str(), 1); }
+  ~RobotOfRos() override { ::unsetenv("ROS_DOMAIN_ID"); }
+  std::string controller() const { return "/" + name_ + "/joint_trajectory_controller"; }
+  Strings controlled() const {
+    return {"robot.device=ros2_control", "mapping.hand=" + model_, "robot.port=" + controller(),
+            "safety.deadman=false"};
+  }
+  service::Process control(Strings faults = {}) {
+    Strings arguments{"emulate", "--device", "ros2_control", "--hand", model_};
+    arguments.insert(arguments.end(), faults.begin(), faults.end());
+    arguments.insert(arguments.end(), {"--set", "robot.port=" + controller()});
+    auto process = start_program("prehend-robot-tool", with_lab(arguments));
+    EXPECT_TRUE(eventually(20, [&] {
+      return service::last_lines(process.log(), 5).find("/joint_trajectory,") != std::string::npos;
+    }));
+    return process;
+  }
+};
+
+TEST_F(RobotOfRos, AControllerOfRosIsCheckedLedStoppedAndReleased) {
+  emulator_.emplace(control());
+  ASSERT_NO_FATAL_FAILURE(check(controlled()));
+  ASSERT_NO_FATAL_FAILURE(lead_stop_and_release(controlled()));
+  EXPECT_EQ(service_->stop(seconds(10)).code, 0);
+}
+
+TEST_F(RobotOfRos, AControllerThatIsGoneStopsItUntilItIsReleased) {
+  emulator_.emplace(control({"--garbage", "0.03", "--drop-bytes", "0.03"}));
+  service_.emplace(start("robot", controlled()));
+  ASSERT_TRUE(wait(30, [&] { return heard_ > 0; })) << status_.message();
+  meet(commands_);
+  // What is no message is counted and left out.
+  EXPECT_TRUE(lead(0.02, 30, [&] {
+    return std::abs(finger(0) - 0.02) < 5e-4 && dropped("joint state is no joint state") > 0;
+  })) << finger(0);
+  emulator_->stop(seconds(10));
+  ASSERT_TRUE(lead(0.02, 20, [&] { return gate_.stopped(); }));
+  EXPECT_EQ(gate_.stopped_by().to_string(), "the robot itself");
+  EXPECT_NE(gate_.reason().to_string().find("joint states have fallen silent"), std::string::npos);
+  emulator_.emplace(control());
+  const int before = heard_;
+  ASSERT_TRUE(wait(30, [&] { return heard_ > before + 10; })) << status_.message();
+  const double where = finger(0);
+  EXPECT_FALSE(lead(0.02, 1, [&] { return std::abs(finger(0) - where) > 2e-3; }));
+  EXPECT_TRUE(gate_.stopped());
+  order(v1::ACTION_RELEASE, "it is there again");
+  EXPECT_TRUE(lead(0.02, 20, [&] { return std::abs(finger(0) - 0.02) < 5e-4; })) << finger(0);
+}
+
+TEST_F(Robot, ATwinGoesWithTheRobotButForAJointThatIsStuck) {
+  auto simulation = start("simulation", {"simulation.hand=barrett", "simulation.hand_name=twin"});
+  emulator_.emplace(emulate({"--homed", "--stuck", "finger 2", "--stuck-for", "1000"}));
+  serve();
+  ASSERT_TRUE(wait(30, [&] { return heard_ > 0; })) << status_.message();
+  meet(commands_, 2);
+  service::Process::Options options;
+  options.command = {program("prehend-robot-tool")};
+  for (const std::string& word : with_lab({"twin", "--json", "--seconds", "3", "--within", "0.15"}))
+    options.command.push_back(word);
+  options.log = folder_ / "twin.log";
+  options.output = folder_ / "twin.json";
+  auto twin = service::Process::start(options).value();
+  std::optional<service::Process::Exit> exit;
+  // Not so far that the robot itself notices.
+  ASSERT_TRUE(lead(0.35, 60, [&] { return (exit = twin.exit()).has_value(); }));
+  const std::string said = read_file(folder_ / "twin.json").value_or("");
+  ASSERT_EQ(exit->code, 1) << said << service::last_lines(folder_ / "twin.log", 3);
+  const json document = json::parse(said);
+  EXPECT_GT(document["compared"], 50);
+  for (const json& dof : document["dofs"])
+    EXPECT_EQ(dof["parted_s"].is_number(), dof["name"] == "finger 2") << document;
+  EXPECT_FALSE(gate_.stopped());
 }
 
 TEST_F(Robot, WithoutHomingItMovesNothing) {

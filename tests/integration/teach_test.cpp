@@ -21,6 +21,26 @@ class Teach : public Rig {
     std::this_thread::sleep_for(std::chrono::milliseconds(20));  // the glove's rate
   }
 
+  /// A closed index finger closes fingers 1 and 2 (here 120 degrees were taught) and not the third.
+  void expect_answers_as_taught(const std::string& model) {
+    auto commands = reader(dds::robot_command);
+    service::Process mapping =
+        start("mapping", {"mapping.model=" + model, "mapping.intelligent=false"});
+    std::vector<double> dof;
+    EXPECT_TRUE(eventually(20, [&] {
+      publish({0, 1, 1, 0, 0});
+      for (const auto& sample : commands.take())
+        if (!sample.info.gone) dof = sample.data.dof();
+      return dof.size() == 4 && dof[1] > 1.6 && dof[2] > 1.6 && dof[3] < 0.5;
+    })) << testing::PrintToString(dof);
+  }
+
+  const std::vector<std::pair<std::string, Closure>> lessons_{
+      {"open", {0, 0, 0, 0, 0}},          {"thumb half", {0.5, 0, 0, 0, 0}},
+      {"thumb closed", {1, 0, 0, 0, 0}},  {"index half", {0, 0.5, 0.5, 0, 0}},
+      {"index closed", {0, 1, 1, 0, 0}},  {"little half", {0, 0, 0, 0.5, 0.5}},
+      {"little closed", {0, 0, 0, 1, 1}},
+  };
   dds::Writer<v1::HandPosture> writer_ = writer(dds::hand_posture);
   std::uint64_t frames_ = 0;
 };
@@ -36,14 +56,8 @@ TEST_F(Teach, ShownTrainedUsedAndRepeatedFromTheRecording) {
   service::Process teacher =
       start_program("prehend-teach", with_lab({"--user", "tester", "-o", set, "--limit", "60"}));
 
-  const std::vector<std::pair<std::string, Closure>> lessons{
-      {"open", {0, 0, 0, 0, 0}},          {"thumb half", {0.5, 0, 0, 0, 0}},
-      {"thumb closed", {1, 0, 0, 0, 0}},  {"index half", {0, 0.5, 0.5, 0, 0}},
-      {"index closed", {0, 1, 1, 0, 0}},  {"little half", {0, 0, 0, 0.5, 0.5}},
-      {"little closed", {0, 0, 0, 1, 1}},
-  };
   std::optional<std::int64_t> first;
-  for (const auto& [name, closure] : lessons) {
+  for (const auto& [name, closure] : lessons_) {
     const bool taken = eventually(25, [&, posture = closure, label = name] {
       publish(posture);
       for (const auto& sample : orders.take())
@@ -62,7 +76,7 @@ TEST_F(Teach, ShownTrainedUsedAndRepeatedFromTheRecording) {
 
   const auto taught = learning::load_training_set(set);
   ASSERT_TRUE(taught) << taught.error().message();
-  ASSERT_EQ(taught->pairs.size(), lessons.size());
+  ASSERT_EQ(taught->pairs.size(), lessons_.size());
   EXPECT_EQ(taught->pairs[4].posture, "index closed");
   EXPECT_EQ(taught->pairs[4].user, "tester");
   EXPECT_EQ(taught->pairs[4].source, "teach");
@@ -74,7 +88,7 @@ TEST_F(Teach, ShownTrainedUsedAndRepeatedFromTheRecording) {
   const auto repeated = learning::load_training_set(again);
   ASSERT_TRUE(repeated);
   ASSERT_EQ(repeated->pairs.size(), taught->pairs.size());
-  for (std::size_t i = 0; i < lessons.size(); ++i) {
+  for (std::size_t i = 0; i < lessons_.size(); ++i) {
     EXPECT_EQ(repeated->pairs[i].posture, taught->pairs[i].posture);
     EXPECT_EQ(repeated->pairs[i].source, "recording");
     EXPECT_TRUE(repeated->pairs[i].features.isApprox(taught->pairs[i].features, 1e-6));
@@ -86,17 +100,103 @@ TEST_F(Teach, ShownTrainedUsedAndRepeatedFromTheRecording) {
   RecordProperty("training_seconds",
                  nlohmann::json::parse(trained.output)["training_seconds"].dump());
 
-  auto commands = reader(dds::robot_command);
-  service::Process mapping =
-      start("mapping", {"mapping.model=" + model, "mapping.intelligent=false"});
-  // A closed index finger closes fingers 1 and 2 (here 120 degrees were taught) and not the third.
-  std::vector<double> dof;
-  EXPECT_TRUE(eventually(20, [&] {
-    publish({0, 1, 1, 0, 0});
-    for (const auto& sample : commands.take())
-      if (!sample.info.gone) dof = sample.data.dof();
-    return dof.size() == 4 && dof[1] > 1.6 && dof[2] > 1.6 && dof[3] < 0.5;
-  })) << testing::PrintToString(dof);
+  expect_answers_as_taught(model);
+}
+
+// The same by orders, as from a page: prehend-teacher obeys them and tells how far it is.
+// Long: one session, from its first posture to the hand that was taught.
+TEST_F(Teach, ByOrdersToTheTeacher) {
+  auto orders = writer(dds::operator_command);
+  auto replies = reader(dds::operator_reply);
+  auto told = reader(dds::mapping_training);
+  const auto start_teacher = [&](const std::string& users) {
+    return start("teacher", {"teacher.folder=" + (folder_ / "taught").string(), users});
+  };
+  service::Process teacher = start_teacher("teacher.users=2");
+  int given = 0;
+  const auto answer = [&](const std::string& words) {
+    v1::OperatorCommand order;
+    order.id("test-" + std::to_string(++given));
+    order.action(v1::ACTION_TEACH);
+    order.target("teacher");
+    order.argument(words);
+    std::optional<v1::OperatorReply> reply;
+    // Given again until the teacher is there: by its id it is known as the same order.
+    eventually(30, [&] {
+      order.stamp_ns(now_ns());
+      orders.write(order);
+      reply = hear<v1::OperatorReply>(replies, 1, [&](const auto& one) {
+        return one.id().to_string() == order.id().to_string();
+      });
+      return reply.has_value();
+    });
+    return reply.value_or(v1::OperatorReply());
+  };
+  const auto until = [&](double limit_s,
+                         const std::function<bool(const v1::TrainingProgress&)>& so) {
+    return hear<v1::TrainingProgress>(told, limit_s, so);
+  };
+  EXPECT_FALSE(answer("show ../escape").done());
+  EXPECT_FALSE(answer("dance").done());
+  const auto early = answer("train tester");
+  EXPECT_FALSE(early.done());
+  EXPECT_THAT(early.message().to_string(), testing::HasSubstr("nothing was shown"));
+  EXPECT_FALSE(answer("again").done());
+
+  const auto begun = answer("show tester");
+  ASSERT_TRUE(begun.done()) << begun.message().to_string();
+  EXPECT_EQ(begun.message().to_string(), "show «open»");
+  std::size_t shown = 0;
+  std::string file;
+  for (const auto& [name, closure] : lessons_) {
+    ++shown;
+    ASSERT_TRUE(eventually(25, [&, posture = closure] {
+      publish(posture);
+      for (const auto& sample : told.take()) {
+        const v1::TrainingProgress& progress = sample.data;
+        if (sample.info.gone) continue;
+        if (progress.phase() == v1::TRAINING_DONE) file = progress.message().to_string();
+        if (progress.shown() >= shown) return true;
+      }
+      return false;
+    })) << name;
+  }
+  if (file.empty()) {
+    const auto done = until(20, [](const auto& one) { return one.phase() == v1::TRAINING_DONE; });
+    ASSERT_TRUE(done);
+    file = done->message().to_string();
+  }
+  const auto taught = learning::load_training_set(file);
+  ASSERT_TRUE(taught) << taught.error().message();
+  ASSERT_EQ(taught->pairs.size(), lessons_.size());
+  EXPECT_EQ(taught->pairs[4].posture, "index closed");
+  EXPECT_EQ(taught->pairs[4].user, "tester");
+
+  const auto trains = answer("train tester");
+  ASSERT_TRUE(trains.done()) << trains.message().to_string();
+  double share = 0;
+  const auto trained = until(120, [&](const v1::TrainingProgress& one) {
+    EXPECT_NE(one.phase(), v1::TRAINING_FAILED) << one.message().to_string();
+    if (one.phase() == v1::TRAINING_COMPUTING) share = std::max(share, one.share());
+    return one.phase() == v1::TRAINING_DONE && one.share() == 1 &&
+           one.message().to_string() != file;
+  });
+  ASSERT_TRUE(trained) << "it came to " << share;
+  expect_answers_as_taught(trained->message().to_string());
+
+  // One that learns from many people does so for minutes, and ends in the middle of it.
+  teacher.stop(seconds(10));
+  service::Process busy = start_teacher("teacher.users=300");
+  ASSERT_TRUE(answer("train tester").done());
+  ASSERT_TRUE(until(90, [](const auto& one) {
+    return one.phase() == v1::TRAINING_COMPUTING && one.share() > 0 && one.share() < 0.5;
+  }));
+  const std::int64_t asked = now_ns();
+  busy.signal(SIGTERM);
+  const auto end = busy.wait(seconds(15));
+  ASSERT_TRUE(end) << "it waits for its training";
+  EXPECT_EQ(end->code, 0);
+  RecordProperty("seconds_to_end", std::to_string(1e-9 * static_cast<double>(now_ns() - asked)));
 }
 
 TEST_F(Teach, WhatCannotBeIsOneLine) {

@@ -68,9 +68,10 @@ std::uint32_t WebClient::Message::subscription() const {
   return id;
 }
 
-WebClient::WebClient(int port, const std::string& protocols, const std::string& more_head)
+WebClient::WebClient(int port, const std::string& protocols, const std::string& more_head,
+                     const std::string& target)
     : socket_(connected(port)) {
-  send_all(socket_, "GET / HTTP/1.1\r\nHost: localhost:" + std::to_string(port) +
+  send_all(socket_, "GET " + target + " HTTP/1.1\r\nHost: localhost:" + std::to_string(port) +
                         "\r\nUpgrade: websocket\r\nConnection: Upgrade\r\nSec-WebSocket-Version: "
                         "13\r\nSec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n" +
                         (protocols.empty() ? "" : "Sec-WebSocket-Protocol: " + protocols + "\r\n") +
@@ -105,6 +106,10 @@ bool WebClient::fill(std::size_t size, double limit_s) {
 
 void WebClient::say(std::string_view text) {
   send_frame(socket_, '\x81', text);  // the whole of a text
+}
+
+void WebClient::say_bytes(std::string_view bytes) {
+  send_frame(socket_, '\x82', bytes);  // the whole of a binary message
 }
 
 std::optional<WebClient::Message> WebClient::hear(double limit_s) {

@@ -22,7 +22,8 @@ class WebClient {
     std::string_view payload() const { return std::string_view(bytes).substr(13); }
   };
   /// Opens it; `answer` is the head of what was answered.
-  WebClient(int port, const std::string& protocols, const std::string& more_head = "");
+  WebClient(int port, const std::string& protocols, const std::string& more_head = "",
+            const std::string& target = "/");
   ~WebClient();
   WebClient(const WebClient&) = delete;
   WebClient& operator=(const WebClient&) = delete;
@@ -30,6 +31,7 @@ class WebClient {
   bool open() const { return answer_.starts_with("HTTP/1.1 101 "); }
   const std::string& answer() const { return answer_; }
   void say(std::string_view text);
+  void say_bytes(std::string_view bytes);
   /// Within the time; nothing when there is none, or the connection has ended.
   std::optional<Message> hear(double limit_s);
   /// Until one that is so.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <stdexcept>
 #include <utility>
@@ -28,8 +29,8 @@ std::vector<std::string> mappable_hands() {
   return names;
 }
 
-const model::HandModel& hand(const std::string& name) {
-  static std::map<std::string, model::HandModel> loaded;
+const model::HandModel& hand(std::string_view name) {
+  static std::map<std::string, model::HandModel, std::less<>> loaded;
   const auto found = loaded.find(name);
   if (found != loaded.end()) return found->second;
   auto made = model::HandModel::load(folder / name);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "common/model/hand_model.hpp"
@@ -14,6 +15,6 @@ std::vector<std::string> hand_names();
 std::vector<std::string> mappable_hands();
 
 /// One of them, loaded once. Throws when it cannot be loaded.
-const model::HandModel& hand(const std::string& name);
+const model::HandModel& hand(std::string_view name);
 
 }  // namespace prehend::test

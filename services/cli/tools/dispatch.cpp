@@ -18,6 +18,7 @@ const std::vector<Tool>& tools() {
       {"recording", "prehend-recording", "what is in recordings, parts of them, training data"},
       {"console", "prehend-console", "the lab in a browser"},
       {"ros", "prehend-ros", "tell nodes of ROS 2, without a bridge, what the hand does"},
+      {"ros-lead", "prehend-ros-lead", "let nodes of ROS 2 lead the hand by trajectories"},
       {"glove", "prehend-glove-tool", "calibrate, register and watch a glove; decode, emulate"},
       {"camera", "prehend-camera", "calibrate a camera with a chessboard"},
       {"objects", "prehend-objects", "train, detect and evaluate object models"},

@@ -45,14 +45,21 @@ std::string_view value_in(std::string_view text, std::string_view name, char sep
   return {};
 }
 
-Verdict judge_socket(const Asked& asked, const Policy& policy) {
+/// Orders are services of a socket at /?orders=TOKEN. A page of elsewhere may not give any, even if
+/// it has got hold of the token.
+bool may_order(const Asked& asked, const Policy& policy, std::string_view query) {
+  return (asked.origin.empty() || is_own(asked, policy)) && !policy.order_token.empty() &&
+         same_secret(value_in(query, "orders", '&'), policy.order_token);
+}
+
+Verdict judge_socket(const Asked& asked, const Policy& policy, std::string_view query) {
   // Programs that are no browsers send no origin; nobody sends them here behind their user's back.
   if (!asked.origin.empty() && !is_own(asked, policy) && !among(policy.viewers, asked.origin))
     return refuse(forbidden, "pages of this origin may not look (console.viewers)");
   const auto protocol = choose_subprotocol(asked.protocols);
   if (!protocol)
     return refuse(bad_request, "offer foxglove.sdk.v1 or foxglove.websocket.v1 as subprotocol");
-  return {Route::socket, 0, std::string(*protocol), false};
+  return {Route::socket, 0, std::string(*protocol), false, may_order(asked, policy, query)};
 }
 
 /// Whatever moves something: orders, consent, and the hand that a robot's follows.
@@ -96,11 +103,11 @@ Verdict judge(const Asked& asked, const Policy& policy) {
     return refuse(misdirected, "is not served under this name (console.hosts)");
   const std::size_t query = asked.target.find('?');
   const std::string path = asked.target.substr(0, query);
+  const std::string_view behind = query == std::string::npos
+                                      ? std::string_view()
+                                      : std::string_view(asked.target).substr(query + 1);
   bool in_address = false;
   if (!policy.access_token.empty()) {
-    const std::string_view behind = query == std::string::npos
-                                        ? std::string_view()
-                                        : std::string_view(asked.target).substr(query + 1);
     in_address = same_secret(value_in(behind, "token", '&'), policy.access_token);
     if (!in_address && !same_secret(value_in(asked.cookie, "prehend", ';'), policy.access_token))
       return refuse(unauthorized, "open the address with its token: /?token=...");
@@ -110,7 +117,7 @@ Verdict judge(const Asked& asked, const Policy& policy) {
   if (path == "/consent") return judge_order(asked, policy, Route::consent);
   if (asked.method != "GET" && asked.method != "HEAD")
     return refuse(not_allowed, "only GET and HEAD");
-  if (path == "/" && asked.upgrade) return judge_socket(asked, policy);
+  if (path == "/" && asked.upgrade) return judge_socket(asked, policy, behind);
   if (path == "/") return {Route::page, 0, "", in_address};
   for (const char* file : {"/page.js", "/page.css", "/licences.txt"})
     if (path == file) return {Route::file, 0, file, false};

@@ -26,7 +26,7 @@ struct Policy {
   std::vector<std::string> viewers;
   /// Without it nobody even looks; empty: everybody on this machine may.
   std::string access_token;
-  /// Only the page that was served here knows it.
+  /// Only the page that was served here knows it, and who was told it there.
   std::string order_token;
 };
 
@@ -37,6 +37,7 @@ struct Verdict {
   int status = 0;           // of a refusal
   std::string what;         // why, or the file's name, or the subprotocol
   bool set_cookie = false;  // the access token came in the address: the page keeps it as a cookie
+  bool orders = false;      // over this socket they may be given
 };
 
 Verdict judge(const Asked& asked, const Policy& policy);

@@ -170,13 +170,19 @@ void add_cone(Json& entity, const Eigen::Vector3d& tip, const Eigen::Vector3d& a
   constexpr int sides = 16;
   const Eigen::Vector3d back = -axis.normalized();
   const Eigen::Vector3d across = back.unitOrthogonal();
-  const auto rim = [&](int i) {
+  const auto rim = [&](int i) -> Eigen::Vector3d {
     const Eigen::Vector3d out = Eigen::AngleAxisd(2 * EIGEN_PI * i / sides, back) * across;
-    return to_json(Eigen::Vector3d(tip + side * (std::cos(angle) * back + std::sin(angle) * out)));
+    return tip + side * (std::cos(angle) * back + std::sin(angle) * out);
   };
+  std::vector<Eigen::Vector3d> corners;
+  for (int i = 0; i < sides; ++i) corners.insert(corners.end(), {tip, rim(i), rim(i + 1)});
+  add_triangles(entity, corners, colour);
+}
+
+void add_triangles(Json& entity, const std::vector<Eigen::Vector3d>& corners,
+                   const Colour& colour) {
   Json points = Json::array();
-  for (int i = 0; i < sides; ++i)
-    for (const Json& corner : {to_json(tip), rim(i), rim(i + 1)}) points.push_back(corner);
+  for (const Eigen::Vector3d& corner : corners) points.push_back(to_json(corner));
   entity["triangles"].push_back({{"pose", to_json(Pose::Identity())},
                                  {"points", std::move(points)},
                                  {"color", to_json(colour)},

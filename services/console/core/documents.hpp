@@ -28,7 +28,8 @@ enum class Feed : std::uint8_t {
   latency,
   log,
   reply,
-  signals
+  signals,
+  training
 };
 
 /// A feed as a channel: its topic, and the schema that it bears.
@@ -41,7 +42,7 @@ struct FeedInfo {
   /// Not empty: a document is some elements of this list, the only field of a message.
   std::string_view list = {};
 };
-inline constexpr std::array<FeedInfo, 10> feeds{{
+inline constexpr std::array<FeedInfo, 11> feeds{{
     {Feed::tf, "/tf", "foxglove.FrameTransforms", false, "transforms"},
     {Feed::scene, "/scene", "foxglove.SceneUpdate"},
     {Feed::image, "/camera/image", "foxglove.CompressedImage"},
@@ -52,6 +53,7 @@ inline constexpr std::array<FeedInfo, 10> feeds{{
     {Feed::log, "/log", "foxglove.Log", true},
     {Feed::reply, "/operator/reply", "prehend.OperatorReply", true},
     {Feed::signals, "/signals", "prehend.Signals"},
+    {Feed::training, "/training", "prehend.Training"},
 }};
 /// The JSON schema of a feed's messages, as text.
 std::string json_schema(Feed feed);
@@ -88,6 +90,8 @@ void add_line(Json& entity, const std::vector<Eigen::Vector3d>& points, const Co
 /// its opening, rad.
 void add_cone(Json& entity, const Eigen::Vector3d& tip, const Eigen::Vector3d& axis, double angle,
               const Colour& colour);
+/// Three corners a triangle.
+void add_triangles(Json& entity, const std::vector<Eigen::Vector3d>& corners, const Colour& colour);
 void add_text(Json& entity, const Eigen::Vector3d& at, std::string_view text, const Colour& colour);
 /// A scene update with one entity, or with the end of one.
 Json scene_with(Json entity);

@@ -14,15 +14,19 @@ Hub::Hub(Options options) : options_(std::move(options)) {
     channel.info.id = static_cast<std::uint32_t>(stories_.size());
     stories_.emplace_back(channel.queued ? options_.max_queued : all, options_.max_queued);
   }
+  std::uint32_t service = 0;
+  for (ServiceInfo& one : options_.services) one.id = service++;
 }
 
-Hub::Client Hub::connect() {
+Hub::Client Hub::connect(bool orders) {
   const Client client = next_client_++;
   State& state = clients_[client];
-  say(state, server_info(options_.name, options_.session, options_.recording));
+  state.orders = orders && !options_.services.empty();
+  say(state, server_info(options_.name, options_.session, options_.recording, state.orders));
   std::vector<ChannelInfo> channels;
   for (const Channel& channel : options_.channels) channels.push_back(channel.info);
   say(state, advertisement(channels));
+  if (state.orders) say(state, service_advertisement(options_.services));
   return client;
 }
 
@@ -39,11 +43,38 @@ void Hub::hear(Client client, std::string_view text) {
 void Hub::hear_bytes(Client client, std::string_view bytes) {
   constexpr std::size_t max_requests = 64;  // between two ticks
   const auto found = clients_.find(client);
-  if (found == clients_.end() || !options_.recording || requests_.size() >= max_requests) return;
+  if (found == clients_.end()) return;
+  if (auto call = read_service_call(bytes))
+    return take_call(client, found->second, std::move(*call));
+  if (!options_.recording || requests_.size() >= max_requests) return;
   auto request = read_playback(bytes);
   if (!request) return;
   found->second.leads = true;
   requests_.push_back(std::move(*request));
+}
+
+void Hub::take_call(Client id, State& client, ServiceCall asked) {
+  const auto refuse = [&](const char* why) { say(client, service_failure(asked, why)); };
+  if (!client.orders) return refuse("viewers only look: orders need the page's token");
+  if (asked.service >= options_.services.size()) return refuse("there is no such service");
+  if (asked.encoding != "json") return refuse("is not json");
+  if (client.calls >= options_.max_calls) return refuse("too many orders wait for their answer");
+  ++client.calls;
+  calls_.push_back({id, std::move(asked)});
+}
+
+std::vector<Hub::Call> Hub::take_calls() {
+  return std::exchange(calls_, {});
+}
+
+void Hub::answer(const Call& call, const Expected<std::string>& document) {
+  const auto found = clients_.find(call.client);
+  if (found == clients_.end()) return;
+  --found->second.calls;
+  if (document)
+    say(found->second, service_response(call.asked, *document), true);
+  else
+    say(found->second, service_failure(call.asked, document.error().message()));
 }
 
 std::vector<PlaybackRequest> Hub::take_requests() {

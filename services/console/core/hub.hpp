@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "common/base/error.hpp"
 #include "services/console/core/playback.hpp"
 #include "services/console/core/protocol.hpp"
 #include "services/console/core/story.hpp"
@@ -39,22 +40,32 @@ class Hub {
     std::string name = "prehend", session;
     std::vector<Channel> channels;  // numbered by their place
     std::vector<Parameter> parameters;
-    std::optional<Span> recording;  // that clients may lead
-    std::size_t max_queued = 256;   // messages of a queued channel, kept and on their way
-    std::size_t max_control = 64;   // answers that a client has not taken; more: it is let go
+    std::optional<Span> recording;      // that clients may lead
+    std::vector<ServiceInfo> services;  // numbered by their place
+    std::size_t max_queued = 256;       // messages of a queued channel, kept and on their way
+    std::size_t max_control = 64;       // answers that a client has not taken; more: it is let go
     std::size_t max_subscriptions = 256;
+    std::size_t max_calls = 8;  // of a client that wait for their answer
   };
   using Client = std::uint64_t;
+  struct Call {
+    Client client = 0;
+    ServiceCall asked;
+  };
 
   explicit Hub(Options options);
 
-  Client connect();
+  /// orders: it may call the services, which others are not even told of.
+  Client connect(bool orders = false);
   void disconnect(Client client);
   void hear(Client client, std::string_view text);
-  /// Bytes, where it does not speak in texts: how a recording is to be played.
+  /// Bytes, where it does not speak in texts: how a recording is to be played, or a service's call.
   void hear_bytes(Client client, std::string_view bytes);
   /// What has been asked for since.
   std::vector<PlaybackRequest> take_requests();
+  /// Each is to be answered once, which its client may not live to see.
+  std::vector<Call> take_calls();
+  void answer(const Call& call, const Expected<std::string>& document);
 
   /// To all who watch the channel, now or later.
   void publish(std::uint32_t channel, const std::string& key, std::int64_t stamp_ns,
@@ -88,12 +99,14 @@ class Hub {
   };
   struct State {
     std::deque<Frame> control;
-    bool overflowed = false, graph = false, leads = false;
+    bool overflowed = false, graph = false, leads = false, orders = false;
+    std::size_t calls = 0;                       // that wait for their answer
     std::map<std::uint32_t, Watching> watching;  // by channel
     std::uint32_t turn = 0;                      // the channel that was served last
   };
 
   void say(State& client, std::string text, bool binary = false);
+  void take_call(Client id, State& client, ServiceCall asked);
   void obey(State& client, const Subscribe& request);
   void obey(State& client, const Unsubscribe& request);
   void obey(State& client, const GetParameters& request);
@@ -105,6 +118,7 @@ class Hub {
   std::vector<Story> stories_;  // by channel
   std::vector<TopicEnds> graph_;
   std::vector<PlaybackRequest> requests_;
+  std::vector<Call> calls_;
   std::map<Client, State> clients_;
   Client next_client_ = 1;
 };

@@ -8,6 +8,8 @@
 #include <cmath>
 #include <utility>
 
+#include "services/console/core/resisted_forces.hpp"
+
 namespace prehend::console {
 namespace {
 
@@ -20,7 +22,9 @@ constexpr Colour contact_colour{0.85, 0.15, 0.20, 1};
 constexpr Colour cone_colour{0.85, 0.15, 0.20, 0.25};
 constexpr Colour table_colour{0.55, 0.50, 0.45, 0.35};
 constexpr Colour doubt_colour{0.20, 0.60, 0.86, 0.35};
+constexpr Colour forces_colour{0.55, 0.35, 0.80, 0.25};
 constexpr Colour white{1, 1, 1, 1};
+constexpr double forces_scale = 0.1;  // m for 1 N
 
 std::string object_frame(const std::string& body) {
   return "object/" + body;
@@ -122,6 +126,8 @@ Documents LabView::hear(std::string_view topic, const Value& value, std::int64_t
   if (topic == "grasp/report") return grasp_report(value);
   if (topic == "service/status") return told(roster_.hear_status(message, now_ns), stamp(message));
   if (topic == "robot/gate") return told(roster_.hear_gate(message), now_ns);
+  if (topic == "mapping/training")
+    return {{Feed::training, message["hand"].text(), stamp(message), text_of(to_json(value))}};
   if (topic == "operator/reply") return operator_reply(value);
   if (topic == "operator/command") return operator_command(message);
   return {};
@@ -308,6 +314,7 @@ Documents LabView::grasp_report(const Value& value) {
   Documents made{{Feed::report, std::to_string(count_++), ns, text_of(to_json(value))}};
   const std::string id = "contacts/" + hand;
   Json drawn = entity(ns, id, object_frame(object));
+  std::vector<analysis::Contact> contacts;
   for (const View& contact : message["contacts"].elements()) {
     const Eigen::Vector3d at = contact["p_OC"].vector(), normal = contact["normal_O"].vector();
     const double force = contact["force"].number();
@@ -315,12 +322,19 @@ Documents LabView::grasp_report(const Value& value) {
       continue;
     const Eigen::Vector3d along = std::clamp(0.01 * force, 0.015, 0.1) * normal.normalized();
     add_arrow(drawn, at - along, along, 0.003, contact_colour);
-    if (const double friction = contact["friction"].number(); friction > 0)
-      add_cone(drawn, at, normal, std::atan(friction), cone_colour);
+    const double friction = contact["friction"].number();
+    if (!(friction > 0)) continue;
+    add_cone(drawn, at, normal, std::atan(friction), cone_colour);
+    contacts.push_back({"", at, normal.normalized(), friction, force, 0});
   }
   const std::string verdict = held ? "held" : "dropped: " + message["reason"].text();
   add_text(drawn, {0, 0, 0.15}, fmt::format("ε {:.3f}, {}", epsilon, verdict), white);
   made.push_back(scene(std::move(drawn), id, ns));
+  Json hull = entity(ns, "forces/" + hand, object_frame(object));
+  std::vector<Eigen::Vector3d> corners = resisted_forces(contacts);
+  for (Eigen::Vector3d& corner : corners) corner *= forces_scale;
+  if (!corners.empty()) add_triangles(hull, corners, forces_colour);
+  made.push_back(scene(std::move(hull), "forces/" + hand, ns));
   made.push_back(log(ns, held ? LogLevel::info : LogLevel::warning, hand,
                      fmt::format("{}: {} contacts, ε {:.3f}, {}", object,
                                  message["contacts"].elements().size(), epsilon, verdict)));

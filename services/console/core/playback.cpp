@@ -3,49 +3,13 @@
 #include <bit>
 #include <cmath>
 
+#include "services/console/core/bytes.hpp"
+
 namespace prehend::console {
 namespace {
 
 constexpr char request_code = 3, state_code = 5;
 constexpr std::size_t max_id = 256;
-
-/// Little endian. What is not there fails all that follows.
-class Bytes {
- public:
-  explicit Bytes(std::string_view bytes) : rest_(bytes) {}
-
-  template <class Number>
-  Number number() {
-    Number made = 0;
-    if (rest_.size() < sizeof made) {
-      good_ = false;
-      return 0;
-    }
-    for (std::size_t i = 0; i < sizeof made; ++i)
-      made |= static_cast<Number>(Number{static_cast<unsigned char>(rest_[i])} << (8 * i));
-    rest_.remove_prefix(sizeof made);
-    return made;
-  }
-  std::string text() {
-    const auto size = number<std::uint32_t>();
-    if (!good_ || size > max_id || size > rest_.size()) {
-      good_ = false;
-      return {};
-    }
-    return std::string(rest_.substr(0, size));
-  }
-  bool good() const { return good_; }
-
- private:
-  std::string_view rest_;
-  bool good_ = true;
-};
-
-template <class Number>
-void put(std::string& bytes, Number value) {
-  for (std::size_t i = 0; i < sizeof value; ++i)
-    bytes += static_cast<char>(value >> (8 * i) & 0xffU);
-}
 
 }  // namespace
 
@@ -59,7 +23,7 @@ std::optional<PlaybackRequest> read_playback(std::string_view bytes) {
   made.speed = std::bit_cast<float>(in.number<std::uint32_t>());
   const bool seeks = in.number<std::uint8_t>() != 0;
   const auto time = in.number<std::uint64_t>();
-  made.id = in.text();
+  made.id = in.text(max_id);
   if (!in.good() || !std::isfinite(made.speed) || made.speed <= 0) return std::nullopt;
   if (seeks) {
     if (time >> 63 != 0) return std::nullopt;
@@ -70,11 +34,11 @@ std::optional<PlaybackRequest> read_playback(std::string_view bytes) {
 
 std::string playback_message(const PlaybackState& state) {
   std::string bytes(1, state_code);
-  put(bytes, static_cast<std::uint8_t>(state.status));
-  put(bytes, static_cast<std::uint64_t>(state.time_ns));
-  put(bytes, std::bit_cast<std::uint32_t>(static_cast<float>(state.speed)));
-  put(bytes, static_cast<std::uint8_t>(state.sought));
-  put(bytes, static_cast<std::uint32_t>(state.id.size()));
+  put_number(bytes, static_cast<std::uint8_t>(state.status));
+  put_number(bytes, static_cast<std::uint64_t>(state.time_ns));
+  put_number(bytes, std::bit_cast<std::uint32_t>(static_cast<float>(state.speed)));
+  put_number(bytes, static_cast<std::uint8_t>(state.sought));
+  put_number(bytes, static_cast<std::uint32_t>(state.id.size()));
   return bytes + state.id;
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "services/console/core/bytes.hpp"
 #include "services/console/core/documents.hpp"
 
 namespace prehend::console {
@@ -10,6 +11,8 @@ namespace {
 
 /// Of one request; more is no viewer's.
 constexpr std::size_t max_entries = 1000;
+constexpr char message_code = 1, call_code = 2, response_code = 3;
+constexpr std::size_t max_encoding = 64;
 
 std::string dump(const Json& document) {
   return document.dump(-1, ' ', false, Json::error_handler_t::replace);
@@ -92,13 +95,17 @@ Request read_request(std::string_view text) {
 }
 
 std::string server_info(std::string_view name, std::string_view session,
-                        const std::optional<Span>& recording) {
+                        const std::optional<Span>& recording, bool orders) {
   Json made{{"op", "serverInfo"},
             {"name", name},
             {"capabilities", {"parameters", "connectionGraph"}},
             {"supportedEncodings", Json::array()},
             {"metadata", Json::object()},
             {"sessionId", session}};
+  if (orders) {
+    made["capabilities"].push_back("services");
+    made["supportedEncodings"].push_back("json");
+  }
   if (recording) {
     made["capabilities"].push_back("playbackControl");
     made["dataStartTime"] = to_time(recording->begin_ns);
@@ -152,12 +159,57 @@ std::string graph_update(const std::vector<TopicEnds>& before, const std::vector
                {"removedServices", Json::array()}});
 }
 
+std::string service_advertisement(const std::vector<ServiceInfo>& services) {
+  const auto side = [](const char* name, const std::string& schema) {
+    return Json{{"encoding", "json"},
+                {"schemaName", name},
+                {"schemaEncoding", "jsonschema"},
+                {"schema", schema}};
+  };
+  Json listed = Json::array();
+  for (const ServiceInfo& service : services)
+    listed.push_back({{"id", service.id},
+                      {"name", service.name},
+                      {"type", "prehend.Order"},
+                      {"request", side("prehend.OrderRequest", service.request)},
+                      {"response", side("prehend.OrderAnswer", service.response)}});
+  return dump({{"op", "advertiseServices"}, {"services", std::move(listed)}});
+}
+
+std::optional<ServiceCall> read_service_call(std::string_view bytes) {
+  if (!bytes.starts_with(call_code)) return std::nullopt;
+  Bytes in(bytes.substr(1));
+  ServiceCall made;
+  made.service = in.number<std::uint32_t>();
+  made.call = in.number<std::uint32_t>();
+  made.encoding = in.text(max_encoding);
+  if (!in.good()) return std::nullopt;
+  made.request = in.rest();
+  return made;
+}
+
+std::string service_response(const ServiceCall& call, std::string_view document) {
+  constexpr std::string_view encoding = "json";
+  std::string bytes(1, response_code);
+  put_number(bytes, call.service);
+  put_number(bytes, call.call);
+  put_number(bytes, static_cast<std::uint32_t>(encoding.size()));
+  bytes += encoding;
+  bytes += document;
+  return bytes;
+}
+
+std::string service_failure(const ServiceCall& call, std::string_view reason) {
+  return dump({{"op", "serviceCallFailure"},
+               {"serviceId", call.service},
+               {"callId", call.call},
+               {"message", reason}});
+}
+
 std::string message_head(std::uint32_t subscription, std::int64_t stamp_ns) {
-  std::string head(1, '\x01');
-  for (int shift = 0; shift < 32; shift += 8)
-    head += static_cast<char>(subscription >> shift & 0xffU);
-  const auto stamp = static_cast<std::uint64_t>(stamp_ns);
-  for (int shift = 0; shift < 64; shift += 8) head += static_cast<char>(stamp >> shift & 0xffU);
+  std::string head(1, message_code);
+  put_number(head, subscription);
+  put_number(head, static_cast<std::uint64_t>(stamp_ns));
   return head;
 }
 

@@ -51,9 +51,10 @@ Request read_request(std::string_view text);
 struct Span {
   std::int64_t begin_ns = 0, end_ns = 0;
 };
-/// recording: where one is shown, which clients may then lead.
+/// recording: where one is shown, which clients may then lead. orders: the client may call
+/// services.
 std::string server_info(std::string_view name, std::string_view session,
-                        const std::optional<Span>& recording = {});
+                        const std::optional<Span>& recording = {}, bool orders = false);
 std::string advertisement(const std::vector<ChannelInfo>& channels);
 /// level: 0 information, 1 warning, 2 error.
 std::string status_message(int level, std::string_view message, std::string_view id);
@@ -70,6 +71,27 @@ struct TopicEnds {
 };
 /// From one graph to the next.
 std::string graph_update(const std::vector<TopicEnds>& before, const std::vector<TopicEnds>& now);
+
+/// Something that a client may ask for and that is answered. Requests and answers are JSON.
+struct ServiceInfo {
+  std::uint32_t id = 0;
+  std::string name;
+  std::string request, response;  // their JSON schemas
+};
+std::string service_advertisement(const std::vector<ServiceInfo>& services);
+
+/// What a client asks of a service.
+struct ServiceCall {
+  std::uint32_t service = 0;
+  std::uint32_t call = 0;  // the client's own number, which the answer carries
+  std::string encoding, request;
+};
+/// From the bytes of a message; nothing: it is none.
+std::optional<ServiceCall> read_service_call(std::string_view bytes);
+/// The bytes of an answer.
+std::string service_response(const ServiceCall& call, std::string_view document);
+/// A text: why there is no answer.
+std::string service_failure(const ServiceCall& call, std::string_view reason);
 
 /// The bytes before the payload of a message for a subscription.
 std::string message_head(std::uint32_t subscription, std::int64_t stamp_ns);

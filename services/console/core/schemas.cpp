@@ -209,6 +209,17 @@ Json signals() {
                  {"values", list(number())}});
 }
 
+Json training() {
+  return object({{"hand", text()},
+                 {"phase", text()},
+                 {"name", text()},
+                 {"step", text()},
+                 {"shown", integer()},
+                 {"asked", integer()},
+                 {"share", number()},
+                 {"message", text()}});
+}
+
 }  // namespace
 
 std::string json_schema(Feed feed) {
@@ -243,6 +254,9 @@ std::string json_schema(Feed feed) {
       break;
     case Feed::signals:
       made = signals();
+      break;
+    case Feed::training:
+      made = training();
       break;
   }
   for (const FeedInfo& info : feeds)

@@ -28,6 +28,8 @@ v1::OperatorAction action_of(OrderKind kind) {
       return v1::ACTION_TAKE_OVER;
     case OrderKind::place:
       return v1::ACTION_PLACE_OBJECT;
+    case OrderKind::teach:
+      return v1::ACTION_TEACH;
   }
   return v1::ACTION_STOP;
 }

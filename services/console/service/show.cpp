@@ -97,20 +97,24 @@ Expected<std::unique_ptr<Show>> Show::create(const service::Config& config, Opti
                 .camera = config.text("camera.name"),
                 .X_WC = *X_WC,
                 .hand = [raw = hands.get()](const std::string& name) { return raw->find(name); }});
+  std::vector<ServiceInfo> services;
+  if (options.give) services = services_for_orders();
   Hub hub({.session = std::to_string(options.now_ns()),
            .channels = channels_of(*types),
            .parameters = parameters_of(config),
-           .recording = options.film ? std::optional(options.film->span()) : std::nullopt});
+           .recording = options.film ? std::optional(options.film->span()) : std::nullopt,
+           .services = services});
   std::unique_ptr<Show> made(new Show(std::move(options), std::move(*types), std::move(view),
-                                      std::move(hub), std::move(hands)));
+                                      std::move(hub), std::move(hands), std::move(services)));
   made->begin();
   made->round_.tell(made->hub_);
   return made;
 }
 
 Show::Show(Options options, recording::types::Library types, LabView view, Hub hub,
-           std::shared_ptr<Hands> hands)
+           std::shared_ptr<Hands> hands, std::vector<ServiceInfo> services)
     : options_(std::move(options)),
+      services_(std::move(services)),
       types_(std::move(types)),
       hands_(std::move(hands)),
       fresh_(std::move(view)),
@@ -162,11 +166,30 @@ web::Answer Show::hand(std::string_view body) {
 
 web::Answer Show::consent(std::string_view body) {
   if (!options_.consent) return plain(409, recorded);
+  auto said = take_consent(body);
+  if (!said) return plain(400, said.error().message());
+  return {202, "application/json", std::move(*said), ""};
+}
+
+Expected<std::string> Show::take_consent(std::string_view body) {
   const std::int64_t now = to_ns(process_now());
   const auto said = read_consent(body, now);
-  if (!said) return plain(400, said.error().message());
+  if (!said) return tl::unexpected(said.error());
   options_.consent(*said);
-  return {202, "application/json", consent_answer(now), ""};
+  return consent_answer(now);
+}
+
+void Show::obey(const Hub::Call& call) {
+  std::string_view action = services_[call.asked.service].name;
+  action.remove_prefix(order_services.size());
+  if (action == "consent") return hub_.answer(call, take_consent(call.asked.request));
+  const auto order = read_order(action, call.asked.request);
+  if (!order) return hub_.answer(call, tl::unexpected(order.error()));
+  desk_.add(options_.give(*order), order->target.empty(), call, process_now());
+}
+
+void Show::answer(const std::vector<Desk::Answer>& answers) {
+  for (const auto& [call, document] : answers) hub_.answer(call, document);
 }
 
 /// Only what was fetched has a name here, so nobody reads another file by it.
@@ -187,6 +210,8 @@ void Show::tick() {
   Film* film = options_.film;
   if (film)
     for (const PlaybackRequest& request : hub_.take_requests()) film->obey(request);
+  for (const Hub::Call& call : hub_.take_calls()) obey(call);
+  answer(desk_.wait(now));
   const std::vector<Letter> letters = options_.letters();
   if (const auto state = film ? film->news(now) : std::nullopt) {
     if (state->sought) begin();
@@ -223,6 +248,7 @@ void Show::hand_on(const Letter& letter) {
       *type, {reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()});
   if (!value) return;
   publish(view_.hear(topic.name, *value, heard_ns));
+  if (topic.name == dds::operator_reply.name) answer(desk_.hear(View(*value)));
   // Pictures are large, and nothing is said of their end.
   if (topic.qos.reader_depth != 0 && topic.name != dds::camera_image.name)
     last_.insert_or_assign(instance, std::move(*value));

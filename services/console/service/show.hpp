@@ -14,6 +14,7 @@
 #include "common/recording/types/type.hpp"
 #include "common/service/config.hpp"
 #include "services/console/core/consent.hpp"
+#include "services/console/core/desk.hpp"
 #include "services/console/core/hub.hpp"
 #include "services/console/core/lab_view.hpp"
 #include "services/console/core/orders.hpp"
@@ -71,10 +72,14 @@ class Show : public web::Site {
   };
 
   Show(Options options, recording::types::Library types, LabView view, Hub hub,
-       std::shared_ptr<Hands> hands);
+       std::shared_ptr<Hands> hands, std::vector<ServiceInfo> services);
   web::Answer order(std::string_view body);
   web::Answer hand(std::string_view body);
   web::Answer consent(std::string_view body);
+  void obey(const Hub::Call& call);
+  /// Its answer.
+  Expected<std::string> take_consent(std::string_view body);
+  void answer(const std::vector<Desk::Answer>& answers);
   web::Answer tracking(const std::string& name) const;
   /// Says of nothing any more that it has been told.
   void begin();
@@ -82,11 +87,13 @@ class Show : public web::Site {
   void publish(Documents documents);
 
   Options options_;
+  std::vector<ServiceInfo> services_;  // nothing: there is no lab
   recording::types::Library types_;
   std::shared_ptr<Hands> hands_;
   const LabView fresh_;
   LabView view_ = fresh_;
   Hub hub_;
+  Desk desk_;
   Round round_;
   /// The last message of each instance: its end brings nothing.
   std::map<std::pair<std::size_t, dds::Guid>, Value> last_;

@@ -105,6 +105,37 @@ Expected<Part> read(const messages::GraspClassifier& from) {
   return Part{from.weight(), std::move(made)};
 }
 
+void write(const ObjectLikelihood& objects, messages::GraspObjects& to) {
+  to.mutable_otherwise()->Add(objects.otherwise().begin(), objects.otherwise().end());
+  for (const ObjectLikelihood::Sizes& each : objects.sizes()) {
+    messages::GraspObjectSizes& sizes = *to.add_sizes();
+    sizes.set_kind(static_cast<unsigned>(each.kind));
+    sizes.set_shape(std::string(model::to_string(each.shape)));
+    sizes.set_share(each.share);
+    if (each.shown.size() > 0) write(each.shown, *sizes.mutable_shown());
+  }
+}
+
+/// None was stored: nobody measured an object.
+Expected<std::optional<ObjectLikelihood>> read(const messages::GraspObjects& from,
+                                               std::size_t classes) {
+  if (from.sizes_size() == 0 && from.otherwise_size() == 0) return std::nullopt;
+  if (static_cast<std::size_t>(from.otherwise_size()) != classes)
+    return fail("what objects say is of other classes");
+  std::vector<ObjectLikelihood::Sizes> sizes;
+  for (const messages::GraspObjectSizes& message : from.sizes()) {
+    const auto shape = model::shape_from_string(message.shape());
+    if (!shape) return fail(fmt::format("unknown shape «{}»", message.shape()));
+    auto shown = read(message.shown());
+    if (!shown) return tl::unexpected(shown.error());
+    sizes.push_back({message.kind(), *shape, message.share(), std::move(*shown), {}});
+  }
+  auto made = ObjectLikelihood::create(std::move(sizes),
+                                       {from.otherwise().begin(), from.otherwise().end()});
+  if (!made) return tl::unexpected(made.error());
+  return std::optional(std::move(*made));
+}
+
 Expected<TaskRecogniser> read(const messages::GraspRecogniser& from) {
   const auto method = method_from_string(from.method());
   if (!method) return fail(fmt::format("unknown method «{}»", from.method()));
@@ -117,7 +148,10 @@ Expected<TaskRecogniser> read(const messages::GraspRecogniser& from) {
   auto recogniser = Recogniser::create(*method, {from.classes().begin(), from.classes().end()},
                                        std::move(parts), from.temperature());
   if (!recogniser) return tl::unexpected(recogniser.error());
-  return TaskRecogniser{from.task(), std::move(*recogniser), from.people(), from.takes()};
+  auto objects = read(from.objects(), recogniser->classes().size());
+  if (!objects) return tl::unexpected(objects.error());
+  return TaskRecogniser{from.task(), std::move(*recogniser), from.people(), from.takes(),
+                        std::move(*objects)};
 }
 
 }  // namespace
@@ -134,6 +168,7 @@ Expected<void> save_recognisers(const std::filesystem::path& file,
     to.set_temperature(from.recogniser.temperature());
     to.set_people(from.people);
     to.set_takes(from.takes);
+    if (from.objects) write(*from.objects, *to.mutable_objects());
   }
   return proto::write_sealed(file, kind, set.SerializeAsString());
 }

@@ -1,10 +1,12 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "common/base/error.hpp"
+#include "services/demonstration/core/recognition/object_likelihood.hpp"
 #include "services/demonstration/core/recognition/recogniser.hpp"
 
 namespace prehend::demonstration {
@@ -14,6 +16,7 @@ struct TaskRecogniser {
   std::string task;
   Recogniser recogniser;
   unsigned people = 0, takes = 0;
+  std::optional<ObjectLikelihood> objects = {};  // where objects were measured
 };
 
 /// A sealed file (kind «grasp-recogniser»). Refused: what is damaged, something else, or does not

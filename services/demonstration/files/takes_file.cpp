@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <map>
@@ -21,13 +22,17 @@ namespace prehend::demonstration {
 namespace {
 
 constexpr std::array fingers{"index", "middle", "ring", "little"};
+constexpr std::array hand_fingers{"thumb", "index", "middle", "ring", "little"};
 constexpr std::array size_columns{"size_x_cm", "size_y_cm", "size_z_cm"};
 constexpr std::array keys{"user", "object", "trial", "t_ms"};
 constexpr std::string_view byte_order_mark = "\xef\xbb\xbf";
-constexpr double farthest = 0.5;   // m, between fingertips of a hand
-constexpr double fastest = 50;     // m/s
-constexpr double longest = 86400;  // s
-constexpr double largest = 2;      // m, of an object
+constexpr double farthest = 0.5;    // m, between fingertips of a hand
+constexpr double fastest = 50;      // m/s
+constexpr double latest = 1e11;     // s; a time may be counted from 1970
+constexpr double largest = 2;       // m, of an object
+constexpr double largest_hand = 3;  // relative to an average one
+constexpr double min_span = 0.8;    // cm, thumb to finger: the median of a file in metres is less
+constexpr double max_span = 30;     // cm: that of a file in millimetres is more
 constexpr std::size_t max_name = 64;
 
 std::string_view trimmed(std::string_view text) {
@@ -47,14 +52,35 @@ double number(std::string_view cell, double limit) {
   return read && std::abs(value) <= limit ? value : unknown_number;
 }
 
-/// The same names as in the file's first line, without what may stand around them.
+/// Why this cannot be a table with commas, or nothing.
+std::optional<Error> another_format(std::string_view text, const std::string& name) {
+  if (text.starts_with("\xff\xfe") || text.starts_with("\xfe\xff"))
+    return Error{"is UTF-16 text", name, "save it as UTF-8"};
+  const std::string_view line = text.substr(0, text.find('\n'));
+  if (line.size() == text.size() && line.find('\r') < line.size() - 1)
+    return Error{"has lines that end in CR alone", name, "save it with LF or CR LF"};
+  for (const char separator : {';', '\t'})
+    if (line.find(',') == std::string_view::npos && line.find(separator) != std::string_view::npos)
+      return Error{
+          fmt::format("has {} between its columns", separator == ';' ? "semicolons" : "tabs"), name,
+          "save it with commas, and with points in numbers"};
+  return std::nullopt;
+}
+
+/// The same names as in the file's first line, in small letters, without what may stand around.
 std::string with_plain_names(std::string_view text) {
   if (text.starts_with(byte_order_mark)) text.remove_prefix(byte_order_mark.size());
   const std::size_t end = std::min(text.find('\n'), text.size());
   std::string made;
   for (const char c : text.substr(0, end))
-    if (c != ' ' && c != '\t' && c != '"') made += c;
+    if (c != ' ' && c != '\t' && c != '"')
+      made += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
   return made.append(text.substr(end));
+}
+
+/// A fingertip in H, which has x along the fingers and z out of the back of the hand.
+std::string hand_column(std::size_t finger, Eigen::Index axis) {
+  return fmt::format("hand_{}_{}_cm", hand_fingers[finger], "xyz"[axis]);
 }
 
 /// What tells one take from another.
@@ -79,11 +105,7 @@ class Reader {
     if (made_.takes.empty())
       return fail(made_.rows == 0 ? "has no rows" : "has no row that can be used", name_,
                   first_.empty() ? "it needs a row a sample below the names" : first_);
-    if (made_.bad_rows > 0 || made_.unknown_numbers > 0)
-      made_.complaints.push_back(
-          {fmt::format("{} of {} rows left out, {} unknown numbers filled in", made_.bad_rows,
-                       made_.rows, made_.unknown_numbers),
-           name_, first_ + ": mend or delete it"});
+    complain();
     return std::move(made_);
   }
 
@@ -99,6 +121,28 @@ class Reader {
       for (const char* axis : {"x", "y", "z"}) need(fmt::format("thumb_{}_{}_cm", finger, axis));
     if (missing.empty()) return {};
     return fail("lacks the column(s) " + missing, name_, "the first line names the columns");
+  }
+
+  /// One line for all that is wrong with a file that was read.
+  void complain() {
+    std::string what = strange_unit(), hint = what.empty() ? "" : "the columns are in cm";
+    if (made_.bad_rows > 0 || made_.unknown_numbers > 0) {
+      what +=
+          fmt::format("{}{} of {} rows left out, {} unknown numbers filled in",
+                      what.empty() ? "" : "; ", made_.bad_rows, made_.rows, made_.unknown_numbers);
+      hint += fmt::format("{}{}: mend or delete it", hint.empty() ? "" : "; ", first_);
+    }
+    if (!what.empty()) made_.complaints.push_back({what, name_, hint});
+  }
+
+  /// What the distances between thumb and fingers say of their unit, where it is not cm.
+  std::string strange_unit() {
+    if (spans_.empty()) return {};
+    const auto middle = spans_.begin() + static_cast<std::ptrdiff_t>(spans_.size() / 2);
+    std::nth_element(spans_.begin(), middle, spans_.end());
+    if (*middle >= min_span && *middle <= max_span) return {};
+    return fmt::format("fingertips lie {:.2g} cm from the thumb's: are these {}?", *middle,
+                       *middle < min_span ? "metres" : "millimetres");
   }
 
   std::string_view cell(CsvRow& row, std::string_view column) {
@@ -123,7 +167,7 @@ class Reader {
   std::optional<std::string> add(CsvRow& row) {
     const std::string user = name_of(row, "user"), object = name_of(row, "object");
     const double trial = number(cell(row, "trial"), 1e9),
-                 t = number(cell(row, "t_ms"), 1000 * longest);
+                 t = number(cell(row, "t_ms"), 1000 * latest);
     if (user.empty()) return "no user";
     if (object.empty()) return "no object";
     if (std::isnan(trial)) return "trial is no number";
@@ -136,12 +180,15 @@ class Reader {
       const auto read = [&](char axis) {
         return measured(row, fmt::format("thumb_{}_{}_cm", fingers[f], axis), 100 * farthest) / 100;
       };
+      const double span = span_of(row, f);
+      if (std::isfinite(span)) spans_.push_back(span);
       // The table's axes are x up, y forward, z left; W has x forward, y left, z up.
       const double up = read('x'), forward = read('y'), left = read('z');
       sample.p_thumb_tip_W[f] = {forward, left, up};
       fingers_told |= sample.p_thumb_tip_W[f].allFinite();
     }
     if (!fingers_told) return "no finger has three numbers in cm";
+    read_hand(row, sample);
     if (rows_.has("hand_speed_m_s")) sample.hand_speed = measured(row, "hand_speed_m_s", fastest);
     if (rows_.has("wrist_speed_m_s"))
       sample.wrist_speed = measured(row, "wrist_speed_m_s", fastest);
@@ -156,6 +203,26 @@ class Reader {
     take.samples.push_back(sample);
     if (!take.object) take.object = shape_of(row);
     return std::nullopt;
+  }
+
+  /// Thumb to finger as the row says it, within reach or not.
+  double span_of(CsvRow& row, std::size_t finger) {
+    Eigen::Vector3d told;
+    for (Eigen::Index i = 0; i < 3; ++i)
+      told[i] = number(cell(row, fmt::format("thumb_{}_{}_cm", fingers[finger], "xyz"[i])), 1e9);
+    return told.norm();
+  }
+
+  /// Fingertips on the hand, and its size, as far as there are columns for them.
+  void read_hand(CsvRow& row, HandSample& sample) {
+    for (std::size_t f = 0; f < hand_fingers.size(); ++f)
+      for (Eigen::Index i = 0; i < 3; ++i) {
+        const std::string column = hand_column(f, i);
+        if (rows_.has(column)) sample.p_HF[f][i] = measured(row, column, 100 * farthest) / 100;
+      }
+    if (!rows_.has("hand_scale")) return;
+    sample.scale = measured(row, "hand_scale", largest_hand);
+    if (!(sample.scale > 0)) sample.scale = unknown_number;
   }
 
   Take& place(const Key& key) {
@@ -191,12 +258,22 @@ class Reader {
   std::string name_, task_, first_, first_unknown_;
   std::size_t unknown_ = 0;
   std::map<Key, std::size_t> place_;
+  std::vector<double> spans_;  // as the file says them
   Takes made_;
 };
 
-/// «1» of task1.csv.
+std::string in_small_letters(std::string text) {
+  for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return text;
+}
+
+/// «1» of task1.csv, and of task1_anna.csv: people may have files of their own.
 std::string task_of(const std::filesystem::path& file) {
-  return printable(file.stem().string().substr(4));
+  const std::string told = file.stem().string().substr(4);
+  const std::size_t end = told.find_first_not_of("0123456789");
+  const bool number_first = end != 0 && end != std::string::npos &&
+                            std::string_view("_-. ").find(told[end]) != std::string_view::npos;
+  return printable(number_first ? told.substr(0, end) : told);
 }
 
 Expected<std::vector<std::filesystem::path>> files_of(const std::filesystem::path& folder) {
@@ -204,13 +281,14 @@ Expected<std::vector<std::filesystem::path>> files_of(const std::filesystem::pat
   std::vector<std::filesystem::path> files;
   std::filesystem::directory_iterator entry(folder, error), end;
   while (!error && entry != end) {
-    const std::string name = entry->path().filename().string();
+    const std::string name = in_small_letters(entry->path().filename().string());
     if (name.starts_with("task") && name.ends_with(".csv")) files.push_back(entry->path());
     entry.increment(error);
   }
   if (error) return fail(error.message(), folder.string(), "is the path right?");
   if (files.empty())
-    return fail("has no file task*.csv", folder.string(), "name the folder with the takes");
+    return fail("has no file task*.csv", folder.string(),
+                "name the folder with the takes; a file of them is called task1.csv");
   std::sort(files.begin(), files.end());
   return files;
 }
@@ -219,6 +297,7 @@ Expected<std::vector<std::filesystem::path>> files_of(const std::filesystem::pat
 
 Expected<Takes> parse_takes(std::string_view text, const std::string& name,
                             const std::string& task) {
+  if (auto wrong = another_format(text, name)) return tl::unexpected(std::move(*wrong));
   const std::string plain = with_plain_names(text);
   return Reader(plain, name, task).read();
 }
@@ -227,6 +306,9 @@ std::string takes_csv(const std::vector<Take>& takes) {
   std::string text = "user,task,object,grasp,side,action,trial,t_ms,hand_speed_m_s,wrist_speed_m_s";
   for (const char* finger : fingers)
     for (const char axis : {'x', 'y', 'z'}) text += fmt::format(",thumb_{}_{}_cm", finger, axis);
+  text += ",hand_scale";
+  for (std::size_t f = 0; f < hand_fingers.size(); ++f)
+    for (Eigen::Index i = 0; i < 3; ++i) text += "," + hand_column(f, i);
   text += fmt::format(",shape,{}\n", fmt::join(size_columns, ","));
   for (const Take& take : takes) {
     const std::string shape =
@@ -238,6 +320,9 @@ std::string takes_csv(const std::vector<Take>& takes) {
       // W has x forward, y left, z up; the table's axes are x up, y forward, z left.
       for (const Eigen::Vector3d& tip : sample.p_thumb_tip_W)
         text += fmt::format(",{:.3f},{:.3f},{:.3f}", 100 * tip.z(), 100 * tip.x(), 100 * tip.y());
+      text += fmt::format(",{:.4f}", sample.scale);
+      for (const Eigen::Vector3d& tip : sample.p_HF)
+        text += fmt::format(",{:.3f},{:.3f},{:.3f}", 100 * tip.x(), 100 * tip.y(), 100 * tip.z());
       text += "," + shape;
       for (Eigen::Index i = 0; i < 3; ++i)
         text += take.object ? fmt::format(",{:.3f}", 100 * take.object->size[i]) : ",";

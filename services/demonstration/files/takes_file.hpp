@@ -36,8 +36,8 @@ Expected<Takes> parse_takes(std::string_view text, const std::string& name,
 /// The same as parse_takes() reads. Of takes whose object is known, `object` is its shape.
 std::string takes_csv(const std::vector<Take>& takes);
 
-/// All files task*.csv of a folder, in order of name. What cannot be read is a complaint. Fails
-/// when there is no take at all.
+/// All files task*.csv of a folder (or Task*.CSV), in order of name. What cannot be read is a
+/// complaint. Fails when there is no take at all.
 Expected<Takes> load_takes(const std::filesystem::path& folder);
 
 }  // namespace prehend::demonstration

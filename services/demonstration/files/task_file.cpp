@@ -7,6 +7,7 @@
 #include <cctype>
 #include <cmath>
 #include <numbers>
+#include <tuple>
 
 #include "common/base/paths.hpp"
 #include "common/base/printable.hpp"
@@ -231,6 +232,30 @@ Expected<Pose> pose_in(const toml::table& table, std::string_view key, const std
                              : Eigen::Matrix3d::Identity().eval());
 }
 
+/// The value of a key, or `otherwise` where the key is absent. One of another type, as "true" in
+/// place of true, must not pass as absent.
+template <class T>
+Expected<T> value_or(const toml::table& table, std::string_view key, T otherwise,
+                     std::string_view type, const std::string& where) {
+  if (!table.contains(key)) return otherwise;
+  if (auto value = table[key].template value_exact<T>()) return std::move(*value);
+  return fail(fmt::format("{} is no {}", key, type), where, "see prehend tasks show");
+}
+
+/// Steps that come before, counted from 0.
+Expected<std::vector<std::size_t>> after_in(const toml::table& table, const std::string& where) {
+  std::vector<std::size_t> made;
+  if (!table.contains("after")) return made;
+  const toml::array* after = table["after"].as_array();
+  if (!after) return fail("after is no list of steps", where, "as [1, 2]");
+  for (const toml::node& node : *after) {
+    const auto number = node.value<std::int64_t>();
+    if (!number || *number < 1) return fail("comes after what is no step", where);
+    made.push_back(static_cast<std::size_t>(*number - 1));
+  }
+  return made;
+}
+
 Expected<Step> step_in(const toml::table& table, const std::string& where) {
   if (auto ok = model::only_keys(table,
                                  {"object", "grasp", "grasp_frame", "relative_to", "place",
@@ -238,10 +263,18 @@ Expected<Step> step_in(const toml::table& table, const std::string& where) {
                                  where, "see prehend tasks show");
       !ok)
     return tl::unexpected(ok.error());
-  Step made{.object = table["object"].value_or(std::string()),
-            .grasp = table["grasp"].value_or(std::string()),
-            .reference = table["relative_to"].value_or(std::string(the_table)),
-            .upright = table["upright"].value_or(false)};
+  Step made;
+  for (const auto& [key, otherwise, to] :
+       {std::tuple("object", std::string(), &made.object),
+        std::tuple("grasp", std::string(), &made.grasp),
+        std::tuple("relative_to", std::string(the_table), &made.reference)}) {
+    auto text = value_or(table, key, otherwise, "text", where);
+    if (!text) return tl::unexpected(text.error());
+    *to = std::move(*text);
+  }
+  const auto upright = value_or(table, "upright", false, "true or false", where);
+  if (!upright) return tl::unexpected(upright.error());
+  made.upright = *upright;
   const auto X_OG = pose_in(table, "grasp_frame", where), X_RO = pose_in(table, "place", where);
   if (!X_OG) return tl::unexpected(X_OG.error());
   if (!X_RO) return tl::unexpected(X_RO.error());
@@ -253,12 +286,9 @@ Expected<Step> step_in(const toml::table& table, const std::string& where) {
   made.X_RO = *X_RO;
   made.spread = *spread;
   made.via_height = *via;
-  if (const toml::array* after = table["after"].as_array())
-    for (const toml::node& node : *after) {
-      const auto number = node.value<std::int64_t>();
-      if (!number || *number < 1) return fail("comes after what is no step", where);
-      made.after.push_back(static_cast<std::size_t>(*number - 1));
-    }
+  auto after = after_in(table, where);
+  if (!after) return tl::unexpected(after.error());
+  made.after = std::move(*after);
   return made;
 }
 
@@ -271,9 +301,12 @@ Expected<TaskModel> from_toml(std::string_view text, const std::string& file) {
                                  "see prehend tasks show");
       !ok)
     return tl::unexpected(ok.error());
-  TaskModel made{(*root)["name"].value_or(std::string()),
-                 (*root)["demonstrations"].value_or(std::size_t{0}),
-                 {}};
+  const auto name = value_or(*root, "name", std::string(), "text", file);
+  if (!name) return tl::unexpected(name.error());
+  const auto count = value_or(*root, "demonstrations", std::int64_t{0}, "number", file);
+  if (!count) return tl::unexpected(count.error());
+  if (*count < 0) return fail("demonstrations are fewer than none", file);
+  TaskModel made{*name, static_cast<std::size_t>(*count), {}};
   const auto steps = model::entries(*root, "step");
   if (!steps) return tl::unexpected(model::located(steps.error(), file));
   for (std::size_t i = 0; i < steps->size(); ++i) {

@@ -12,8 +12,10 @@
 #include "common/convert/convert.hpp"
 #include "common/dds/topics.hpp"
 #include "common/model/catalogue.hpp"
+#include "common/model/task_kinds.hpp"
 #include "common/service/order_book.hpp"
 #include "services/demonstration/core/observation/grasp_judge.hpp"
+#include "services/demonstration/core/observation/task_prior.hpp"
 #include "services/demonstration/core/observation/watcher.hpp"
 #include "services/demonstration/files/recogniser_file.hpp"
 #include "services/demonstration/files/task_file.hpp"
@@ -29,6 +31,7 @@ constexpr Duration patience = std::chrono::milliseconds(500);  // with a hand th
 /// What the service was started with.
 struct Setting {
   model::GraspTaxonomy taxonomy;
+  model::TaskKinds task_kinds;
   model::Catalogue catalogue;
   std::vector<TaskRecogniser> recognisers;  // the first one is used
   std::filesystem::path folder;             // of tasks; empty: none is kept
@@ -74,7 +77,8 @@ class Service::Topics {
       : shell_(shell),
         setting_(std::move(setting)),
         judge_(setting_.taxonomy,
-               setting_.recognisers.empty() ? nullptr : &setting_.recognisers.front().recogniser),
+               setting_.recognisers.empty() ? nullptr : &setting_.recognisers.front().recogniser,
+               learnt_objects()),
         watcher_(WatcherOptions{}),
         grasps_(shell.publish(dds::demonstration_grasp)),
         segments_(shell.publish(dds::demonstration_segment)),
@@ -112,6 +116,7 @@ class Service::Topics {
     const std::string name = object ? object->name : std::string();
     if (name != at_) judge_.begin();
     at_ = name;
+    judge_.expect(prior_of_task(name));
     v1::DemonstratedGrasp grasp =
         to_message(judge_.kinds(), judge_.see(*hand, object), setting_.accept);
     // A hand that is at nothing grasps nothing.
@@ -128,6 +133,23 @@ class Service::Topics {
     shell_.status().latency("posture to grasp", shell_.now() - now);
     for (const TimedSegment& each : watcher_.news()) publish(each, message.stamp_ns());
     origin_ns_ = message.origin_ns();
+  }
+
+  const ObjectLikelihood* learnt_objects() const {
+    if (setting_.recognisers.empty()) return nullptr;
+    const auto& objects = setting_.recognisers.front().objects;
+    return objects ? &*objects : nullptr;
+  }
+
+  /// What the task that is being shown says of grasps; nothing where none is.
+  Eigen::VectorXd prior_of_task(const std::string& object) const {
+    if (!watcher_.task() || object.empty()) return {};
+    const auto known = setting_.tasks.find(*watcher_.task());
+    const auto keep_free = setting_.task_kinds.keep_free(*watcher_.task());
+    if (known == setting_.tasks.end() && keep_free.empty()) return {};
+    static const std::vector<ShownTask> never;
+    return task_prior(judge_.kinds(), setting_.taxonomy, keep_free,
+                      known == setting_.tasks.end() ? never : known->second.shown, object);
   }
 
   void on_detection(const v1::ObjectDetection& message, const dds::SampleInfo& info) {
@@ -269,6 +291,8 @@ Expected<std::unique_ptr<Service>> Service::create(service::Shell& shell) {
   const service::Config& config = shell.config();
   auto taxonomy = model::GraspTaxonomy::of_the_house();
   if (!taxonomy) return tl::unexpected(taxonomy.error());
+  auto task_kinds = model::TaskKinds::of_the_house();
+  if (!task_kinds) return tl::unexpected(task_kinds.error());
   auto catalogue = model::Catalogue::load(config.path("lab.catalogue"));
   if (!catalogue) return tl::unexpected(catalogue.error());
   const std::string& objects = config.text("demonstration.objects");
@@ -276,6 +300,7 @@ Expected<std::unique_ptr<Service>> Service::create(service::Shell& shell) {
     return wrong_use("there is no «" + objects + "»", "demonstration.objects",
                      "choose seen or simulated");
   Setting setting{.taxonomy = std::move(*taxonomy),
+                  .task_kinds = std::move(*task_kinds),
                   .catalogue = std::move(*catalogue),
                   .recognisers = {},
                   .folder = {},

@@ -45,7 +45,10 @@ struct Frame {
   std::vector<double> joint_angles;  // rad, order of model::HumanPosture; empty: not measured
   std::vector<double> joint_counts;  // what these were made of, for calibration; never published
   bool left = false;                 // a left hand that the device mirrored into a right one
+  /// Numbers of the buttons that are held, from 1 and at most max_buttons; nothing: it has none.
+  std::optional<std::vector<std::uint8_t>> held{};
 };
+inline constexpr std::size_t max_buttons = 8;
 
 /// What a lost sensor reports: at the tracker's origin, not turned.
 bool is_identity_pose(const Reading& reading);

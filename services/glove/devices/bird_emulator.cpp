@@ -181,6 +181,7 @@ void Emulator::change(std::uint8_t parameter, std::string_view value) {
 std::vector<std::string> Emulator::measure(const Frame& frame, Duration now) {
   now_ = now;
   readings_ = frame.readings;
+  held_ = frame.held.value_or(std::vector<std::uint8_t>());
   const bool due = measurements_++ % static_cast<std::uint64_t>(report_every_) == 0;
   if (!streaming() || !due || now_ < busy_until_) return {};
   return records();
@@ -198,7 +199,7 @@ std::vector<std::string> Emulator::records() const {
     Layout layout = unit.layout;
     layout.group = group_;
     records.push_back(encode(reading.p_TS, reading.q_TS.normalized().toRotationMatrix(), layout,
-                             static_cast<int>(n) + 1));
+                             static_cast<int>(n) + 1, n == 0 ? button_code(held_) : 0));
   }
   return records;
 }

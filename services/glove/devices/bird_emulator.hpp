@@ -50,6 +50,7 @@ class Emulator final : public glove::Emulator {
   int report_every_ = 1;
   std::uint64_t measurements_ = 0;
   std::vector<Reading> readings_;
+  std::vector<std::uint8_t> held_;  // buttons of the mouse at the first unit
 };
 
 }  // namespace prehend::glove::bird

@@ -15,6 +15,7 @@ using Eigen::Vector3d;
 
 constexpr double full_scale = 32768;
 constexpr double pi = std::numbers::pi;
+constexpr std::array button_codes{0x10, 0x30, 0x70};  // left, middle, right
 
 bool has_position(Format format) {
   return format == Format::position || format >= Format::position_angles;
@@ -153,6 +154,19 @@ std::optional<Record> decode(std::string_view bytes, const Layout& layout) {
   if (layout.button) record.button = bytes[after++];
   if (layout.group) record.address = bytes[after];
   return record;
+}
+
+std::optional<std::vector<std::uint8_t>> held_buttons(int code) {
+  if (code == 0) return std::vector<std::uint8_t>();
+  for (std::uint8_t i = 0; i < button_codes.size(); ++i)
+    if (code == button_codes[i]) return std::vector{static_cast<std::uint8_t>(i + 1)};
+  return std::nullopt;
+}
+
+int button_code(const std::vector<std::uint8_t>& held) {
+  for (std::uint8_t i = 0; i < button_codes.size(); ++i)
+    if (std::find(held.begin(), held.end(), i + 1) != held.end()) return button_codes[i];
+  return 0;
 }
 
 std::string encode(const Vector3d& position, const Matrix3d& rotation, const Layout& layout,

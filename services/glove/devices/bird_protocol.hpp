@@ -84,6 +84,12 @@ inline constexpr std::array hemispheres{
 
 const HemisphereInfo* find_hemisphere(std::string_view name);
 
+/// Numbers of the mouse buttons that are held, from 1, as the byte behind the words has them: 0x10
+/// left, 0x30 middle, 0x70 right, of which only one is told. Nothing: it is none of these. The
+/// codes are those of the Flock of Birds; we had no mouse to check them with.
+std::optional<std::vector<std::uint8_t>> held_buttons(int code);
+int button_code(const std::vector<std::uint8_t>& held);
+
 /// How records look on the line at present.
 struct Layout {
   Format format = Format::position_matrix;

@@ -40,6 +40,7 @@ struct DeviceOptions {
   std::string mode = "stream";
   int range = 72;  // inches
   std::string hemisphere = "left";
+  bool buttons = false;    // the tracker has a mouse whose buttons are told
   JointGains joint_gains;  // of a joint-angle glove; empty: not calibrated
   std::string wrist_port;  // of a tracker on the back of that glove; empty: none
   std::filesystem::path file;

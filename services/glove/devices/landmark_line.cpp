@@ -3,6 +3,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "services/glove/core/frame.hpp"
+
 namespace prehend::glove {
 namespace {
 
@@ -14,6 +16,20 @@ constexpr double farthest = 5;  // m
 /// Where landmark i of 21 stands among WebXR's 25: each finger has its metacarpal before it.
 std::size_t webxr_index(std::size_t i) {
   return i < 5 ? i : i + (i - 1) / 4;
+}
+
+/// Whether the line's buttons can be meant; they are put into it.
+bool take_buttons(const Json& buttons, LandmarkLine& line) {
+  if (buttons.is_null()) return true;
+  if (!buttons.is_array() || buttons.size() > max_buttons) return false;
+  line.held.emplace();
+  for (const Json& button : buttons) {
+    if (!button.is_number_unsigned()) return false;
+    const auto number = button.get<std::uint64_t>();
+    if (number < 1 || number > max_buttons) return false;
+    line.held->push_back(static_cast<std::uint8_t>(number));
+  }
+  return true;
 }
 
 }  // namespace
@@ -40,6 +56,7 @@ tl::expected<LandmarkLine, std::string_view> parse_landmarks(std::string_view te
     // Beyond, nanoseconds since 1970 do not fit into what the messages have for them.
     if (!(std::abs(*line.stamp) < 9e9)) return refuse("out of range");
   }
+  if (!take_buttons(field("buttons"), line)) return refuse("unreadable");
   if (points.size() != 21 && points.size() != 25) return refuse("wrong count");
   const bool webxr = points.size() == 25;
   for (std::size_t i = 0; i < line.points.size(); ++i) {
@@ -69,6 +86,7 @@ std::string to_line(const LandmarkLine& line, bool webxr) {
     points.push_back(list(line.points[i]));
   }
   json["points_m"] = std::move(points);
+  if (line.held) json["buttons"] = *line.held;
   return json.dump();
 }
 

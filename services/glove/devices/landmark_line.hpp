@@ -1,9 +1,11 @@
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <tl/expected.hpp>
+#include <vector>
 
 #include "services/glove/core/bare_hand.hpp"
 
@@ -21,6 +23,8 @@
 ///             a webcam; the hand is then held at the scene's X_WH
 ///   points_m  21 points as MediaPipe has them (bare_hand.hpp), or 25 in the order of WebXR, which
 ///             also has the four metacarpals; metres, at most 5 from the origin
+///   buttons   optional: numbers of the buttons that are held, 1 to 8; [] for none. Who has buttons
+///             says so in every line
 namespace prehend::glove {
 
 inline constexpr int landmark_line_version = 1;
@@ -29,7 +33,8 @@ struct LandmarkLine {
   std::optional<double> stamp;  // s
   bool left = false;
   bool in_room = false;
-  Landmarks points;  // m
+  Landmarks points;                                 // m
+  std::optional<std::vector<std::uint8_t>> held{};  // buttons; nothing: it has none
 };
 
 /// Fails with the reason why it cannot be used: "unreadable", "unknown version", "wrong count",

@@ -102,6 +102,7 @@ class LandmarksDevice final : public Device {
     if (!frame) return "not a hand";
     frame->sequence = sequence_++;
     frame->stamp = last_stamp_;
+    frame->held = line.held;
     thread_.well();
     sink_.frame(std::move(*frame));
     return {};
@@ -140,6 +141,7 @@ class LandmarksEmulator final : public Emulator {
     for (const Reading& reading : frame.readings)
       if (const auto finger = finger_of(reading.site))
         line.points[4 * static_cast<std::size_t>(*finger) + 4] = reading.p_TS;
+    line.held = frame.held;
     // The source has right hands; a left one is their image.
     if (left_)
       for (auto& point : line.points) point -= 2 * left_to_right_T_.dot(point) * left_to_right_T_;

@@ -2,7 +2,8 @@
 
 #include <fmt/format.h>
 
-#include <set>
+#include <algorithm>
+#include <utility>
 
 #include "common/base/clock.hpp"
 #include "common/base/log.hpp"
@@ -53,16 +54,26 @@ class Assembly {
     } else {
       sink.drop("not a rotation", 1);
     }
+    if (record.button) take_button(*record.button, sink);
     if (address == static_cast<int>(readings_.size())) finish(emit);
   }
 
  private:
+  /// Each unit tells of the mouse at its own plug. What is no code of a button holds none.
+  void take_button(int code, const DeviceSink& sink) {
+    if (!held_) held_.emplace();
+    const auto held = bird::held_buttons(code);
+    if (!held) return sink.drop("unknown button", 1);
+    for (const std::uint8_t button : *held)
+      if (std::find(held_->begin(), held_->end(), button) == held_->end()) held_->push_back(button);
+  }
   template <class Emit>
   void finish(Emit emit) {
     Frame frame;
     frame.sequence = sequence_++;
     frame.stamp = stamp_;
     frame.readings = std::move(readings_);
+    frame.held = std::exchange(held_, std::nullopt);
     clear();
     emit(std::move(frame));
   }
@@ -74,6 +85,7 @@ class Assembly {
 
   std::vector<Site> sites_;
   std::vector<Reading> readings_;
+  std::optional<std::vector<std::uint8_t>> held_;
   std::uint64_t sequence_ = 0;
   Time stamp_{};
   int last_ = 0;  // address of the last record; 0: none yet
@@ -86,12 +98,13 @@ struct Setup {
   double range = bird::long_range;  // m
   bird::HemisphereInfo hemisphere = bird::hemispheres[0];
   bool point = false;  // asked for each frame
-  double rate = 30;    // Hz, at which it is asked
+  bool buttons = false;
+  double rate = 30;  // Hz, at which it is asked
 
   /// A unit that stands alone has no bus, and its records no address.
   bool group() const { return sensors > 1; }
   bird::Layout layout() const {
-    return {.format = format, .button = false, .group = group(), .range = range};
+    return {.format = format, .button = buttons, .group = group(), .range = range};
   }
   /// Everything is said to every unit, as each has settings of its own, perhaps from another day.
   std::string commands() const {
@@ -102,7 +115,7 @@ struct Setup {
       text += to + "P\x03"s + (range > bird::short_range ? '\x01' : '\x00') + '\x00';
       text +=
           to + "L" + static_cast<char>(hemisphere.code[0]) + static_cast<char>(hemisphere.code[1]);
-      text += to + "M\x00"s;
+      text += to + (buttons ? "M\x01"s : "M\x00"s);
       text += to + bird::info(format).command;
     }
     return text + (group() ? "P\x23\x01"s : "P\x23\x00"s) + "Q";
@@ -333,6 +346,7 @@ Expected<std::unique_ptr<Device>> create_nest_of_birds(const DeviceOptions& opti
   setup.hemisphere = *hemisphere;
   setup.point = options.mode == "point";
   setup.rate = options.rate;
+  setup.buttons = options.buttons;
   return std::make_unique<NestOfBirds>(options.port, options.baud, options.sites, setup);
 }
 

@@ -56,11 +56,8 @@ Expected<std::unique_ptr<Device>> create_recording(const DeviceOptions& options)
   if (!recording) return tl::unexpected(recording.error());
   log::info("{}: {} frames{}", options.file.string(), recording->size(),
             recording->left() ? " of a left hand, mirrored into a right one" : "");
-  if (recording->unreadable() > 0)
-    log::warning("{}: {} rows say nothing usable", options.file.string(), recording->unreadable());
-  if (recording->other_hand() > 0)
-    log::info("{}: {} rows of the left hand left out", options.file.string(),
-              recording->other_hand());
+  if (const std::string told = recording->left_out(); !told.empty())
+    log::warning("{}: left out: {}", options.file.string(), told);
   PacedOptions paced{.every_frame = true,
                      .at_end = "the recording has ended; the hand stays as it is"};
   return std::make_unique<PacedDevice>(std::make_unique<Recording>(std::move(*recording)),
@@ -84,7 +81,7 @@ const std::vector<DeviceKind>& device_kinds() {
        .line = Line::serial,
        .emulate = emulate_nest_of_birds,
        .keys = {"glove.port", "glove.baud", "glove.sites", "glove.format", "glove.mode",
-                "glove.range", "glove.hemisphere", "glove.rate"}},
+                "glove.range", "glove.hemisphere", "glove.buttons", "glove.rate"}},
       {.name = "joint_glove",
        .help = "a glove that measures joint angles, on a serial port",
        .create = create_joint_glove,

@@ -2,9 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <string>
+#include <vector>
 
 #include "common/base/csv_rows.hpp"
 #include "common/base/file_text.hpp"
@@ -47,6 +49,31 @@ Hand read_landmarks(CsvRow& row, double rate) {
   return hand;
 }
 
+constexpr double min_finger = 0.02, max_finger = 0.3;  // m, middle knuckle to tip
+constexpr double min_interval = 5e-4;                  // s, between frames on average
+
+/// Whether lengths and times are those of a hand.
+Expected<void> check_units(const std::vector<Hand>& hands, bool leap, const std::string& where) {
+  std::vector<double> reach;
+  double earliest = INFINITY, latest = -INFINITY;
+  for (const Hand& hand : hands) {
+    reach.push_back((hand.bare.tip_R[2] - hand.bare.knuckle_R).norm());
+    earliest = std::min(earliest, hand.time);
+    latest = std::max(latest, hand.time);
+  }
+  if (reach.empty()) return {};
+  std::sort(reach.begin(), reach.end());
+  const bool small = reach.back() < min_finger;
+  if (small || reach[reach.size() / 2] > max_finger)
+    return fail(fmt::format("the middle finger is {:.2g} m long",
+                            small ? reach.back() : reach[reach.size() / 2]),
+                where, leap ? "positions are in mm" : "positions are in metres");
+  if (hands.size() > 10 && latest > earliest &&
+      (latest - earliest) / static_cast<double>(hands.size()) < min_interval)
+    return fail("its frames are less than half a millisecond apart", where, "t_us is in µs");
+  return {};
+}
+
 }  // namespace
 
 Expected<Recording> Recording::load(const std::filesystem::path& file,
@@ -75,6 +102,7 @@ Expected<Recording> Recording::parse(std::string_view text, std::string_view nam
     else
       hands.push_back(hand);
   }
+  if (const auto ok = check_units(hands, leap, where); !ok) return tl::unexpected(ok.error());
 
   std::size_t left = 0;
   for (const Hand& hand : hands) left += hand.bare.left;
@@ -107,6 +135,16 @@ Expected<Recording> Recording::parse(std::string_view text, std::string_view nam
   if (made.frames_.empty())
     return fail("there is no frame in the recording", where, "choose another file");
   return made;
+}
+
+std::string Recording::left_out() const {
+  std::string told;
+  if (unreadable_ > 0)
+    told =
+        fmt::format("{} rows say nothing usable, or are not later than those before", unreadable_);
+  if (other_hand_ > 0)
+    told += fmt::format("{}{} rows of the left hand", told.empty() ? "" : "; ", other_hand_);
+  return told;
 }
 
 std::optional<Frame> Recording::frame(std::uint64_t n) const {

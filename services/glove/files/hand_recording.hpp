@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -11,8 +12,8 @@ namespace prehend::glove {
 struct RecordingOptions {
   Pose X_WT = Pose::Identity();  // tracker on the table
   /// Where the hand shall be: a recording of a bare hand has no place in the room, it moves only
-  /// the fingers.
-  Pose X_WH = Pose::Identity();
+  /// the fingers. Not at the tracker itself: the core takes an identity pose for a fault.
+  Pose X_WH = make_pose(Eigen::Vector3d(0, 0, 0.25));
   double rate = 30;       // Hz, where there are no time stamps
   double hand_scale = 1;  // of the recorded hand
 };
@@ -21,8 +22,10 @@ struct RecordingOptions {
 /// Two formats, told apart by their first line:
 ///  - Leap: `frame,t_us,fps,hand,…,palm_x,…`, mm and µs; positions of palm and joints
 ///  - 21 landmarks: `frame,l0_x,…,l20_z`, metres in any frame, without time stamps
-/// In H the recorded middle knuckle lies where that of the hand model lies. If there are rows of a
-/// right hand, those of a left one are left out; a recording of left hands only is mirrored.
+/// Fails when its middle finger is never longer than 2 cm or mostly longer than 30 cm, or its
+/// frames are less than half a millisecond apart: units are others. In H the recorded middle
+/// knuckle lies where that of the hand model lies. If there are rows of a right hand, those of a
+/// left one are left out; a recording of left hands only is mirrored.
 class Recording final : public FrameSource {
  public:
   static Expected<Recording> load(const std::filesystem::path& file,
@@ -38,6 +41,8 @@ class Recording final : public FrameSource {
   /// Rows that could not be read, and rows of the other hand.
   std::size_t unreadable() const { return unreadable_; }
   std::size_t other_hand() const { return other_hand_; }
+  /// The rows that were left out in few words; empty where none was.
+  std::string left_out() const;
 
  private:
   std::vector<Frame> frames_;

@@ -42,6 +42,15 @@ Frame from_message(const v1::GloveFrame& message) {
   return frame;
 }
 
+v1::GloveButton button_message(const Frame& frame, const std::string& glove) {
+  v1::GloveButton message;
+  message.glove(glove);
+  message.sequence_number(frame.sequence);
+  message.stamp_ns(to_ns(frame.stamp));
+  if (frame.held) message.held(*frame.held);
+  return message;
+}
+
 v1::HandPosture to_message(const Posture& posture, const std::string& glove, const Wearer& wearer) {
   v1::HandPosture message;
   message.glove(glove);

@@ -12,6 +12,9 @@ v1::GloveFrame to_message(const Frame& frame, const std::string& glove, const st
 /// left out.
 Frame from_message(const v1::GloveFrame& message);
 
+/// Of a frame of a device that has buttons.
+v1::GloveButton button_message(const Frame& frame, const std::string& glove);
+
 struct Wearer {
   std::string user;
   double hand_scale = 1;

@@ -63,6 +63,7 @@ Expected<DeviceOptions> device_options(const service::Config& config) {
   options.mode = config.text("glove.mode");
   options.range = static_cast<int>(config.integer("glove.range"));
   options.hemisphere = config.text("glove.hemisphere");
+  options.buttons = config.flag("glove.buttons");
   options.left = config.text("glove.hand") == "left";
   options.wrist_port = config.text("glove.wrist_port");
   options.file = config.path("glove.file");

@@ -62,6 +62,7 @@ Service::Service(service::Shell& shell, const DeviceKind& kind, const DeviceOpti
       wearer_(std::move(wearer)),
       processor_({.X_WT = options.X_WT, .hand = hand}),
       postures_(shell.publish(dds::hand_posture)),
+      buttons_(shell.publish(dds::glove_button)),
       started_(shell.now()) {
   if (kind.synthetic && shell.config().text("glove.calibration").empty())
     wearer_.user = options.scene.demonstrator.user;
@@ -93,6 +94,7 @@ void Service::connect(std::unique_ptr<Device> device) {
                           frame = mirrored(std::move(frame), left_to_right_T_);
                         shell_.exclusively([this, &frame] {
                           on_frame(frame);  // first: somebody's hand waits for it
+                          if (frame.held) buttons_.publish(button_message(frame, glove_));
                           frames_.publish(to_message(frame, glove_, std::string(kind_.name)));
                         });
                       },

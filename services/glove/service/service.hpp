@@ -34,6 +34,7 @@ class Service {
   Processor processor_;
   service::Shell::Output<v1::GloveFrame> frames_;
   service::Shell::Output<v1::HandPosture> postures_;
+  service::Shell::Output<v1::GloveButton> buttons_;
   Time started_{}, last_frame_{}, last_posture_{};
   std::string complaint_;  // of the device; empty: none
   std::string last_reject_;

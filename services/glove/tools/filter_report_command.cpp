@@ -36,9 +36,10 @@ nlohmann::ordered_json to_json(const std::string& name, const FilterFigures& f) 
 
 void print(const std::string& name, const FilterFigures& f) {
   const std::string lag = f.fast > 0 ? fmt::format("{:.1f} ms", 1000 * f.lag) : "–";
-  fmt::print("| {} | {} | {:.2f} mm | {:.2f} mm | {:.2f} | {} | {} | {:.1f} mm | {} | {:.2f} % |\n",
-             name, f.frames, 1000 * f.noise_in, 1000 * f.noise_out, f.noise_out / f.noise_in, lag,
-             f.extremes, 1000 * f.moved, f.far, 100 * f.withheld);
+  const std::string ratio = f.noise_in > 0 ? fmt::format("{:.2f}", f.noise_out / f.noise_in) : "–";
+  fmt::print("| {} | {} | {:.2f} mm | {:.2f} mm | {} | {} | {} | {:.1f} mm | {} | {:.2f} % |\n",
+             name, f.frames, 1000 * f.noise_in, 1000 * f.noise_out, ratio, lag, f.extremes,
+             1000 * f.moved, f.far, 100 * f.withheld);
 }
 
 /// 0 when something was measured, 1 when no file is a recording.
@@ -55,6 +56,8 @@ int report(const FilterReportArguments& arguments) {
       log::warning(recording.error());
       continue;
     }
+    if (const std::string told = recording->left_out(); !told.empty())
+      log::warning("{}: left out: {}", file.string(), told);
     const std::vector<Frame> frames = frames_of(*recording, arguments.rate);
     FilterMeasurement one(arguments.noise);
     for (int round = 0; round < arguments.rounds; ++round) one.add(frames);

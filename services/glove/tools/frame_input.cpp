@@ -88,6 +88,8 @@ Expected<FrameInput> FrameInput::recorded(const std::filesystem::path& file) {
   } else {
     const auto recording = Recording::load(file, {});
     if (!recording) return tl::unexpected(recording.error());
+    if (const std::string told = recording->left_out(); !told.empty())
+      log::warning("{}: left out: {}", file.string(), told);
     state->recorded = frames_of(*recording);
   }
   if (state->recorded.empty()) return fail("holds no glove/frame", file.string());

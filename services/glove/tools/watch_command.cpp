@@ -1,5 +1,6 @@
 #include <unistd.h>
 
+#include <atomic>
 #include <csignal>
 #include <iostream>
 #include <memory>
@@ -7,7 +8,10 @@
 
 #include "common/dds/participant.hpp"
 #include "common/service/arguments.hpp"
+#include "common/service/consent_key.hpp"
 #include "common/service/membership.hpp"
+#include "common/service/shell.hpp"
+#include "common/tool/keyboard.hpp"
 #include "services/glove/tools/commands.hpp"
 #include "services/glove/tools/frame_input.hpp"
 #include "services/glove/tools/watch_view.hpp"
@@ -20,7 +24,47 @@ using Clock = std::chrono::steady_clock;
 struct WatchArguments {
   service::LabArguments lab;
   double duration = 0;  // s; 0: until somebody ends it
-  bool json = false;
+  bool json = false, consent = false;
+};
+
+/// Consent by the space bar, while somebody watches: an operator beside the viewer.
+class Consent {
+ public:
+  static Expected<std::unique_ptr<Consent>> create(const service::LabArguments& lab) {
+    auto shell = service::Shell::create(
+        lab.for_service(), {"operator-watch", "Gives consent by a key.", "operator", false});
+    if (!shell) return tl::unexpected(shell.error());
+    return std::make_unique<Consent>(std::move(*shell));
+  }
+  explicit Consent(std::unique_ptr<service::Shell> shell)
+      : shell_(std::move(shell)), key_(*shell_, shell_->config().text("mapping.hand_name")) {
+    shell_->on_tick(service::ConsentKey::period, [this](Time now) {
+      while (const auto pressed = keyboard_.key()) {
+        if (*pressed == ' ') key_.press(now);
+        if (*pressed == 'q') return shell_->stop();
+      }
+      key_.tick(now);
+    });
+    shell_->status().running();
+    thread_ = std::jthread([this] {
+      (void)shell_->run();
+      key_.end();
+      ended_ = true;
+    });
+  }
+  ~Consent() { shell_->stop(); }
+  Consent(const Consent&) = delete;
+  Consent& operator=(const Consent&) = delete;
+
+  /// By q, or a signal.
+  bool ended() const { return ended_; }
+
+ private:
+  std::unique_ptr<service::Shell> shell_;
+  service::ConsentKey key_;
+  tool::Keyboard keyboard_;
+  std::atomic<bool> ended_ = false;
+  std::jthread thread_;  // last: joined before the rest goes
 };
 
 volatile std::sig_atomic_t ended = 0;
@@ -54,6 +98,12 @@ int watch(const WatchArguments& arguments) {
       arguments.duration > 0 ? arguments.duration : (arguments.json ? snapshot_after : 1e9);
   const bool terminal = !arguments.json && ::isatty(STDOUT_FILENO) == 1;
   const auto pause = std::chrono::milliseconds(terminal ? 250 : 1000);
+  std::unique_ptr<Consent> consent;
+  if (arguments.consent) {
+    auto made = Consent::create(arguments.lab);
+    if (!made) return service::complain(made.error());
+    consent = std::move(*made);
+  }
   WatchView view(config->text("glove.name"));
   const Clock::time_point begin = Clock::now();
   Clock::time_point shown = begin;
@@ -69,7 +119,7 @@ int watch(const WatchArguments& arguments) {
         view.lost_service(sample.data.service().to_string());
       else
         view.hear(sample.data);
-    if (terminal && entered_key() == 'q') break;
+    if (consent ? consent->ended() : terminal && entered_key() == 'q') break;
     if (arguments.json || Clock::now() - shown < pause) continue;
     shown = Clock::now();
     // Written over the page before: each line's and the page's old rest is erased.
@@ -94,6 +144,8 @@ void add_watch(tool::Program& program) {
   a->lab.add_to(*command);
   command->add_option("--for", a->duration, "s after which it ends")->check(CLI::Range(0.1, 1e9));
   command->add_flag("--json", a->json, "one snapshot as a JSON document, after 2 s");
+  command->add_flag("--consent", a->consent,
+                    "the space bar, while it is held, is the deadman of the lab's hand; q ends");
   program.on(*command, [a] { return watch(*a); });
 }
 

@@ -5,7 +5,6 @@
 #include <optional>
 
 #include "common/base/log.hpp"
-#include "common/base/paths.hpp"
 #include "common/convert/convert.hpp"
 #include "common/dds/topics.hpp"
 #include "common/service/order_book.hpp"
@@ -15,6 +14,7 @@
 #include "services/mapping/core/mapping_model.hpp"
 #include "services/mapping/core/mapping_modes.hpp"
 #include "services/mapping/files/mapping_model_file.hpp"
+#include "services/mapping/files/model_places.hpp"
 #include "services/mapping/service/messages.hpp"
 
 namespace prehend::mapping {
@@ -279,7 +279,13 @@ Expected<std::unique_ptr<Service>> Service::create(service::Shell& shell) {
   if (!loaded) return tl::unexpected(loaded.error());
   auto hand = std::make_unique<const model::HandModel>(std::move(*loaded));
   std::filesystem::path file = config.path("mapping.model");
-  if (file.empty()) file = share_directory() / "trained" / (hand->name() + ".mapping");
+  if (file.empty()) {
+    file = model_places(hand_kind).model;
+    std::error_code none;
+    if (!std::filesystem::exists(file, none))
+      return fail("there is no trained model of this hand yet", file.string(),
+                  "prehend train --hand " + hand_kind);
+  }
   auto trained = load_mapping_model(file, *hand);
   if (!trained) return tl::unexpected(trained.error());
   auto model = std::make_unique<const MappingModel>(std::move(*trained));

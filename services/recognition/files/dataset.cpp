@@ -39,8 +39,7 @@ Expected<std::vector<ClassFolder>> class_folders(const std::filesystem::path& fo
   for (const auto& entry : std::filesystem::directory_iterator(folder, error))
     if (entry.is_directory())
       found.push_back({entry.path().filename().string(), pictures_in(entry.path())});
-  std::erase_if(found, [](const ClassFolder& c) { return c.files.empty(); });
-  if (found.empty())
+  if (std::all_of(found.begin(), found.end(), [](const auto& c) { return c.files.empty(); }))
     return fail("has no folder with pictures", folder.string(), "a folder a class is wanted");
   std::sort(found.begin(), found.end(),
             [](const ClassFolder& a, const ClassFolder& b) { return a.name < b.name; });
@@ -55,6 +54,10 @@ Expected<Dataset> load_dataset(const std::filesystem::path& folder) {
   Dataset made;
   Progress progress("reading");
   for (const ClassFolder& c : *folders) {
+    if (c.files.empty()) {
+      made.left_out.push_back({"has no picture", (folder / c.name).string(), "jpeg or png"});
+      continue;
+    }
     made.classes.push_back({c.name, {}});
     made.files.emplace_back();
     for (const auto& file : c.files) {

@@ -16,7 +16,8 @@ inline constexpr int view_side = 256;
 /// picture where there is none, made as small as models want it.
 Expected<TrainingView> load_view(const std::filesystem::path& file);
 
-/// The folders in a folder, sorted by name: each is a class, named as the folder.
+/// The folders in a folder, sorted by name: each is a class, named as the folder. Not all are
+/// without pictures.
 struct ClassFolder {
   std::string name;
   std::vector<std::filesystem::path> files;
@@ -24,7 +25,7 @@ struct ClassFolder {
 Expected<std::vector<ClassFolder>> class_folders(const std::filesystem::path& folder);
 
 /// All views of a folder of class folders. `files` has the file of each view, class by class;
-/// `left_out` says of each picture that could not be read why.
+/// `left_out` says of each picture that could not be read why, and of folders without any.
 struct Dataset {
   std::vector<TrainingClass> classes;
   std::vector<std::vector<std::filesystem::path>> files;

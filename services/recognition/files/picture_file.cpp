@@ -1,6 +1,7 @@
 #include "services/recognition/files/picture_file.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <fstream>
 #include <opencv2/imgcodecs.hpp>
@@ -66,12 +67,24 @@ std::optional<std::uint64_t> announced_pixels(std::span<const std::uint8_t> b) {
   return std::nullopt;
 }
 
+/// A jpeg whose last mark is missing: what is lost would be grey.
+bool is_cut_short(std::span<const std::uint8_t> b) {
+  if (b.size() < 4 || b[0] != 0xff || b[1] != 0xd8) return false;
+  std::size_t i = 2;
+  while (i + 4 < b.size() && b[i] == 0xff && b[i + 1] != 0xda)
+    i += 2 + (static_cast<std::size_t>(b[i + 2]) << 8 | b[i + 3]);
+  constexpr std::array<std::uint8_t, 2> last{0xff, 0xd9};
+  return i >= b.size() || std::search(b.begin() + static_cast<std::ptrdiff_t>(i), b.end(),
+                                      last.begin(), last.end()) == b.end();
+}
+
 }  // namespace
 
 Expected<Picture> decode_picture(std::span<const std::uint8_t> bytes, const std::string& where) {
   if (bytes.empty()) return fail("is empty", where);
   if (announced_pixels(bytes).value_or(0) > max_pixels)
     return fail("has more than 40 million pixels", where, "make it smaller");
+  if (is_cut_short(bytes)) return fail("is a jpeg that ends early", where, "copy it again");
   return from_bgr(guarded([&] {
                     const cv::Mat raw(1, static_cast<int>(bytes.size()), CV_8UC1,
                                       const_cast<std::uint8_t*>(bytes.data()));
@@ -170,7 +183,8 @@ std::vector<std::filesystem::path> pictures_in(const std::filesystem::path& fold
                    [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
     const bool picture = ending == ".jpg" || ending == ".jpeg" || ending == ".png" ||
                          ending == ".bmp" || ending == ".tif" || ending == ".tiff" ||
-                         ending == ".webp";
+                         ending == ".webp" || ending == ".gif" || ending == ".heic" ||
+                         ending == ".heif" || ending == ".avif";
     if (picture && entry.path().stem().extension() != ".mask") found.push_back(entry.path());
   }
   std::sort(found.begin(), found.end());

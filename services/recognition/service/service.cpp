@@ -25,6 +25,8 @@ using Clock = std::chrono::steady_clock;
 
 /// Pictures are worked on at this width at most; more costs time and finds nothing more.
 constexpr int max_side = 640;
+/// What is less likely than this share of what is accepted no grasp raises.
+constexpr double min_doubtful = 0.6;
 
 }  // namespace
 
@@ -116,15 +118,21 @@ class Service::CameraThread {
 class Service::Topics {
  public:
   /// `preview`: a jpeg that shows the last picture with what was recognised; empty: none.
-  Topics(service::Shell& shell, Detector detector, const CameraModel& camera, bool publishes,
-         std::filesystem::path preview)
+  Topics(service::Shell& shell, Detector detector, const CameraModel& camera,
+         model::GraspTaxonomy taxonomy, bool publishes, std::filesystem::path preview)
       : shell_(shell),
+        taxonomy_(std::move(taxonomy)),
         watcher_(std::move(detector)),
         camera_(camera),
         name_(shell.config().text("camera.name")),
         preview_(std::move(preview)),
         output_(shell.publish(dds::object_detection)) {
     if (publishes) images_ = shell.publish(dds::camera_image);
+    shell.subscribe(
+        dds::demonstration_grasp,
+        std::function([this](const v1::DemonstratedGrasp& grasp, const dds::SampleInfo& info) {
+          if (!info.gone) on_grasp(grasp);
+        }));
     shell.on_tick(std::chrono::milliseconds(50), [this](Time now) { dispose_gone(now); });
   }
 
@@ -189,6 +197,21 @@ class Service::Topics {
   }
 
  private:
+  /// Of an object that is known already the hand says nothing new: its kinds of grasps were weighed
+  /// by that object.
+  void on_grasp(const v1::DemonstratedGrasp& message) {
+    if (!message.object().to_string().empty()) return;
+    SeenGrasp grasp{from_ns(message.stamp_ns()),
+                    std::vector<double>(taxonomy_.classes().size(), 0.0)};
+    for (const v1::GraspProbability& each : message.grasps()) {
+      const model::GraspClass* kind = taxonomy_.find(each.grasp().to_string());
+      const double p = each.probability();
+      if (!(p >= 0 && p <= 1)) return shell_.status().drop("grasp whose probability is none");
+      if (kind) grasp.p[static_cast<std::size_t>(kind - taxonomy_.classes().data())] = p;
+    }
+    watcher_.told(taxonomy_, std::move(grasp));
+  }
+
   /// `larger`: the published picture is than the one that was looked at.
   void publish(const Track& track, double larger, Time stamp, std::uint64_t number) {
     v1::ObjectDetection message;
@@ -252,6 +275,7 @@ class Service::Topics {
   }
 
   service::Shell& shell_;
+  model::GraspTaxonomy taxonomy_;
   Watcher watcher_;
   CameraModel camera_;
   std::string name_;
@@ -290,6 +314,7 @@ Expected<Parts> load(const service::Config& config) {
   }
   DetectorOptions options;
   options.accept = config.number("recognition.accept");
+  options.doubtful = min_doubtful * options.accept;
   Detector detector(std::move(*models), *catalogue, options);
   return Parts{*camera, std::move(*catalogue), std::move(scene), std::move(detector)};
 }
@@ -312,6 +337,8 @@ Expected<std::unique_ptr<Service>> Service::create(service::Shell& shell) {
   const service::Config& config = shell.config();
   auto parts = load(config);
   if (!parts) return tl::unexpected(parts.error());
+  auto taxonomy = model::GraspTaxonomy::of_the_house();
+  if (!taxonomy) return tl::unexpected(taxonomy.error());
   const double rate = config.number("recognition.rate");
   if (!(rate > 0 && rate <= 200))
     return fail("must lie in 0 to 200 Hz", "recognition.rate", "10 is usual");
@@ -327,9 +354,9 @@ Expected<std::unique_ptr<Service>> Service::create(service::Shell& shell) {
     if (!opened) return tl::unexpected(opened.error());
     camera = std::move(*opened);
   }
-  std::unique_ptr<Service> made(
-      new Service(std::make_unique<Topics>(shell, std::move(parts->detector), parts->camera,
-                                           !by_topic, config.path("recognition.preview"))));
+  std::unique_ptr<Service> made(new Service(std::make_unique<Topics>(
+      shell, std::move(parts->detector), parts->camera, std::move(*taxonomy), !by_topic,
+      config.path("recognition.preview"))));
   Topics* const topics = made->topics_.get();
   if (by_topic)
     topics->listen();

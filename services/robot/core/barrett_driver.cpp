@@ -71,8 +71,7 @@ void Driver::connected(Time now) {
 
 void Driver::disconnected(const std::string& why) {
   talk_ = Talk::silent;
-  phase_ = Phase::offline;
-  trouble_ = why;
+  be(Phase::offline, why);
 }
 
 std::string Driver::step(std::string_view heard, Time now) {
@@ -150,8 +149,7 @@ std::string Driver::wake(Time now) {
 
 std::string Driver::converse(Time now) {
   if (std::exchange(gives_up_, false)) {
-    phase_ = Phase::configured;
-    trouble_ = "homing was stopped";
+    be(Phase::configured, "homing was stopped");
     return interrupt(now);
   }
   const std::size_t end = heard_.rfind(prompt);
@@ -177,8 +175,7 @@ std::string Driver::answered(const Reply& reply, Time now) {
       return judge_heat(reply, now);
     case Talk::homing:
       if (reply.error != 0) {
-        phase_ = Phase::faulted;
-        trouble_ = "homing: " + explain(reply.error);
+        be(Phase::faulted, "homing: " + explain(reply.error));
         talk_ = Talk::idle;
         asked_ = now;
         return {};
@@ -218,13 +215,10 @@ std::string Driver::judge_heat(const Reply& reply, Time now) {
     return lose(reply.error != 0 ? explain(reply.error) : "says no temperature", now);
   temperature_ = values->front() / 10.0;
   hot_ = *temperature_ > options_.max_temperature - (hot_ ? cool : 0);
-  if (hot_) {
-    phase_ = Phase::faulted;
-    trouble_ = too_hot();
-  } else {
-    phase_ = is_homed_ && !wants_home_ ? Phase::homed : Phase::configured;
-    trouble_.clear();
-  }
+  if (hot_)
+    be(Phase::faulted, too_hot());
+  else
+    be(is_homed_ && !wants_home_ ? Phase::homed : Phase::configured);
   setting_ = 0;
   if (phase_ == Phase::homed) return next_setting(now);
   talk_ = Talk::idle;
@@ -240,8 +234,7 @@ std::string Driver::too_hot() const {
 /// Nothing is to be done until it is homed, or has cooled down.
 std::string Driver::rest(Time now) {
   if (std::exchange(wants_home_, false) && phase_ == Phase::configured) {
-    phase_ = Phase::homing;
-    trouble_.clear();
+    be(Phase::homing);
     return ask(Talk::homing, "HI", homing_patience, now);
   }
   if (now - asked_ < heat_period) return {};
@@ -348,7 +341,7 @@ bool Driver::plausible(const Feedback& feedback, Time now) const {
 }
 
 void Driver::reject(const char* why, Time now) {
-  if (rejects_.size() < 100) rejects_.emplace_back(why);
+  count_reject(why);
   heard_.clear();
   waiting_ = false;
   asked_ = now - seconds(1 / options_.rate);
@@ -380,8 +373,7 @@ void Driver::publish(Time now) {
 
 /// Something is wrong.
 std::string Driver::lose(const std::string& why, Time now) {
-  phase_ = Phase::faulted;
-  trouble_ = why;
+  be(Phase::faulted, why);
   wants_home_ = false;
   return interrupt(now);
 }

@@ -6,7 +6,6 @@
 #include <optional>
 #include <string>
 #include <string_view>
-#include <utility>
 #include <vector>
 
 #include "services/robot/core/barrett_protocol.hpp"
@@ -75,12 +74,6 @@ class Driver final : public robot::Driver {
   void follow(const Eigen::VectorXd& dof, const Eigen::VectorXd& effort, Time now) override;
   void hold() override;
 
-  Phase phase() const override { return phase_; }
-  const std::string& trouble() const override { return trouble_; }
-  const std::optional<Reading>& reading() const override { return reading_; }
-  const std::string& identity() const override { return identity_; }
-  std::vector<std::string> take_rejects() override { return std::exchange(rejects_, {}); }
-
  private:
   enum class Talk {
     silent,   // no line
@@ -121,10 +114,7 @@ class Driver final : public robot::Driver {
   DriverOptions options_;
   std::vector<MotorControl> control_;
   Talk talk_ = Talk::silent;
-  Phase phase_ = Phase::offline;
-  std::string trouble_, identity_, heard_, line_;
-  std::vector<std::string> rejects_;
-  std::optional<Reading> reading_;
+  std::string heard_, line_;
   std::optional<double> temperature_;
   Time asked_{}, heard_at_{}, good_{};
   Duration patience_{};

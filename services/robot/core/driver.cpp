@@ -2,6 +2,7 @@
 
 #include "services/robot/core/barrett_driver.hpp"
 #include "services/robot/core/dynamixel_driver.hpp"
+#include "services/robot/core/ros2_control_driver.hpp"
 
 namespace prehend::robot {
 
@@ -25,9 +26,12 @@ std::string_view to_string(Phase phase) {
 
 const std::vector<DriverKind>& driver_kinds() {
   static const std::vector<DriverKind> kinds{
-      {"barrett", "barrett", "", 9600, "BarrettHand BH8-262, RS-232", barrett::create},
-      {"dynamixel", "", "dynamixel.toml", 57600, "servos of protocol 2.0 on one line",
-       dynamixel::create},
+      {"barrett", "barrett", "", Medium::serial, 9600, "BarrettHand BH8-262, RS-232",
+       barrett::create},
+      {"dynamixel", "", "dynamixel.toml", Medium::serial, 57600,
+       "servos of protocol 2.0 on one line", dynamixel::create},
+      {"ros2_control", "", "", Medium::topics, 0, "a controller manager of ROS 2, by DDS",
+       ros2_control::create},
   };
   return kinds;
 }

@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "common/base/error.hpp"
@@ -63,21 +64,45 @@ class Driver {
   /// pressing.
   virtual void hold() = 0;
 
-  virtual Phase phase() const = 0;
+  Phase phase() const { return phase_; }
   /// Of an offline or a faulted one: what is wrong.
-  virtual const std::string& trouble() const = 0;
-  virtual const std::optional<Reading>& reading() const = 0;
+  const std::string& trouble() const { return trouble_; }
+  const std::optional<Reading>& reading() const { return reading_; }
   /// What kind of robot it says it is.
-  virtual const std::string& identity() const = 0;
+  const std::string& identity() const { return identity_; }
   /// Answers that were no sound ones since the last call, by what was wrong with them.
-  virtual std::vector<std::string> take_rejects() = 0;
+  std::vector<std::string> take_rejects() { return std::exchange(rejects_, {}); }
+
+ protected:
+  void be(Phase phase, std::string trouble = {}) {
+    phase_ = phase;
+    trouble_ = std::move(trouble);
+  }
+  /// Of a flood only so many are kept.
+  void count_reject(std::string why) {
+    if (rejects_.size() < 100) rejects_.push_back(std::move(why));
+  }
+
+  Phase phase_ = Phase::offline;
+  std::string trouble_, identity_;
+  std::optional<Reading> reading_;
+
+ private:
+  std::vector<std::string> rejects_;
+};
+
+/// How driver and robot are joined.
+enum class Medium {
+  serial,  // bytes over a port
+  topics   // messages of ROS 2: each is one piece of what is heard or said
 };
 
 struct DriverKind {
   std::string_view name;
   std::string_view hand;    // model it drives; empty: any that has a wiring
   std::string_view wiring;  // file in the folder of such a hand; empty: none is needed
-  int baud;                 // of its line, unless somebody set it otherwise
+  Medium medium;
+  int baud;  // of its line, unless somebody set it otherwise
   std::string_view description;
   Expected<std::unique_ptr<Driver>> (*create)(const model::HandModel& hand,
                                               const DriverOptions& options);

@@ -57,15 +57,14 @@ void Driver::connected(Time now) {
 
 void Driver::disconnected(const std::string& why) {
   talk_ = Talk::silent;
-  phase_ = Phase::offline;
-  trouble_ = why;
+  be(Phase::offline, why);
   armed_ = false;
 }
 
 std::string Driver::step(std::string_view heard, Time now) {
   if (talk_ == Talk::silent) return {};
   parser_.feed(heard);
-  for (int n = parser_.take_broken(); n > 0; --n) reject("garbled answer");
+  for (int n = parser_.take_broken(); n > 0; --n) count_reject("garbled answer");
   switch (talk_) {
     case Talk::resting:
       parser_.clear();
@@ -244,8 +243,7 @@ std::string Driver::next_step(Time now) {
   if (all) at_ = 0;
   if (last == Step::place) {
     step_ = all ? Step::speed : Step::ping;
-    if (all) phase_ = Phase::homed;
-    if (all) trouble_.clear();
+    if (all) be(Phase::homed);
     return ask(now);
   }
   step_ = Step::speed;
@@ -314,7 +312,7 @@ std::string Driver::take(Time now) {
   const auto missing = std::find(answers_.begin(), answers_.end(), std::string());
   if (missing == answers_.end()) return accept(now);
   if (now - asked_ < due(answers_.size() * (status_bytes + size))) return {};
-  reject("no answer");
+  count_reject("no answer");
   waiting_ = false;
   return {};
 }
@@ -329,7 +327,7 @@ std::string Driver::accept(Time now) {
     return too_hot(hottest) ? lose(trouble_, now) : std::string();
   }
   if (!plausible(now)) {
-    reject("garbled answer");
+    count_reject("garbled answer");
     return {};
   }
   for (std::size_t i = 0; i < motions_.size(); ++i) observe(motions_[i], answers_[i], now);
@@ -395,8 +393,7 @@ std::string Driver::explain(Time now) {
 /// Something is wrong: all stay where they were seen last, and are asked anew.
 std::string Driver::lose(const std::string& why, Time now) {
   const std::string said = stay();
-  phase_ = identity_.empty() ? Phase::offline : Phase::faulted;
-  trouble_ = why;
+  be(identity_.empty() ? Phase::offline : Phase::faulted, why);
   talk_ = Talk::resting;
   asked_ = now;
   armed_ = wants_home_ = false;
@@ -442,10 +439,6 @@ bool Driver::too_hot(int celsius) {
 /// When so many bytes should have come.
 Duration Driver::due(std::size_t bytes) const {
   return milliseconds(40) + seconds(20.0 * static_cast<double>(bytes + 64) / options_.baud);
-}
-
-void Driver::reject(const char* why) {
-  if (rejects_.size() < 100) rejects_.emplace_back(why);
 }
 
 }  // namespace prehend::robot::dynamixel

@@ -6,7 +6,6 @@
 #include <optional>
 #include <string>
 #include <string_view>
-#include <utility>
 #include <vector>
 
 #include "services/robot/core/driver.hpp"
@@ -34,12 +33,6 @@ class Driver final : public robot::Driver {
   void home() override;
   void follow(const Eigen::VectorXd& dof, const Eigen::VectorXd& effort, Time now) override;
   void hold() override;
-
-  Phase phase() const override { return phase_; }
-  const std::string& trouble() const override { return trouble_; }
-  const std::optional<Reading>& reading() const override { return reading_; }
-  const std::string& identity() const override { return identity_; }
-  std::vector<std::string> take_rejects() override { return std::exchange(rejects_, {}); }
 
  private:
   enum class Talk {
@@ -91,7 +84,6 @@ class Driver final : public robot::Driver {
   void publish(Time now);
   std::string explain(Time now);
   std::string lose(const std::string& why, Time now);
-  void reject(const char* why);
   bool stuck(const Motion& motion, Time now) const;
   std::string stay();
   std::string sync_write(const Item& item, int Motion::*value) const;
@@ -108,10 +100,7 @@ class Driver final : public robot::Driver {
   Step step_ = Step::ping;
   std::size_t at_ = 0;  // the servo that is set up
   int tries_ = 0;
-  Phase phase_ = Phase::offline;
-  std::string trouble_, identity_;
-  std::vector<std::string> rejects_, answers_;  // answers: of the motions, as they came
-  std::optional<Reading> reading_;
+  std::vector<std::string> answers_;  // of the motions, as they came
   std::optional<double> temperature_;
   Time asked_{}, good_{}, heated_{};
   bool armed_ = false, waiting_ = false, wants_home_ = false;

@@ -2,6 +2,7 @@
 
 #include "services/robot/core/barrett_emulator.hpp"
 #include "services/robot/core/dynamixel_emulator.hpp"
+#include "services/robot/core/ros2_control_emulator.hpp"
 
 namespace prehend::robot {
 
@@ -19,12 +20,18 @@ Expected<std::unique_ptr<Emulator>> dynamixel_servos(const model::HandModel& han
   return std::make_unique<dynamixel::Emulator>(hand, *servos, options);
 }
 
+Expected<std::unique_ptr<Emulator>> controllers(const model::HandModel& hand,
+                                                const EmulatedOptions& options) {
+  return std::make_unique<ros2_control::Emulator>(hand, options);
+}
+
 }  // namespace
 
 const std::vector<EmulatorKind>& emulator_kinds() {
   static const std::vector<EmulatorKind> kinds{
-      {"barrett", "barrett", "", barrett_hand, 38400},
-      {"dynamixel", "", "dynamixel.toml", dynamixel_servos, 1000000},
+      {"barrett", "barrett", "", barrett_hand, Medium::serial, 38400},
+      {"dynamixel", "", "dynamixel.toml", dynamixel_servos, Medium::serial, 1000000},
+      {"ros2_control", "", "", controllers, Medium::topics, 0},
   };
   return kinds;
 }

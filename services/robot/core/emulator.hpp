@@ -9,6 +9,7 @@
 #include "common/base/error.hpp"
 #include "common/base/time.hpp"
 #include "common/model/hand_model.hpp"
+#include "services/robot/core/driver.hpp"
 
 namespace prehend::robot {
 
@@ -47,6 +48,7 @@ struct EmulatorKind {
   std::string_view hand, wiring;  // as of its driver
   Expected<std::unique_ptr<Emulator>> (*create)(const model::HandModel& hand,
                                                 const EmulatedOptions& options);
+  Medium medium;
   int baud;
 };
 const std::vector<EmulatorKind>& emulator_kinds();

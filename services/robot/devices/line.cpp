@@ -7,35 +7,40 @@ namespace prehend::robot {
 namespace {
 
 constexpr Duration retry = std::chrono::milliseconds(200);
+constexpr int max_pieces = 64;  // that are read at once
 
 }  // namespace
 
-Line::Line(Driver& driver, std::string port, int baud)
-    : driver_(driver), port_name_(std::move(port)), baud_(baud) {}
+Line::Line(Driver& driver, Opener open) : driver_(driver), open_(std::move(open)) {}
 
 Line::~Line() {
-  if (port_) (void)port_->write(driver_.farewell());
+  if (!channel_) return;
+  if (const std::string said = driver_.farewell(); !said.empty()) (void)channel_->write(said);
 }
 
 void Line::exchange(Time now) {
-  if (!port_) {
+  if (!channel_) {
     if (now < next_try_) return;
     next_try_ = now + retry;
-    auto opened = serial::SerialPort::open(port_name_, baud_);
+    auto opened = open_();
     if (!opened) return driver_.disconnected(opened.error().message());
-    port_.emplace(std::move(*opened));
-    port_->discard_input();
+    channel_ = std::move(*opened);
     driver_.connected(now);
   }
-  const auto heard = port_->read(Duration::zero());
-  if (!heard) return lose(heard.error(), now);
-  const std::string said = driver_.step(*heard, now);
-  if (said.empty()) return;
-  if (const auto sent = port_->write(said); !sent) lose(sent.error(), now);
+  // Messages come one by one; who sends more than can be read is heard at the next call.
+  for (int n = 0; n < max_pieces; ++n) {
+    const auto heard = channel_->read();
+    if (!heard) return lose(heard.error(), now);
+    if (n > 0 && heard->empty()) return;
+    const std::string said = driver_.step(*heard, now);
+    if (!said.empty())
+      if (const auto sent = channel_->write(said); !sent) return lose(sent.error(), now);
+    if (heard->empty()) return;
+  }
 }
 
 void Line::lose(const Error& error, Time now) {
-  port_.reset();
+  channel_.reset();
   next_try_ = now + retry;
   driver_.disconnected(error.message());
 }

@@ -1,19 +1,18 @@
 #pragma once
 
 #include <functional>
-#include <optional>
-#include <string>
+#include <memory>
 
-#include "common/serial/serial_port.hpp"
 #include "services/robot/core/driver.hpp"
+#include "services/robot/devices/channel.hpp"
 
 namespace prehend::robot {
 
-/// Carries what driver and robot say to each other over a serial port. A port that is missing is
-/// tried again; nothing here waits, so that a tick may call it.
+/// Carries what driver and robot say to each other over a channel. One that is missing is tried
+/// again; nothing here waits, so that a tick may call it.
 class Line {
  public:
-  Line(Driver& driver, std::string port, int baud);
+  Line(Driver& driver, Opener open);
   /// Lets the robot stop what it does.
   ~Line();
   Line(const Line&) = delete;
@@ -25,9 +24,8 @@ class Line {
   void lose(const Error& error, Time now);
 
   Driver& driver_;
-  std::string port_name_;
-  int baud_;
-  std::optional<serial::SerialPort> port_;
+  Opener open_;
+  std::unique_ptr<Channel> channel_;  // none: it is tried again
   Time next_try_{};
 };
 

@@ -4,8 +4,20 @@
 #include <utility>
 
 #include "common/base/file_text.hpp"
+#include "common/ros2/nodes/nodes.hpp"
 
 namespace prehend::robot {
+
+Expected<NodesOptions> nodes_of(const service::Config& config) {
+  const auto domain = ros2::domain_of_nodes();
+  if (!domain) return tl::unexpected(domain.error());
+  NodesOptions nodes{config.text("robot.port"), *domain, config.text("robot.network")};
+  if (nodes.controller.starts_with('/')) nodes.controller.erase(0, 1);
+  if (nodes.controller.empty()) nodes.controller = "joint_trajectory_controller";
+  if (nodes.network != "laptop" && nodes.network != "lan")
+    return wrong_use("is no network of nodes", "robot.network", "give laptop or lan");
+  return nodes;
+}
 
 Expected<Connection> connection_of(const service::Config& config) {
   for (const char* key : {"robot.rate", "robot.max_temperature", "robot.lost_after"})
@@ -18,14 +30,22 @@ Expected<Connection> connection_of(const service::Config& config) {
   connection.port = config.text("robot.port");
   const std::int64_t baud = config.integer("robot.baud");
   if (baud < 0 || baud > 10000000) return wrong_use("is no speed of a line", "robot.baud");
-  connection.baud = baud == 0 ? (*kind)->baud : static_cast<int>(baud);
-  if (connection.port.empty())
+  const int speed = baud == 0 ? (*kind)->baud : static_cast<int>(baud);
+  if ((*kind)->medium == Medium::topics) {
+    const auto nodes = nodes_of(config);
+    if (!nodes) return tl::unexpected(nodes.error());
+    connection.port = nodes->controller;
+    connection.open = nodes_channel(*nodes);
+  } else if (connection.port.empty()) {
     return wrong_use("is no port", "robot.port", "give /dev/ttyUSB0 or where an emulator is");
+  } else {
+    connection.open = serial_channel(connection.port, speed);
+  }
   const std::filesystem::path folder = model::hand_directory(
       (*kind)->hand.empty() ? config.text("mapping.hand") : std::string((*kind)->hand));
   auto hand = model::HandModel::load(folder);
   if (!hand) return tl::unexpected(hand.error());
-  DriverOptions options{.baud = connection.baud,
+  DriverOptions options{.baud = speed,
                         .rate = config.number("robot.rate"),
                         .max_temperature = config.number("robot.max_temperature"),
                         .lost_after = seconds(config.number("robot.lost_after"))};

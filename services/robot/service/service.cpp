@@ -45,7 +45,7 @@ Service::Service(service::Shell& shell, Connection connection)
     : shell_(shell),
       connection_(std::move(connection)),
       driver_(*connection_.driver),
-      line_(driver_, connection_.port, connection_.baud),
+      line_(driver_, connection_.open),
       states_(shell.publish(dds::robot_state)),
       hand_name_(shell.config().text("robot.hand_name")),
       homes_(shell.config().flag("robot.home")),
@@ -58,6 +58,8 @@ Expected<void> Service::start() {
   };
   robot.where = [this] { return where(); };
   robot.hold = [this] { driver_.hold(); };
+  robot.is_placed = [this] { return placed_ && driver_.reading().has_value(); };
+  robot.is_real = true;  // what speaks at the end of a wire cannot be seen from here
   robot.go = [this](const gate::Place& place, Time now) {
     if (phase_ == Phase::ready) driver_.follow(place.dof, place.effort, now);
   };

@@ -9,5 +9,6 @@ void add_emulate(tool::Program& program);
 void add_check(tool::Program& program);
 void add_home(tool::Program& program);
 void add_status(tool::Program& program);
+void add_twin(tool::Program& program);
 
 }  // namespace prehend::robot

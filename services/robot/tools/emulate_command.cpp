@@ -8,6 +8,8 @@
 #include "common/serial/pseudo_terminal.hpp"
 #include "common/service/arguments.hpp"
 #include "services/robot/devices/emulation.hpp"
+#include "services/robot/devices/nodes.hpp"
+#include "services/robot/service/options.hpp"
 #include "services/robot/tools/commands.hpp"
 #include "services/robot/tools/twin.hpp"
 
@@ -59,6 +61,25 @@ Expected<model::HandModel> hand_of(const EmulatorKind& kind, EmulateArguments& a
   return model::HandModel::load(folder);
 }
 
+/// A pseudo-terminal, or topics of ROS 2.
+Expected<std::function<Expected<std::unique_ptr<serial::Plug>>()>> way_to(
+    const EmulatorKind& kind, const EmulateArguments& arguments) {
+  if (kind.medium == Medium::topics) {
+    if (!arguments.link.empty())
+      return wrong_use("has no port", "--link", "nodes of ROS 2 find it by its topics");
+    const auto config = arguments.lab.load();
+    if (!config) return tl::unexpected(config.error());
+    const auto nodes = nodes_of(*config);
+    if (!nodes) return tl::unexpected(nodes.error());
+    return [nodes = *nodes] { return plug_into_nodes(nodes); };
+  }
+  return [link = arguments.link]() -> Expected<std::unique_ptr<serial::Plug>> {
+    auto terminal = serial::PseudoTerminal::open(link);
+    if (!terminal) return tl::unexpected(terminal.error());
+    return std::make_unique<serial::PseudoTerminal>(std::move(*terminal));
+  };
+}
+
 Expected<int> run(EmulateArguments arguments) {
   const auto kind = find_emulator(arguments.device);
   if (!kind) return tl::unexpected(kind.error());
@@ -83,11 +104,9 @@ Expected<int> run(EmulateArguments arguments) {
   sigaction(SIGTERM, &action, nullptr);
   sigaction(SIGINT, &action, nullptr);
   EmulationOptions emulation;
-  emulation.plug_in = [&arguments]() -> Expected<std::unique_ptr<serial::Plug>> {
-    auto terminal = serial::PseudoTerminal::open(arguments.link);
-    if (!terminal) return tl::unexpected(terminal.error());
-    return std::make_unique<serial::PseudoTerminal>(std::move(*terminal));
-  };
+  const auto plug_in = way_to(**kind, arguments);
+  if (!plug_in) return tl::unexpected(plug_in.error());
+  emulation.plug_in = *plug_in;
   emulation.baud = arguments.baud >= 0 ? arguments.baud : (*kind)->baud;
   emulation.faults = arguments.faults;
   emulation.on_plugged = [](const std::string& where) { std::cout << where << std::endl; };

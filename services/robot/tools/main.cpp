@@ -7,5 +7,6 @@ int main(int argc, char** argv) {
   add_check(program);
   add_home(program);
   add_status(program);
+  add_twin(program);
   return program.run(argc, argv);
 }

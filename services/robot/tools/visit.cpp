@@ -7,13 +7,14 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "common/robot/kept_stop.hpp"
 #include "services/robot/devices/line.hpp"
 #include "services/robot/service/options.hpp"
 
 namespace prehend::robot {
 namespace {
 
-constexpr Duration to_answer = std::chrono::seconds(5);
+constexpr Duration to_answer = std::chrono::seconds(8);
 constexpr Duration to_home = std::chrono::seconds(60);
 
 volatile std::sig_atomic_t interrupted = 0;
@@ -60,6 +61,17 @@ int tell(const Connection& robot, bool json, bool good) {
   return good ? exit_done : exit_no;
 }
 
+/// A stop that the service keeps holds for us as well.
+Expected<void> may_move(const service::Config& config) {
+  const auto kept = KeptStop::create(config, config.text("robot.hand_name"));
+  if (!kept) return fail("nobody knows whether it is stopped", kept.error().message());
+  const auto stop = kept->recall();
+  if (!stop) return {};
+  return fail("is stopped by " + stop->by + (stop->reason.empty() ? "" : ": " + stop->reason),
+              config.text("robot.hand_name"),
+              "start the service, and prehend release --reason …, when it is safe");
+}
+
 }  // namespace
 
 int visit(const VisitArguments& arguments, bool homes) {
@@ -67,9 +79,11 @@ int visit(const VisitArguments& arguments, bool homes) {
   if (!config) return tool::complain(config.error(), exit_wrong_use);
   auto robot = connection_of(*config);
   if (!robot) return tool::complain(robot.error());
+  if (homes)
+    if (const auto may = may_move(*config); !may) return tool::complain(may.error(), exit_no);
   Driver& driver = *robot->driver;
   end_orderly_when_interrupted();
-  Line line(driver, robot->port, robot->baud);
+  Line line(driver, robot->open);
   if (!exchange_until(line, to_answer, [&] { return interrupted != 0 || has_answered(driver); }))
     return tool::complain({driver.trouble(), robot->port,
                            "is it switched on, is robot.baud right, and no service on that port?"},
@@ -81,7 +95,8 @@ int visit(const VisitArguments& arguments, bool homes) {
   bool began = false;
   const bool over = exchange_until(line, to_home, [&] {
     began |= driver.phase() == Phase::homing;
-    return interrupted != 0 || (began && driver.phase() != Phase::homing && has_answered(driver));
+    return interrupted != 0 || !may_move(*config) ||
+           (began && driver.phase() != Phase::homing && has_answered(driver));
   });
   return tell(*robot, arguments.json, over && driver.phase() == Phase::ready);
 }

@@ -7,21 +7,12 @@
 
 #include "common/base/pose.hpp"
 #include "common/model/hand_model.hpp"
+#include "common/ros2/cdr.hpp"
 
-/// Messages of ROS 2 as bytes on the wire (idl/ros2): little endian, behind the four bytes that say
-/// so. Pure.
+/// Messages of ROS 2 that nobody else needs; see common/ros2. Pure.
 namespace prehend::ros {
 
-using Bytes = std::vector<std::uint8_t>;
-
-/// sensor_msgs/JointState. Velocities and efforts may be left out.
-struct Joints {
-  std::int64_t stamp_ns = 0;
-  std::string frame;
-  std::vector<std::string> names;
-  std::vector<double> positions, velocities, efforts;
-};
-Bytes joint_state(const Joints& joints);
+using ros2::Bytes;
 
 /// Where the frame `child` stands in the frame `parent`.
 struct Transform {

@@ -1,13 +1,12 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <charconv>
 #include <csignal>
-#include <cstdlib>
 #include <iostream>
 
 #include "common/base/clock.hpp"
 #include "common/base/log.hpp"
+#include "common/ros2/nodes/nodes.hpp"
 #include "common/service/arguments.hpp"
 #include "common/service/supervisor.hpp"
 #include "services/ros/service/teller.hpp"
@@ -16,25 +15,11 @@ namespace {
 
 using namespace prehend;
 
-constexpr int max_domain = 232;
 constexpr Duration beat = std::chrono::milliseconds(100);
 
 volatile std::sig_atomic_t ended = 0;
 extern "C" void on_end(int) {
   ended = 1;
-}
-
-/// As nodes take it: 0 where nothing is said.
-Expected<int> domain_of_nodes() {
-  const char* said = std::getenv("ROS_DOMAIN_ID");
-  const std::string_view text = said ? said : "";
-  if (text.empty()) return 0;
-  int domain = -1;
-  const auto [end, failed] = std::from_chars(text.data(), text.data() + text.size(), domain);
-  if (failed != std::errc{} || end != text.data() + text.size() || domain < 0 ||
-      domain > max_domain)
-    return wrong_use("is no domain", fmt::format("ROS_DOMAIN_ID={}", text), "0 to 232");
-  return domain;
 }
 
 int run(const service::Config& config, const ros::Teller::Options& options) {
@@ -74,7 +59,7 @@ int main(int argc, char** argv) {
   app.add_option("--hand", options.hand, "the robot hand that is told; without: the first heard");
   log::set_name("ros");
   if (const auto code = service::parse(app, {argv + 1, argv + argc})) return *code;
-  const auto domain = domain_of_nodes();
+  const auto domain = ros2::domain_of_nodes();
   if (!domain) return service::complain(domain.error(), exit_wrong_use);
   options.domain = *domain;
   const auto config = lab.load();

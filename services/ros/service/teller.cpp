@@ -8,20 +8,14 @@
 #include "common/base/log_format.hpp"
 #include "common/convert/convert.hpp"
 #include "common/dds/topics.hpp"
+#include "common/ros2/joints.hpp"
+#include "common/ros2/nodes/nodes.hpp"
 #include "common/service/membership.hpp"
 
 namespace prehend::ros {
 namespace {
 
 constexpr const char* table = "table";
-
-/// As nodes offer such topics, so that their readers match.
-dds::RawTopic topic_of_ros(const char* name, const char* type, bool kept) {
-  dds::RawTopic topic{name, type, false, {}};
-  topic.qos.transient_local = kept;
-  topic.qos.writer_depth = kept ? 1 : 10;
-  return topic;
-}
 
 Expected<Pose> pose_of(const std::vector<double>& v) {
   if (v.size() != 7) return wrong_use("is no pose", "camera.X_WC", "seven numbers");
@@ -47,9 +41,7 @@ Teller::~Teller() {
 Expected<void> Teller::join_nodes(const service::Config& config) {
   const auto X_WC = pose_of(config.numbers("camera.X_WC"));
   if (!X_WC) return tl::unexpected(X_WC.error());
-  dds::ParticipantOptions options{.name = "prehend_ros", .domain = options_.domain};
-  options.network.profile = options_.network;
-  auto joined = dds::Participant::create(options);
+  auto joined = ros2::join_nodes("prehend_ros", options_.domain, options_.network);
   if (!joined) return tl::unexpected(joined.error());
   nodes_.emplace(std::move(*joined));
   auto made = voices();
@@ -62,15 +54,15 @@ Expected<void> Teller::join_nodes(const service::Config& config) {
 
 Expected<Teller::Voices> Teller::voices() {
   const auto writer = [this](const char* name, const char* type, bool kept) {
-    return dds::RawWriter::create(*nodes_, topic_of_ros(name, type, kept));
+    return dds::RawWriter::create(*nodes_, ros2::topic_of_nodes(name, type, kept));
   };
-  auto joints = writer("rt/joint_states", "sensor_msgs::msg::dds_::JointState_", false);
+  auto joints = writer("joint_states", "sensor_msgs/JointState", false);
   if (!joints) return tl::unexpected(joints.error());
-  auto text = writer("rt/robot_description", "std_msgs::msg::dds_::String_", true);
+  auto text = writer("robot_description", "std_msgs/String", true);
   if (!text) return tl::unexpected(text.error());
-  auto moving = writer("rt/tf", "tf2_msgs::msg::dds_::TFMessage_", false);
+  auto moving = writer("tf", "tf2_msgs/TFMessage", false);
   if (!moving) return tl::unexpected(moving.error());
-  auto fixed = writer("rt/tf_static", "tf2_msgs::msg::dds_::TFMessage_", true);
+  auto fixed = writer("tf_static", "tf2_msgs/TFMessage", true);
   if (!fixed) return tl::unexpected(fixed.error());
   return Voices{std::move(*joints), std::move(*text), std::move(*moving), std::move(*fixed)};
 }
@@ -139,12 +131,12 @@ void Teller::tell(const v1::HandState& state) {
   if (!model || !X_WB || state.joint().size() != model->joints().size()) return;
   const Eigen::VectorXd positions = convert::from_message(state.joint());
   if (!positions.allFinite()) return;
-  Joints joints{state.stamp_ns(), model->links()[0].name, {}, state.joint(), {}, {}};
+  ros2::Joints joints{state.stamp_ns(), model->links()[0].name, {}, state.joint(), {}, {}};
   for (const model::HandJoint& joint : model->joints()) joints.names.push_back(joint.name);
   // As many as there are joints, or none: so ROS 2 wants them.
   if (state.velocity().size() == joints.names.size()) joints.velocities = state.velocity();
   if (state.torque().size() == joints.names.size()) joints.efforts = state.torque();
-  write(voices_->joint_states, joint_state(joints));
+  write(voices_->joint_states, ros2::joint_state(joints));
   write(voices_->tf, tf_message(transforms_of(*model, *X_WB, positions, table, state.stamp_ns())));
 }
 

@@ -12,6 +12,7 @@ using Eigen::Index;
 using Eigen::VectorXd;
 
 constexpr double window = 0.3;         // s
+constexpr double long_window = 1.0;    // s, of fingers that tremble
 constexpr double still = 0.015;        // rad, that what presses may move in the window
 constexpr double still_closing = 0.1;  // rad, that the rest and the command may
 constexpr double pressing = 0.03;      // rad, that the command is ahead of a joint that presses
@@ -33,15 +34,15 @@ bool any(const std::vector<bool>& values) {
   return std::find(values.begin(), values.end(), true) != values.end();
 }
 
-/// A joint has moved by more than it may. A finger that presses on nothing follows the operator's,
-/// and that trembles with the noise of the glove.
+/// A joint has moved by more than it may: what presses by more than `margin`, rad. A finger that
+/// presses on nothing follows the operator's, and that trembles with the noise of the glove.
 bool has_moved(const model::HandModel& hand, const VectorXd& joint, const VectorXd& before,
-               const std::vector<bool>& presses) {
+               const std::vector<bool>& presses, double margin) {
   if (before.size() != joint.size()) return true;
   for (Index i = 0; i < joint.size(); ++i) {
     const auto dof = static_cast<std::size_t>(hand.joints()[static_cast<std::size_t>(i)].dof);
-    const double margin = presses[dof] ? still : still_closing;
-    if (std::abs(joint[i] - before[i]) > margin * model::radian_of(hand.dofs()[dof])) return true;
+    const double may = presses[dof] ? margin : still_closing;
+    if (std::abs(joint[i] - before[i]) > may * model::radian_of(hand.dofs()[dof])) return true;
   }
   return false;
 }
@@ -69,12 +70,6 @@ GraspVerdict judge(Closure& closure) {
   return verdict;
 }
 
-void ClosureDetector::restart(const VectorXd& joint, const VectorXd& command) {
-  still_ = 0;
-  joint_ = joint;
-  command_ = command;
-}
-
 std::optional<int> ClosureDetector::update(const grasping::World& world) {
   const grasping::HandMotion motion = world.hand_motion();
   const VectorXd& command = world.commanded_dof();
@@ -89,14 +84,18 @@ std::optional<int> ClosureDetector::update(const grasping::World& world) {
     }
   }
   const std::vector<bool> presses = ahead(world.hand(), command, motion.dof, pressing);
-  const bool moved = has_moved(world.hand(), motion.joint, joint_, presses) ||
-                     any(ahead(world.hand(), command, command_, still_closing));
-  if (moved || judged_ || !any(presses)) {
-    restart(motion.joint, command);
-    return std::nullopt;
-  }
-  still_ += time_step_;
-  if (still_ < window) return std::nullopt;
+  const auto rested = [&](Rest& rest, double margin, double wanted) {
+    if (has_moved(world.hand(), motion.joint, rest.joint, presses, margin) || judged_ ||
+        any(ahead(world.hand(), command, rest.command, still_closing)) || !any(presses)) {
+      rest = {0, motion.joint, command};
+      return false;
+    }
+    rest.time += time_step_;
+    return rest.time >= wanted;
+  };
+  const bool steady = rested(steady_, still, window);
+  const bool trembling = rested(trembling_, still_closing, long_window);
+  if (!steady && !trembling) return std::nullopt;
   for (int body = 0; body < world.body_count(); ++body)
     if (is_gripped(world.contacts(body))) {
       judged_ = motion.dof;

@@ -43,7 +43,9 @@ GraspVerdict judge(Closure& closure);
 /// Finds the moment at which the hand has closed on something: for 0.3 s no joint that presses has
 /// moved by more than 0.015 rad and no other by more than 0.1 rad, something presses, and at least
 /// two contacts on two links carry force. One drive may press the object against fingers that stand
-/// at their ends; those that touch nothing tremble with the operator's hand.
+/// at their ends; those that touch nothing tremble with the operator's hand. Weak fingers tremble
+/// also where they press, or give way: they have closed when for 1 s none moves by more than 0.1
+/// rad.
 class ClosureDetector {
  public:
   explicit ClosureDetector(double time_step) : time_step_(time_step) {}
@@ -53,12 +55,15 @@ class ClosureDetector {
   std::optional<int> update(const grasping::World& world);
 
  private:
-  void restart(const Eigen::VectorXd& joint, const Eigen::VectorXd& command);
+  /// Since when the joints stand still.
+  struct Rest {
+    double time = 0;          // s
+    Eigen::VectorXd joint;    // where they were when they came to rest
+    Eigen::VectorXd command;  // what the DoFs were told then
+  };
 
   double time_step_;
-  double still_ = 0;                       // s
-  Eigen::VectorXd joint_;                  // where they were when they came to rest
-  Eigen::VectorXd command_;                // what the DoFs were told then
+  Rest steady_, trembling_;
   std::optional<Eigen::VectorXd> judged_;  // DoFs at the last closure
 };
 

@@ -78,6 +78,7 @@ Expected<void> Service::start() {
     return simulation_->accept(from_message(message, place), now);
   };
   robot.where = [this] { return where(); };
+  robot.is_placed = [this] { return simulation_->command().has_value(); };
   robot.hold = [this] { simulation_->hold(); };
   robot.rests = [this] { return !simulation_->is_braking(); };
   robot.go = [this](const gate::Place& place, Time now) { go(place, now); };
@@ -100,15 +101,16 @@ Expected<void> Service::start() {
 }
 
 /// What the hand is told at the moment, which after a silence is to stay; before any command it may
-/// be put anywhere.
+/// be put anywhere, unless an arm carries it.
 std::optional<gate::Place> Service::where() const {
-  if (!simulation_->command()) return std::nullopt;
+  if (!simulation_->command() && !simulation_->arm()) return std::nullopt;
   return gate::Place{simulation_->world().commanded_dof(), simulation_->world().commanded_base()};
 }
 
 /// As a command that answers no glove frame.
 void Service::go(const gate::Place& place, Time now) {
   Command command = simulation_->command().value_or(Command{});
+  command.model = hand_.name();
   command.stamp = now;
   command.origin = {};
   command.mode = static_cast<int>(v1::MODE_HOLD);

@@ -24,9 +24,13 @@ for (const wanted of [/<p id="link"[^>]*>connected<\/p>/, /<p id="grasp"[^>]*>[A
   await page.until(`${wanted}.test(${html})`, wanted);
 
 // What would be saved, instead of a file.
-await page.evaluate(`URL.createObjectURL = (blob) => (blob.text().then((text) => (window.saved = text)), "data:,");`);
+await page.evaluate(`URL.createObjectURL = (blob) => (blob.text().then((text) => (window.saved = text)), (window.blob = blob), "data:,");`);
 await page.evaluate("document.getElementById('csv').click()");
 await page.until("/^object,epsilon.*\\n\"[A-Za-z ]+\",[0-9.]+/.test(window.saved)", "the contacts can be saved");
+await page.evaluate("document.getElementById('png').click()");
+await page.until("window.blob.type === 'image/png'", "the picture can be saved");
+assert.equal(await page.evaluate("createImageBitmap(window.blob).then(({ height }) => height - document.getElementById('view').height)"),
+             40, "it has a line of figures");
 
 // Held still just after the grasp, wherever it was before.
 const time = "Number(document.getElementById('time').value)";

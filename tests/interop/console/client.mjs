@@ -135,7 +135,9 @@ for (const names of [[], ["chat"]])
 // Every channel brings what its schema promises, and the lab's own types are read as they are.
 const drawn = ["/tf", "/scene", "/camera/image", "/camera/annotations", "/grasp/report", "/log", "/status",
                "/latency", "hand/posture", "scene/state", "grasp/report", "robot/command"];
-const { heard } = await watch(["foxglove.sdk.v1"], drawn, (all) =>
+const resists = ({ channel, message }) => channel.topic === "/scene" &&
+  message.entities.some(({ id, triangles }) => id.startsWith("forces/") && triangles[0]?.points.length > 0);
+const { heard } = await watch(["foxglove.sdk.v1"], drawn, (all) => all.some(resists) &&
   drawn.every((topic) => all.some(({ channel }) => channel.topic === topic)));
 for (const { channel, message } of heard)
   if (channel.encoding === "json")

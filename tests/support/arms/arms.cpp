@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <stdexcept>
 
@@ -130,7 +131,8 @@ std::vector<ArmFiles> all_arms() {
   for (const auto& entry :
        std::filesystem::directory_iterator(PREHEND_SOURCE "/common/models/arms"))
     if (entry.is_directory())
-      arms.push_back({entry.path().filename().string(), read_file(entry.path() / "arm.urdf").value(),
+      arms.push_back({entry.path().filename().string(),
+                      read_file(entry.path() / "arm.urdf").value(),
                       read_file(entry.path() / "arm.toml").value()});
   std::sort(arms.begin(), arms.end(), [](const auto& a, const auto& b) { return a.name < b.name; });
   return arms;
@@ -142,9 +144,10 @@ std::vector<std::string> arm_names() {
   return names;
 }
 
-const model::ArmModel& arm(const std::string& name) {
-  static const std::map<std::string, model::ArmModel> loaded = [] {
-    std::map<std::string, model::ArmModel> made;
+const model::ArmModel& arm(std::string_view name) {
+  using Models = std::map<std::string, model::ArmModel, std::less<>>;
+  static const Models loaded = [] {
+    Models made;
     for (const ArmFiles& files : all_arms()) {
       auto parsed = model::ArmModel::parse(files.urdf, files.toml);
       if (!parsed) throw std::runtime_error(files.name + ": " + parsed.error().message());
@@ -152,7 +155,10 @@ const model::ArmModel& arm(const std::string& name) {
     }
     return made;
   }();
-  return loaded.at(name);
+  const auto found = loaded.find(name);
+  if (found == loaded.end())
+    throw std::runtime_error("no arm of the tests is named " + std::string(name));
+  return found->second;
 }
 
 arm::Joints random_posture(const model::ArmModel& arm, Random& random) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "common/arm/kinematics.hpp"
@@ -22,7 +23,7 @@ const std::vector<ArmFiles>& foreign_arms();
 std::vector<ArmFiles> all_arms();
 
 /// One of them, loaded once. Throws when it cannot be loaded.
-const model::ArmModel& arm(const std::string& name);
+const model::ArmModel& arm(std::string_view name);
 std::vector<std::string> arm_names();
 
 /// A posture within the limits.

@@ -1,6 +1,11 @@
 // What an arm's two files may say: each wrong one is refused, naming the file and the element.
 #include <gtest/gtest.h>
+#include <unistd.h>
 
+#include <filesystem>
+#include <fstream>
+
+#include "common/model/arm_model.hpp"
 #include "tests/support/arms/arms.hpp"
 
 using namespace prehend;
@@ -62,6 +67,22 @@ TEST(ArmFile, FiveAndEightJointsAreNoArm) {
   EXPECT_NE(five.error().message().find("has 5 joints that move; an arm has 6 or 7"),
             std::string::npos)
       << five.error().message();
+}
+
+// `arm add -o mine` made a folder that `arm solve mine` did not find, as it has no slash.
+TEST(ArmFile, AFolderThatLiesHereNeedsNoSlash) {
+  const auto before = std::filesystem::current_path();
+  const auto folder =
+      std::filesystem::path(testing::TempDir()) / ("arms" + std::to_string(getpid()));
+  std::filesystem::create_directories(folder / "mine");
+  std::filesystem::create_directories(folder / "puma560");
+  for (const char* name : {"mine", "puma560"}) std::ofstream(folder / name / "arm.toml") << "";
+  std::filesystem::current_path(folder);
+  EXPECT_EQ(model::arm_directory("mine"), "mine");
+  EXPECT_NE(model::arm_directory("puma560"), "puma560") << "a name comes first";
+  EXPECT_NE(model::arm_directory("nobody"), "nobody");
+  std::filesystem::current_path(before);
+  std::filesystem::remove_all(folder);
 }
 
 TEST(ArmFile, LimitsOfTheTomlHold) {

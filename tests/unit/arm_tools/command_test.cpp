@@ -1,7 +1,7 @@
 // `prehend arm` as a user calls it: exit codes, JSON alone on standard output, one clear line.
+#include "tests/support/command_test.hpp"
+
 #include <gtest/gtest.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cstdlib>
@@ -14,38 +14,12 @@
 namespace {
 
 using Json = nlohmann::json;
-using std::filesystem::path;
 
-struct Answer {
-  int code = -1;
-  std::string output, complaint;
-};
+using prehend::test::Answer;
 
-class ArmCommand : public testing::Test {
+class ArmCommand : public prehend::test::CommandTest {
  protected:
-  void SetUp() override {
-    const auto* test = testing::UnitTest::GetInstance()->current_test_info();
-    folder = path(testing::TempDir()) / (std::to_string(getpid()) + test->name());
-    std::filesystem::create_directories(folder);
-  }
-  void TearDown() override { std::filesystem::remove_all(folder); }
-
-  Answer run(const std::string& arguments) const {
-    const std::string command = "XDG_DATA_HOME=" + (folder / "data").string() +
-                                " " PREHEND_BIN "/prehend arm " + arguments + " >" +
-                                (folder / "out").string() + " 2>" + (folder / "err").string() +
-                                " </dev/null";
-    const int status = std::system(command.c_str());
-    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1,
-            prehend::read_file(folder / "out").value(), prehend::read_file(folder / "err").value()};
-  }
-
-  std::string file(const std::string& name, const std::string& text) const {
-    EXPECT_TRUE(prehend::write_file(folder / name, text));
-    return (folder / name).string();
-  }
-
-  path folder;
+  ArmCommand() : CommandTest(PREHEND_BIN "/prehend arm") {}
 };
 
 constexpr const char* nominal =
@@ -66,6 +40,16 @@ TEST_F(ArmCommand, SolvesThePumaInBothFrames) {
           "--pose=0.5963,-0.15005,0.65745,0.7071067811865476,0,0.7071067811865476,0");
   ASSERT_EQ(base.code, 0) << base.complaint;
   EXPECT_EQ(Json::parse(base.output)["solutions"].size(), 8u);
+}
+
+// A file that includes others was said to have no links.
+TEST_F(ArmCommand, XacroIsNamed) {
+  const Answer answer =
+      run("check " + file("ur.xacro",
+                          "<robot name='ur' xmlns:xacro='http://ros.org/wiki/xacro'>\n"
+                          "<xacro:include filename='ur_macro.xacro'/></robot>"));
+  EXPECT_EQ(answer.code, 1);
+  EXPECT_NE(answer.output.find("is xacro"), std::string::npos) << answer.output;
 }
 
 TEST_F(ArmCommand, WrongUseIsOneLineAndExitCodeTwo) {

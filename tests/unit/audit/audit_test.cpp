@@ -1,6 +1,7 @@
 // Lines there and back, what is no line, files that follow each other, and refusals that come a
 // thousand times and are a few lines.
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <fstream>
@@ -110,6 +111,57 @@ TEST_F(Audit, CannotBeOpenedWhereAFileIs) {
   std::filesystem::create_directories(folder_.parent_path());
   std::ofstream(folder_) << "no folder";
   EXPECT_FALSE(Log::open({.folder = folder_, .name = "hand"}));
+}
+
+// It would wait for who reads it, for ever, in the process that moves the hand.
+TEST_F(Audit, DoesNotWaitForThePipeThatIsInItsPlace) {
+  std::filesystem::create_directories(folder_);
+  ASSERT_EQ(::mkfifo((folder_ / "hand.jsonl").c_str(), 0600), 0);
+  EXPECT_FALSE(Log::open({.folder = folder_, .name = "hand"}));
+}
+
+TEST_F(Audit, DoesNotWriteThroughALink) {
+  std::filesystem::create_directories(folder_);
+  std::ofstream(folder_ / "other") << "mine";
+  std::filesystem::create_symlink(folder_ / "other", folder_ / "hand.jsonl");
+  EXPECT_FALSE(Log::open({.folder = folder_, .name = "hand"}));
+  EXPECT_EQ(std::filesystem::file_size(folder_ / "other"), 4u);
+  std::filesystem::remove(folder_ / "hand.jsonl");
+  std::filesystem::create_symlink(folder_ / "none", folder_ / "hand.jsonl");
+  EXPECT_FALSE(Log::open({.folder = folder_, .name = "hand"}));
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "none"));
+}
+
+// A disk that was full, or a loss of power, leaves half a line.
+TEST_F(Audit, HalfALineDoesNotTakeTheNextOneWithIt) {
+  std::filesystem::create_directories(folder_);
+  std::ofstream(folder_ / "hand.jsonl")
+      << to_line({start, "hand", Event::begin, "", ""}) << "\n{\"stamp_ns\":17";
+  {
+    Log log = open();
+    EXPECT_TRUE(log.write({start, "hand", Event::stop, "anna", "1"}));
+    EXPECT_TRUE(log.write({start, "hand", Event::stop, "anna", "2"}));
+  }
+  std::ifstream stream(folder_ / "hand.jsonl");
+  std::vector<std::string> good;
+  int damaged = 0;
+  for (std::string line; std::getline(stream, line);) {
+    const auto record = parse(line);
+    record ? good.push_back(record->what) : void(++damaged);
+  }
+  EXPECT_EQ(good, (std::vector<std::string>{"", "1", "2"}));
+  EXPECT_EQ(damaged, 1);
+}
+
+// Somebody has filled it: the next line begins a new one.
+TEST_F(Audit, AHugeFileIsPutAside) {
+  std::filesystem::create_directories(folder_);
+  std::ofstream(folder_ / "hand.jsonl") << "x";
+  std::filesystem::resize_file(folder_ / "hand.jsonl", std::uintmax_t{1} << 40);  // with holes
+  Log log = open();
+  EXPECT_TRUE(log.write({start, "hand", Event::stop, "anna", ""}));
+  EXPECT_LT(std::filesystem::file_size(folder_ / "hand.jsonl"), 4096u);
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "hand.1.jsonl"));
 }
 
 }  // namespace

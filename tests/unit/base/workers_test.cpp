@@ -11,7 +11,7 @@ namespace prehend {
 namespace {
 
 TEST(ShareWork, DoesEachPieceOnceAndTellsTheLast) {
-  for (const unsigned threads : {0u, 1u, 2u, 7u}) {
+  for (const unsigned threads : {0u, 1u, 2u, 7u, ~0u}) {  // the last: more than a machine can
     for (const std::size_t count : {0u, 1u, 5u, 100u}) {
       std::vector<std::atomic<int>> done(count);
       std::size_t told = 0;

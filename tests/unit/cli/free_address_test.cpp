@@ -1,6 +1,6 @@
 // The demonstration once sent its hand to a port that a participant of another lab had: the glove
 // said «no glove frame within 45 s».
-#include "services/cli/tools/free_address.hpp"
+#include "services/cli/tools/demo/free_address.hpp"
 
 #include <gtest/gtest.h>
 #include <netinet/in.h>

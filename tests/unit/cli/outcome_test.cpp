@@ -72,7 +72,7 @@ TEST(Outcome, UnknownIsNull) {
 TEST(Outcome, DocumentIsJsonWhateverTheNames) {
   Outcome outcome = held();
   outcome.object->name = "quote\" and \xff\xfe";
-  EXPECT_NO_THROW(json::parse(to_json(outcome)));
+  EXPECT_TRUE(json::accept(to_json(outcome)));
   EXPECT_EQ(to_json(outcome).find('\n'), std::string::npos);
 }
 

@@ -1,6 +1,6 @@
 // The tables that services print are read entry by entry; whatever is no such table is refused, and
 // a name that is in none of its rows is answered with those that are.
-#include "services/cli/tools/rows.hpp"
+#include "services/cli/tools/demo/rows.hpp"
 
 #include <gtest/gtest.h>
 

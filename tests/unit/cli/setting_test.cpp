@@ -1,5 +1,5 @@
 // Scenes of the demonstration: drawn among what the hand can hold, the same for the same seed.
-#include "services/cli/tools/setting.hpp"
+#include "services/cli/tools/demo/setting.hpp"
 
 #include <gtest/gtest.h>
 

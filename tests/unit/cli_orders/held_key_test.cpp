@@ -1,10 +1,10 @@
 // A key that is held, as a terminal tells it: one character, a pause of up to 0.7 s, then one every
 // 30 to 50 ms.
-#include "services/cli/tools/orders/held_key.hpp"
+#include "common/tool/held_key.hpp"
 
 #include <gtest/gtest.h>
 
-namespace prehend::cli {
+namespace prehend::tool {
 namespace {
 
 using std::chrono::milliseconds;
@@ -37,4 +37,4 @@ TEST(HeldKey, IsNotHeldByPressesFarApart) {
 }
 
 }  // namespace
-}  // namespace prehend::cli
+}  // namespace prehend::tool

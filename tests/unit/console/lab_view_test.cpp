@@ -159,12 +159,39 @@ TEST(LabView, AGraspIsDrawnWholeAndEveryDocumentIsWhatItsSchemaSays) {
             entities["contacts/hand"]["arrows"].size());
   EXPECT_EQ(entities["contacts/hand"]["frame_id"].get<std::string>().substr(0, 7), "object/");
   EXPECT_TRUE(entities.contains(entities["contacts/hand"]["frame_id"])) << "the object is drawn";
+  // What it resists, since the report tells of force closure.
+  ASSERT_EQ(entities["forces/hand"]["triangles"].size(), 1U);
+  EXPECT_EQ(entities["forces/hand"]["triangles"][0]["points"].size() % 3, 0U);
+  EXPECT_EQ(entities["forces/hand"]["frame_id"], entities["contacts/hand"]["frame_id"]);
 }
 
 Value structure(std::vector<std::pair<std::string_view, Value>> fields) {
   Value::Fields made;
   for (auto& [name, value] : fields) made.push_back({name, std::move(value)});
   return Value{std::move(made)};
+}
+
+TEST(LabView, WhatIsTaughtIsToldByTheHandThatLearns) {
+  LabView shown = view();
+  const Value message =
+      structure({{"hand", Value{std::string("barrett")}},
+                 {"stamp_ns", Value{std::int64_t{5}}},
+                 {"phase", Value{recording::types::Enumerator{1, "TRAINING_SHOWING"}}},
+                 {"name", Value{std::string("me")}},
+                 {"step", Value{std::string("open")}},
+                 {"shown", Value{std::uint64_t{2}}},
+                 {"asked", Value{std::uint64_t{7}}},
+                 {"share", Value{0.25}},
+                 {"message", Value{std::string("keep still")}}});
+  const Documents told = shown.hear("mapping/training", message, 9);
+  ASSERT_EQ(told.size(), 1U);
+  EXPECT_EQ(told[0].feed, Feed::training);
+  EXPECT_EQ(told[0].key, "barrett");
+  EXPECT_EQ(told[0].stamp_ns, 5);
+  const json said = message_of(told[0]), schema = json::parse(json_schema(Feed::training));
+  EXPECT_EQ(said["phase"], "TRAINING_SHOWING");
+  for (const auto& [name, type] : schema["properties"].items())
+    EXPECT_TRUE(said.contains(name)) << name;
 }
 
 Value vector_of(double x, double y, double z) {

@@ -173,12 +173,13 @@ TEST_F(MembersTest, WhoWasLostAndIsStillThereIsMetAnew) {
     return members_.is_stranded(beginning + seconds(to));
   };
   EXPECT_FALSE(members_.is_stranded(beginning + seconds(60.0))) << "it is gone";
-  EXPECT_FALSE(announce_until(60, 61));
-  EXPECT_TRUE(announce_until(61.5, 61.5));
+  EXPECT_FALSE(announce_until(60, 60.5));
+  EXPECT_TRUE(announce_until(61, 61));
   // Who shakes hands has a little longer.
-  EXPECT_EQ(judge(Message(member).data({.writer = 0x000201c3, .content = Bytes(40)}), 61.6),
+  EXPECT_EQ(judge(Message(member).data({.writer = 0x000201c3, .content = Bytes(40)}), 61.1),
             Verdict::pass);
-  EXPECT_FALSE(announce_until(62, 62.5));
+  EXPECT_FALSE(members_.is_stranded(beginning + seconds(61.1)));
+  EXPECT_TRUE(announce_until(61.5, 61.5));
   members_.let_in(member);
   EXPECT_FALSE(announce_until(63, 70));
 }

@@ -9,14 +9,9 @@
 #include <random>
 
 #include "common/convert/convert.hpp"
-#include "tests/support/delivery.hpp"
 
 namespace prehend::dds {
 namespace {
-
-/// For all tests of this program: several participants of one process come and go, which Fast DDS
-/// 2.9.1 does not survive when they hand samples to each other without the network.
-const bool over_the_network = (test::deliver_within_process(false), true);
 
 int random_domain() {
   return static_cast<int>(std::random_device{}() % 200);

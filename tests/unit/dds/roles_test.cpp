@@ -40,12 +40,14 @@ const std::map<std::string, Roles> roles_of_path{
     {"services/recorder/tools/check", Role::replayer},
     {"services/console", Role::console},
     {"services/robot", Role::robot},
-    {"services/robot/tools/twin.cpp", Role::mapping},
+    {"services/robot/tools/twin", Role::mapping},  // twin.cpp and twin_command.cpp
+    {"services/ros/tools/lead", Role::performer},
     {"services/cli", Role::viewer},
     {"services/cli/tools/orders", Role::operator_},
     {"common/robot", Role::simulation | Role::robot},  // the gate before a hand
     {"common/service", services},                      // the shell, which every service has
     {"common/service/conductor.cpp", Role::replayer},
+    {"common/service/consent_key.cpp", Role::operator_},
 };
 
 Roles roles_of(const std::string& file) {
@@ -140,12 +142,12 @@ TEST(Roles, OfAnOperatorAllowWhatTeachDoes) {
 }
 
 // Ends that are made without a shell, in the services, belong to tools that join as a viewer. The
-// twin of an emulated robot commands a hand of its own, in labs without keys alone.
+// twins of robots, real or emulated, command a hand of their own, in labs without keys alone.
 TEST(Roles, OfToolsThatLookWriteNothing) {
   int looks = 0;
   for (const Call& call : all_calls()) {
     EXPECT_NE(roles_of(call.file), Roles()) << call.file << " belongs to no role";
-    if (call.file == "services/robot/tools/twin.cpp") continue;
+    if (call.file.starts_with("services/robot/tools/twin")) continue;
     if (call.in_role() && roles_of(call.file) != Roles(Role::viewer)) continue;
     EXPECT_FALSE(call.writes()) << call.file << " writes " << call.topic->name;
     ++looks;

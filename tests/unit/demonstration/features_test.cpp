@@ -14,6 +14,8 @@ namespace {
 HandSample random_sample(Random& random) {
   HandSample sample{.t = random.uniform()};
   for (auto& tip : sample.p_thumb_tip_W) tip = random.normal3(0.06);
+  for (auto& tip : sample.p_HF) tip = random.normal3(0.06);
+  sample.scale = random.uniform(0.8, 1.2);
   sample.hand_speed = random.uniform();
   sample.wrist_speed = random.uniform();
   return sample;
@@ -34,7 +36,8 @@ TEST(Features, PostureStaysWhenTheHandTurnsAndMirrors) {
     EXPECT_TRUE(own.isApprox(features(turned, Inputs::posture), 1e-9));
     EXPECT_EQ(own, features(faster, Inputs::posture)) << "posture must know nothing of speed";
     EXPECT_TRUE(own.head<10>().isApprox(features(mirrored, Inputs::posture).head<10>(), 1e-9));
-    EXPECT_TRUE(own.tail<3>().isApprox(-features(mirrored, Inputs::posture).tail<3>(), 1e-9));
+    EXPECT_TRUE(
+        own.segment<3>(10).isApprox(-features(mirrored, Inputs::posture).segment<3>(10), 1e-9));
   }
 }
 
@@ -45,6 +48,36 @@ TEST(Features, MotionStaysWhenTheHandIsLarger) {
   for (auto& tip : larger.p_thumb_tip_W) tip *= 1.3;
   EXPECT_TRUE(features(sample, Inputs::motion).isApprox(features(larger, Inputs::motion), 1e-9));
   EXPECT_EQ(features(sample, Inputs::both).size(), feature_count(Inputs::both));
+}
+
+// What a finger does on the hand is the same for a child and a giant; only the last number, the
+// hand's size, tells them apart.
+TEST(Features, FingersOnTheHandAreThoseOfAHandOfAverageSize) {
+  Random random(6);
+  const HandSample sample = random_sample(random);
+  HandSample larger = sample;
+  for (auto& tip : larger.p_HF) tip *= 1.3;
+  larger.scale *= 1.3;
+  const Eigen::VectorXd own = features(sample, Inputs::posture),
+                        other = features(larger, Inputs::posture);
+  EXPECT_TRUE(own.head(own.size() - 1).isApprox(other.head(own.size() - 1), 1e-9));
+  EXPECT_NEAR(other.tail<1>()[0], 1.3 * own.tail<1>()[0], 1e-9);
+}
+
+// A fingertip a decimetre before its first joint, in the plane of the palm, and then bent by a
+// right angle towards it.
+TEST(Features, AFingerIsStretchedAndBentAsItStands) {
+  Random random(7);
+  HandSample sample = random_sample(random);
+  sample.scale = 1;
+  const Eigen::Vector3d base = model::HumanHand(1).base(model::Finger::index);
+  const auto stance = [&](const Eigen::Vector3d& from_base) {
+    sample.p_HF[1] = base + from_base;
+    return Eigen::Vector3d(features(sample, Inputs::posture).segment<3>(13 + 6 + 3));
+  };
+  EXPECT_TRUE(stance({0.1, 0, 0}).isApprox(Eigen::Vector3d(0.1, 0, 0), 1e-9));
+  EXPECT_TRUE(stance({0, 0, -0.08}).isApprox(Eigen::Vector3d(0.08, std::acos(0.0), 0), 1e-9));
+  EXPECT_GT(stance({0.1, 0.03, 0})[2], 0.2) << "spread aside";
 }
 
 TEST(Features, ASummaryIsOfWhatCameSoFarAndUnknownNumbersDoNotSpread) {
@@ -78,6 +111,15 @@ TEST(Features, WhatWasNeverMeasuredCountsAsTheMean) {
   EXPECT_EQ(scale->apply(x).norm(), 0);
   EXPECT_EQ(scale->apply(Eigen::Vector4d::Constant(1e9)).maxCoeff(), Whitening::farthest);
   EXPECT_FALSE(Whitening::fit(Eigen::MatrixXd(4, 0)));
+}
+
+// A hand that is seen by more than the recogniser was trained on must not confuse it.
+TEST(Features, WhatNobodyMeasuredInTrainingTellsNothing) {
+  Eigen::MatrixXd samples = Eigen::MatrixXd::Random(2, 50);
+  samples.row(1).setConstant(std::nan(""));
+  const auto scale = Whitening::fit(samples);
+  ASSERT_TRUE(scale);
+  EXPECT_NEAR(scale->apply(Eigen::Vector2d(0, 100))[1], 0, 1e-9);
 }
 
 // Within classes, scatter is the unit matrix afterwards, whatever lies between the classes.

@@ -59,6 +59,49 @@ TEST(ObjectLikelihood, IsADensity) {
   EXPECT_NEAR(sum, (20 + 0.5) / (20 + 1.5), 1e-3) << "the share of spheres";
 }
 
+// Kinds of grasps end where a hand is too small or too large: a width a tenth beyond all that were
+// shown speaks against the kind, however many were near that end.
+TEST(ObjectLikelihood, KindsEndAtTheirWidths) {
+  Random random(2);
+  std::vector<Take> takes;
+  for (int n = 0; n < 400; ++n) {
+    takes.push_back({.label = n % 2 == 0 ? "narrow" : "wide", .samples = {}});
+    takes.back().object =
+        ball(n % 2 == 0 ? random.uniform(0.01, 0.02) : random.uniform(0.02, 0.04));
+  }
+  const auto made = ObjectLikelihood::learn(each_of(takes), {"narrow", "wide"});
+  EXPECT_GT(made->of(ball(0.0235))[1], 5 * made->of(ball(0.0235))[0]);
+  EXPECT_GT(made->of(ball(0.017))[0], 5 * made->of(ball(0.017))[1]);
+}
+
+// Of a few objects each speaks for all between it and its neighbours: a size that nobody showed is
+// not ruled out by chance.
+TEST(ObjectLikelihood, FewObjectsSpeakFarther) {
+  std::vector<Take> takes;
+  for (const double radius : {0.01, 0.0125, 0.016, 0.02, 0.025, 0.031}) {
+    takes.push_back({.label = "own", .samples = {}});
+    takes.back().object = ball(radius);
+  }
+  const auto made = ObjectLikelihood::learn(each_of(takes), {"own"});
+  const double shown = made->of(ball(0.016))[0], between = made->of(ball(0.018))[0];
+  EXPECT_NEAR(between / shown, 1, 0.2);
+}
+
+TEST(ObjectLikelihood, RefusesNumbersThatDoNotFit) {
+  const auto good = ObjectLikelihood::learn(each_of(balls(40)), {"large", "small"});
+  ASSERT_TRUE(ObjectLikelihood::create(good->sizes(), good->otherwise()));
+  for (int broken = 0; broken < 5; ++broken) {
+    auto sizes = good->sizes();
+    auto otherwise = good->otherwise();
+    if (broken == 0) otherwise[1] = 0;
+    if (broken == 1) sizes[0].kind = 2;
+    if (broken == 2) sizes[0].share = std::nan("");
+    if (broken == 3) sizes[0].shape = ShapeKind::box;
+    if (broken == 4) sizes[1].shown(0, 3) = std::nan("");
+    EXPECT_FALSE(ObjectLikelihood::create(sizes, otherwise)) << broken;
+  }
+}
+
 TEST(ObjectLikelihood, NeedsObjectsAndBearsFewTakes) {
   auto takes = balls(4);
   const auto few = ObjectLikelihood::learn(each_of(takes), {"large", "small"});

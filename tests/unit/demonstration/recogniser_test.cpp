@@ -97,6 +97,11 @@ TEST(Recogniser, ComesBackFromItsFile) {
       std::filesystem::path(testing::TempDir()) / ("grasps" + std::to_string(getpid()) + ".model");
   std::vector<TaskRecogniser> all;
   for (const Recogniser& recogniser : trained()) all.push_back({"1", recogniser, 6, 72});
+  std::vector<Take> with_objects = shown();
+  for (Take& take : with_objects)
+    take.object = {model::ShapeKind::cylinder, {0.02, 0.02, take.label == "cup" ? 0.1 : 0.2}};
+  all.front().objects =
+      ObjectLikelihood::learn(pointers(with_objects), trained().front().classes()).value();
   ASSERT_TRUE(save_recognisers(file, all));
   const auto back = load_recognisers(file);
   std::filesystem::remove(file);
@@ -110,6 +115,10 @@ TEST(Recogniser, ComesBackFromItsFile) {
       EXPECT_EQ((*back)[i].recogniser.recognise(take.samples),
                 all[i].recogniser.recognise(take.samples));
   }
+  ASSERT_TRUE(back->front().objects);
+  EXPECT_FALSE(back->back().objects) << "nobody measured them";
+  const model::Shape cup{model::ShapeKind::cylinder, {0.021, 0.021, 0.09}};
+  EXPECT_EQ(back->front().objects->of(cup), all.front().objects->of(cup));
   EXPECT_FALSE(load_recognisers(file));
 }
 

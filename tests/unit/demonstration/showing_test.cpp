@@ -166,6 +166,9 @@ TEST(DrawnTakes, AreReadAsTheyWereWritten) {
     ASSERT_EQ(one.samples.size(), other.samples.size());
     for (std::size_t f = 0; f < 4; ++f)
       EXPECT_LT((one.samples[1].p_thumb_tip_W[f] - other.samples[1].p_thumb_tip_W[f]).norm(), 2e-5);
+    for (std::size_t f = 0; f < one.samples[1].p_HF.size(); ++f)
+      EXPECT_LT((one.samples[1].p_HF[f] - other.samples[1].p_HF[f]).norm(), 2e-5);
+    EXPECT_NEAR(one.samples[1].scale, other.samples[1].scale, 1e-4);
   }
 }
 

@@ -4,8 +4,11 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <cctype>
 #include <filesystem>
 #include <fstream>
+#include <map>
 
 #include "tests/support/takes/made_takes.hpp"
 
@@ -148,6 +151,26 @@ TEST(TakesFile, KindAndObjectAreReadWhereTheyAreThere) {
   EXPECT_NEAR(takes->takes[3].object->size.z(), 0.12, 1e-9);
 }
 
+TEST(TakesFile, TheHandIsReadWhereItIsThere) {
+  auto rows = cells_of(test::to_csv(few()));
+  const std::vector<std::string> names{"hand_scale", "hand_index_x_cm", "hand_index_z_cm"};
+  rows[0].insert(rows[0].end(), names.begin(), names.end());
+  for (std::size_t i = 1; i < rows.size(); ++i)
+    rows[i].insert(rows[i].end(), {"1.1", "12", i == 2 ? "none" : "-3"});
+  rows[1][rows[1].size() - 3] = "-1";
+  const auto takes = parse_takes(csv_of(rows), "task1.csv", "1");
+  ASSERT_TRUE(takes) << takes.error().message();
+  const auto& samples = takes->takes[0].samples;
+  EXPECT_NEAR(samples[0].p_HF[1].x(), 0.12, 1e-9);
+  EXPECT_NEAR(samples[0].p_HF[1].z(), -0.03, 1e-9);
+  EXPECT_TRUE(std::isnan(samples[0].p_HF[1].y())) << "no such column";
+  EXPECT_TRUE(std::isnan(samples[0].p_HF[0].x()));
+  EXPECT_TRUE(std::isnan(samples[0].scale)) << "no hand is shorter than nothing";
+  EXPECT_NEAR(samples[1].scale, 1.1, 1e-9);
+  EXPECT_TRUE(std::isnan(samples[1].p_HF[1].z()));
+  EXPECT_EQ(takes->unknown_numbers, 1U);
+}
+
 TEST(TakesFile, SamplesAreInOrderOfTime) {
   auto rows = cells_of(test::to_csv(few()));
   std::swap(rows[1], rows[3]);
@@ -164,6 +187,75 @@ TEST(TakesFile, EmptyBinaryAndNoRows) {
     EXPECT_FALSE(takes.error().hint.empty());
     EXPECT_EQ(takes.error().message().find('\n'), std::string::npos);
   }
+}
+
+// Tables as other programs save them were told to lack sixteen columns.
+TEST(TakesFile, AnotherFormatIsNamed) {
+  const std::string csv = test::to_csv(few());
+  const auto with = [&](char from, char to) {
+    std::string text = csv;
+    std::replace(text.begin(), text.end(), from, to);
+    return text;
+  };
+  std::string wide = "\xff\xfe";
+  for (const char c : csv) wide += {c, '\0'};
+  for (const auto& [text, what] :
+       {std::pair(with(',', ';'), "between its columns"), std::pair(with(',', '\t'), "tabs"),
+        std::pair(with('\n', '\r'), "CR alone"), std::pair(wide, "UTF-16")}) {
+    const auto takes = parse_takes(text, "task1.csv", "1");
+    ASSERT_FALSE(takes) << what;
+    EXPECT_NE(takes.error().what.find(what), std::string::npos) << takes.error().message();
+    EXPECT_NE(takes.error().hint.find("save it"), std::string::npos);
+  }
+}
+
+// Fingertips in metres were recognised without a word, at chance.
+TEST(TakesFile, ADistanceInAnotherUnitIsTold) {
+  const auto scaled = [](double by) {
+    auto rows = cells_of(test::to_csv(few()));
+    for (std::size_t i = 1; i < rows.size(); ++i)
+      for (std::size_t k = 9; k < rows[i].size(); ++k)
+        rows[i][k] = fmt::format("{}", by * std::stod(rows[i][k]));
+    return parse_takes(csv_of(rows), "task1.csv", "1");
+  };
+  const auto metres = scaled(0.01), millimetres = scaled(10);
+  ASSERT_TRUE(metres);
+  ASSERT_EQ(metres->complaints.size(), 1U);
+  EXPECT_NE(metres->complaints[0].what.find("are these metres?"), std::string::npos);
+  const std::string told =
+      (millimetres ? millimetres->complaints[0] : millimetres.error()).message();
+  EXPECT_NE(told.find("millimetres"), std::string::npos) << told;
+}
+
+// Stamps that count from 1970, and names that begin with a capital letter, were refused.
+TEST(TakesFile, TimesMayCountFrom1970AndNamesBeCapital) {
+  auto rows = cells_of(test::to_csv(few()));
+  for (std::string& name : rows[0]) name[0] = static_cast<char>(std::toupper(name[0]));
+  for (std::size_t i = 1; i < rows.size(); ++i)
+    rows[i][6] = fmt::format("{:.1f}", 1.7e12 + std::stod(rows[i][6]));
+  const auto takes = parse_takes(csv_of(rows), "task1.csv", "1");
+  ASSERT_TRUE(takes) << takes.error().message();
+  expect_same(takes->takes);
+  EXPECT_TRUE(takes->complaints.empty());
+}
+
+// A file a person is how studies are kept: each was taken for a task of its own.
+TEST(TakesFile, PeopleMayHaveFilesOfTheirOwn) {
+  auto rows = cells_of(test::to_csv(few()));
+  for (auto& row : rows) row.erase(row.begin() + 1);  // task
+  const auto folder =
+      std::filesystem::path(testing::TempDir()) / ("people" + std::to_string(getpid()));
+  std::filesystem::create_directories(folder);
+  for (const char* name : {"task1_anna.csv", "Task1-ben.CSV", "task1.csv"})
+    std::ofstream(folder / name) << csv_of(rows);
+  std::ofstream(folder / "task_kinds.csv") << csv_of(rows);
+  const auto takes = load_takes(folder);
+  std::filesystem::remove_all(folder);
+  ASSERT_TRUE(takes) << takes.error().message();
+  std::map<std::string, std::size_t> tasks;
+  for (const Take& take : takes->takes) ++tasks[take.task];
+  EXPECT_EQ(tasks, (std::map<std::string, std::size_t>{{"1", 3 * few().size()},
+                                                       {"_kinds", few().size()}}));
 }
 
 TEST(TakesFile, OneBadFileDoesNotCostTheOthers) {

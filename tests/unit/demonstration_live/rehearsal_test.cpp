@@ -147,13 +147,14 @@ TEST(GraspCandidates, WhatIsLowIsAlsoTakenLower) {
 }
 
 TEST(Rehearsal, FindsAPreshapeForWhatTheOpenHandCannotHold) {
-  // Two fingers of a Barrett hand stand farther apart than the cube is wide, until they are spread.
+  // Two fingers of the open Barrett hand stand farther apart than the cube is wide; turned aside by
+  // 15 degrees they hold it.
   const std::vector<Thing> things{thing("Wood cube", 0.1, 0.05)};
   const TaskModel task = put("Wood cube", the_table, {-0.1, -0.1, 0.0215});
   const auto made = rehearse(barrett(), task, things, resting());
   ASSERT_TRUE(made) << made.error().message();
   EXPECT_LT(made->verdicts[0].error, 0.02);
-  EXPECT_GT(made->grasps[0].preshape[0], 1) << "the fingers are spread";
+  EXPECT_GT(made->grasps[0].preshape[0], 0.2) << "the fingers are spread";
 }
 
 TEST(Rehearsal, SaysWhatCannotBeDone) {
@@ -175,6 +176,28 @@ TEST(TaskPerformer, FailsWhereTheObjectDoesNotComeAlong) {
                              resting(), {.max_tries = 1});
   ASSERT_FALSE(made);
   EXPECT_THAT(made.error().message(), HasSubstr("lift: was not lifted"));
+}
+
+// Fingers that closed from above crept on, pulled a cylinder up and turned it by 41° in the hand.
+TEST(StepPerformer, WhatClosingFingersRaiseIsInTheHand) {
+  const HandGoal from = resting();
+  Pose X_WO = thing("Talc", 0.1, 0.05).X_WO;
+  Eigen::VectorXd dof = from.dof;
+  const StepOrder order{
+      .object = "Talc", .grasp = {make_pose({0, 0, 0.2}), from.dof}, .X_WO_goal = X_WO};
+  StepPerformer performer(barrett(), order, from, {});
+  double closing = 0;  // s
+  for (int n = 0; n < 3000 && performer.part() != StepPart::lift; ++n) {
+    performer.step(
+        {Time(seconds(0.01 * n)), performer.goal().X_WB, dof, barrett().joint_angles(dof)}, X_WO);
+    if (performer.part() != StepPart::close) continue;
+    closing += 0.01;
+    dof.tail(3).array() += 0.001;
+    X_WO.translation().z() += 0.0001;
+  }
+  EXPECT_EQ(performer.part(), StepPart::lift);
+  EXPECT_LT(closing, 0.6);
+  EXPECT_FALSE(performer.failure());
 }
 
 /// The Puma with Barrett's hand, where the configuration's defaults have it.

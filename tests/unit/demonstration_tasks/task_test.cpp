@@ -191,6 +191,24 @@ TEST(TaskToml, ComesBackAndSaysWhatIsWrong) {
   EXPECT_NE(refused("position_m = [", "position_m = [nan, ").find("step 1"), std::string::npos);
   EXPECT_NE(refused("after = []", "after = [9]").find("after step 9"), std::string::npos);
   EXPECT_NE(refused("name = ", "name ").find("lay.toml"), std::string::npos);
+  // A value of another type passed as an absent one, and the step lost what it said.
+  for (const char* by : {"after = 1", "after = \"1\""})
+    EXPECT_NE(refused("after = []", by).find("after is no list"), std::string::npos) << by;
+  const auto another = [&](const std::string& key, const std::string& value) {
+    const std::size_t from = text.find("\n" + key + " = ") + 1;
+    std::string other = text;
+    other.replace(from, text.find('\n', from) - from, key + " = " + value);
+    const auto made = from_toml(other, "lay.toml");
+    return made ? std::string("taken") : made.error().message();
+  };
+  for (const auto& [key, value] :
+       {std::pair("upright", "\"true\""), std::pair("upright", "1"), std::pair("object", "5"),
+        std::pair("grasp", "[]"), std::pair("relative_to", "1"), std::pair("demonstrations", "-1"),
+        std::pair("demonstrations", "\"2\"")}) {
+    const std::string told = another(key, value);
+    EXPECT_NE(told.find(key), std::string::npos) << key << " = " << value << ": " << told;
+  }
+  EXPECT_EQ(another("upright", "true"), "taken");
 }
 
 }  // namespace

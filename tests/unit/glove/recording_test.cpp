@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "services/glove/core/features.hpp"
 #include "services/glove/core/processor.hpp"
@@ -195,6 +196,47 @@ TEST(Recording, RefusesTwoTimesWithinANanosecond) {
   ASSERT_TRUE(recording);
   EXPECT_EQ(recording->size(), 1u);
   EXPECT_EQ(recording->unreadable(), 1u);
+}
+
+// Lengths in metres or centimetres, and times in ms or s, made a hand that nothing could be done
+// with, without a word.
+TEST(Recording, RefusesOtherUnits) {
+  const auto with = [](double length, double time) {
+    std::string text = leap_header();
+    for (int n = 0; n < 20; ++n) {
+      const std::string row = leap(0, false);
+      text += fmt::format("{},{},100,right", n, n * 10000 * time);
+      // frame,t_us,fps,hand,palm, then directions, which have no unit
+      std::vector<std::string> cells(1);
+      for (const char c : row.substr(0, row.size() - 1))
+        if (c == ',')
+          cells.emplace_back();
+        else
+          cells.back() += c;
+      for (std::size_t i = 4; i < cells.size(); ++i)
+        text += fmt::format(",{}", std::stod(cells[i]) * (i >= 7 && i < 13 ? 1 : length));
+      text += "\n";
+    }
+    return Recording::parse(text, "scaled", room);
+  };
+  ASSERT_TRUE(with(1, 1)) << with(1, 1).error().message();
+  EXPECT_EQ(with(1, 1)->size(), 20u);
+  for (const double length : {0.001, 0.1, 1000.}) {
+    const auto refused = with(length, 1);
+    ASSERT_FALSE(refused) << length;
+    EXPECT_EQ(refused.error().hint, "positions are in mm");
+  }
+  for (const double time : {1e-3, 1e-6}) EXPECT_FALSE(with(1, time)) << time;
+}
+
+TEST(Recording, SaysWhatWasLeftOut) {
+  const auto mixed = Recording::parse(
+      leap_header() + leap(0, false) + leap(10000, true) + leap(0, false), "mixed", room);
+  ASSERT_TRUE(mixed);
+  EXPECT_EQ(
+      mixed->left_out(),
+      "1 rows say nothing usable, or are not later than those before; 1 rows of the left hand");
+  EXPECT_EQ(Recording::parse(leap_header() + leap(0, false), "whole", room)->left_out(), "");
 }
 
 TEST(Recording, RefusesOtherFiles) {

@@ -5,11 +5,14 @@
 // for the mean error. The same seeds always, so the figures do not move.
 #include "services/glove/core/calibration/calibrator.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cstdio>
 
 #include "common/model/human_hand.hpp"
+#include "services/glove/core/bare_hand.hpp"
+#include "services/glove/files/hand_recording.hpp"
 #include "tests/unit/glove_calibration/people.hpp"
 
 namespace prehend::glove {
@@ -56,6 +59,31 @@ double unlike(const model::HumanHand& a, const model::HumanHand& b) {
 double gap(const model::HumanHand& hand, const model::HumanPosture& q) {
   const auto tips = hand.fingertip_poses(q);
   return (tips[0].translation() - tips[1].translation()).norm();
+}
+
+// Without a scene a recording's hand was at the tracker itself, which is refused as a fault: no
+// CSV could be calibrated with.
+TEST(Calibrator, FindsTheSizeOfAHandInARecordingOfLandmarks) {
+  const model::HumanHand hand(1.1);
+  std::string csv = "frame";
+  for (int i = 0; i < 21; ++i) csv += fmt::format(",l{0}_x,l{0}_y,l{0}_z", i);
+  int frame = 0;
+  model::HumanPosture before = posture_of(ShownPose::open);
+  for (const ShownPose pose : shown_poses)
+    for (int n = 0; n < 80; ++n, before = n < 20 ? before : posture_of(pose)) {
+      const double share = std::min(1., n / 20.);
+      csv += fmt::format("\n{}", frame++);
+      for (const Vector3d& p : landmarks_of(hand, before + share * (posture_of(pose) - before)))
+        csv += fmt::format(",{:.6f},{:.6f},{:.6f}", p.x(), p.y(), p.z());
+    }
+  const auto recording = Recording::parse(csv, "landmarks", {});
+  ASSERT_TRUE(recording) << recording.error().message();
+  EXPECT_EQ(recording->left_out(), "");
+  Calibrator calibrator;
+  for (std::size_t n = 0; n < recording->size(); ++n) calibrator.see(*recording->frame(n));
+  const auto result = calibrator.result("person");
+  ASSERT_TRUE(result) << result.error().message() << ": " << calibrator.waiting_for();
+  EXPECT_NEAR(result->scale, 1.1, 0.06);
 }
 
 TEST(Calibrator, FindsTheSizeOfManyHands) {

@@ -163,5 +163,14 @@ TEST(BirdProtocol, SurvivesRandomBytes) {
   }
 }
 
+TEST(BirdProtocol, KnowsTheCodesOfItsMouse) {
+  for (const std::vector<std::uint8_t>& held :
+       {std::vector<std::uint8_t>{}, std::vector<std::uint8_t>{1}, std::vector<std::uint8_t>{2},
+        std::vector<std::uint8_t>{3}})
+    EXPECT_EQ(held_buttons(button_code(held)), held);
+  EXPECT_FALSE(held_buttons(0x01));
+  EXPECT_FALSE(held_buttons(0x7f)) << "what no mouse says holds nothing";
+}
+
 }  // namespace
 }  // namespace prehend::glove::bird

@@ -53,6 +53,21 @@ TEST(LandmarkLine, ReadsAWrittenLine) {
   EXPECT_NEAR(line->points[20].x(), 0.2, 1e-9);
 }
 
+TEST(LandmarkLine, SaysWhichButtonsAreHeld) {
+  LandmarkLine line = some_line();
+  EXPECT_FALSE(parse_landmarks(to_line(line))->held) << "it has none";
+  for (const std::vector<std::uint8_t>& held :
+       {std::vector<std::uint8_t>{}, std::vector<std::uint8_t>{1},
+        std::vector<std::uint8_t>{2, 8}}) {
+    line.held = held;
+    EXPECT_EQ(parse_landmarks(to_line(line))->held, held);
+  }
+  const std::string good = to_line(line);
+  for (const char* wrong : {"[0]", "[9]", "[-1]", "[1.5]", "true", "1", "[\"1\"]", "[[1]]",
+                            "[1,1,1,1,1,1,1,1,1]", "[18446744073709551616]"})
+    EXPECT_EQ(refusal(replaced(good, "[2,8]", wrong)), "unreadable") << wrong;
+}
+
 TEST(LandmarkLine, SaysWhyItCannotBeUsed) {
   const std::string good = to_line(some_line());
   EXPECT_EQ(refusal(good), "");

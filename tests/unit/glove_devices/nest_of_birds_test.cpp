@@ -39,10 +39,17 @@ std::filesystem::path link_path(const char* name) {
 class Tracker {
  public:
   explicit Tracker(const std::filesystem::path& link, const FaultOptions& faults = {},
-                   bird::EmulatorOptions options = {}, double rate = 100)
-      : hand_(still_hand()), device_(line(link, faults, std::move(options), rate), hand_) {}
+                   bird::EmulatorOptions options = {}, double rate = 100,
+                   std::vector<std::uint8_t> held = {})
+      : hand_(with_buttons(std::move(held))),
+        device_(line(link, faults, std::move(options), rate), hand_) {}
 
  private:
+  static Frame with_buttons(std::vector<std::uint8_t> held) {
+    Frame frame = still_hand();
+    frame.held = std::move(held);
+    return frame;
+  }
   static EmulationOptions line(const std::filesystem::path& link, const FaultOptions& faults,
                                bird::EmulatorOptions options, double rate) {
     return {.device = [options] { return std::make_unique<bird::Emulator>(options); },
@@ -198,6 +205,35 @@ TEST(NestOfBirds, ReadsAsManySensorsAsThereAre) {
           EXPECT_LT((frame.readings[s].p_TS - truth.p_TS).norm(), 3e-4);
         }
   }
+}
+
+TEST(NestOfBirds, TellsWhichButtonOfTheMouseIsHeld) {
+  for (const std::vector<std::uint8_t>& held :
+       {std::vector<std::uint8_t>{}, std::vector<std::uint8_t>{2}, std::vector<std::uint8_t>{3}}) {
+    const auto link = link_path("mouse");
+    const Tracker tracker(link, {}, {}, 100, held);
+    Listener listener;
+    DeviceOptions options;
+    options.port = link;
+    options.buttons = true;
+    const auto device = make(options);
+    device->start(listener.sink());
+    ASSERT_TRUE(listener.frames(3));
+    const Frame frame = listener.all().back();
+    expect_still_hand(frame);
+    ASSERT_TRUE(frame.held);
+    EXPECT_EQ(*frame.held, held);
+  }
+}
+
+TEST(NestOfBirds, WithoutAMouseNoButtonIsTold) {
+  const auto link = link_path("no_mouse");
+  const Tracker tracker(link, {}, {}, 100, {1});
+  Listener listener;
+  const auto device = driver(link);
+  device->start(listener.sink());
+  ASSERT_TRUE(listener.frames(3));
+  EXPECT_FALSE(listener.all().back().held);
 }
 
 TEST(NestOfBirds, SetsRangeAndHemisphereOfEveryUnit) {

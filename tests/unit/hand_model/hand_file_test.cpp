@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <fstream>
 #include <sstream>
+#include <string_view>
 
 #include "common/model/hand_model.hpp"
 
@@ -81,10 +82,10 @@ open = [0.025, 0.0]
 )";
 
 template <class Items>
-const auto& named(const Items& items, const std::string& name) {
+const auto& named(const Items& items, std::string_view name) {
   for (const auto& item : items)
     if (item.name == name) return item;
-  throw std::runtime_error("no " + name);
+  throw std::runtime_error("no " + std::string(name));
 }
 
 TEST(HandFile, ReadsSlidingJointsCouplingsAndClutches) {

@@ -8,6 +8,7 @@
 #include <numbers>
 #include <set>
 
+#include "services/simulation/tools/picture/class_picture.hpp"
 #include "services/simulation/tools/picture/grasp_picture.hpp"
 
 namespace prehend::simulation {
@@ -103,6 +104,23 @@ TEST(GraspPicture, ShowsHandObjectAndContacts) {
 
   grasp.joints.resize(3);
   EXPECT_FALSE(draw_grasp(*hand, talc, grasp));
+}
+
+// Of each of Cutkosky's kinds: hand and object are seen, and no two kinds look the same.
+TEST(ClassPicture, EachKindShowsAHandAndWhatItHolds) {
+  const auto taxonomy =
+      model::GraspTaxonomy::load(PREHEND_SOURCE "/common/models/grasps/taxonomy.toml");
+  ASSERT_TRUE(taxonomy);
+  std::set<std::vector<std::uint8_t>> pictures;
+  for (const model::GraspClass& kind : taxonomy->classes()) {
+    const Drawing drawing = draw_class(kind);
+    const Viewpoint view = view_of_class(drawing, 4.0 / 3);
+    const std::vector<int> pixels = drawing.coverage(view, 80, 60);
+    EXPECT_GT(pixels[class_hand], 400) << kind.name;
+    EXPECT_GT(pixels[class_object], 20) << kind.name;
+    pictures.insert(drawing.draw(view, 80, 60, 1).rgb);
+  }
+  EXPECT_EQ(pictures.size(), taxonomy->classes().size());
 }
 
 }  // namespace

@@ -80,6 +80,20 @@ TEST_F(PictureFile, TruncatedAndBrokenFilesNeverCrash) {
   EXPECT_FALSE(load_picture(folder_));
 }
 
+// A jpeg that was copied in part was read, and learnt, with grey in place of the rest.
+TEST_F(PictureFile, AJpegThatEndsEarlyIsRefused) {
+  const auto whole = encode_jpeg(gradient(80, 60));
+  for (const double share : {0.3, 0.6, 0.9}) {
+    const auto size = static_cast<std::size_t>(share * static_cast<double>(whole.size()));
+    const auto cut = decode_picture({whole.data(), size}, "memory");
+    ASSERT_FALSE(cut) << share;
+    EXPECT_NE(cut.error().what.find("early"), std::string::npos) << cut.error().message();
+  }
+  auto more = whole;
+  more.resize(more.size() + 100, 0);  // what cameras may add behind the end
+  EXPECT_TRUE(decode_picture(more, "memory"));
+}
+
 TEST_F(PictureFile, HugeOnesAreRefusedBeforeTheyAreUnpacked) {
   std::vector<std::uint8_t> png{0x89, 'P', 'N',  'G',  13,  10,  26, 10, 0,    0,
                                 0,    13,  'I',  'H',  'D', 'R', 0,  1,  0x86, 0xa0,

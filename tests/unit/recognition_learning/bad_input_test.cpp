@@ -107,6 +107,19 @@ TEST_F(TrainingFolder, GreySixteenBitAnimatedTinyHugeAndTruncated) {
   for (const Error& error : dataset->left_out) EXPECT_FALSE(error.what.empty());
 }
 
+// A class whose pictures lie in folders of their own, or are of a kind that cannot be read, was
+// left out without a word.
+TEST_F(TrainingFolder, FoldersWithoutPicturesAreTold) {
+  fill("good", painted_classes(1, 1)[0]);
+  fill("nested/red", painted_classes(1, 1)[0]);
+  std::ofstream(in("phone") / "IMG_1.HEIC") << "of a telephone";
+  const auto dataset = load_dataset(root_);
+  ASSERT_TRUE(dataset) << dataset.error().message();
+  ASSERT_EQ(dataset->left_out.size(), 2u);
+  EXPECT_NE(dataset->left_out[0].where.find("nested"), std::string::npos);
+  EXPECT_NE(dataset->left_out[1].where.find("IMG_1.HEIC"), std::string::npos);
+}
+
 TEST_F(TrainingFolder, MaskOfAnotherSizeIsLeftOutWithItsPicture) {
   fill("good", painted_classes(1, 1)[0]);
   ASSERT_TRUE(save_png(in("good") / "0.mask.png", Plane(5, 5, 1)));

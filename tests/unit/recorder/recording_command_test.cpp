@@ -166,6 +166,27 @@ TEST_F(RecordingCommand, CutBeginsWithWhatStands) {
     EXPECT_EQ(run(std::string("prehend recording verify ") + name).code, 0);
 }
 
+// A part of nothing was written, and two recordings were the same in a topic that neither has.
+TEST_F(RecordingCommand, NothingThatIsAskedForIsTold) {
+  make("a.mcap");
+  for (const auto& [command, code, what] :
+       {std::tuple("cut a.mcap --topic 'hnad/*' -o b.mcap", 1, "no such topic as hnad/*"),
+        std::tuple("cut a.mcap --from 5 --until 2 -o b.mcap", 2, "ends before it begins"),
+        std::tuple("cut a.mcap --from nan -o b.mcap", 2, "ends before it begins"),
+        std::tuple("diff a.mcap a.mcap --topic hnad", 1, "no such topic as hnad"),
+        std::tuple("export a.mcap --topic hnad", 1, "no such topic as hnad")}) {
+    const Answer answer = run(std::string("prehend recording ") + command);
+    EXPECT_EQ(answer.code, code) << command;
+    EXPECT_THAT(answer.complaint, HasSubstr(what)) << command;
+    EXPECT_EQ(answer.output, "") << command;
+    EXPECT_FALSE(std::filesystem::exists(scratch_ / "b.mcap")) << command;
+  }
+  EXPECT_EQ(run("prehend recording diff a.mcap a.mcap --topic 'robot/*'").code, 0);
+  const Answer late = run("prehend recording cut a.mcap --from 100 -o b.mcap");
+  EXPECT_EQ(late.code, 0);
+  EXPECT_THAT(late.complaint, HasSubstr("0.920 s long"));
+}
+
 TEST_F(RecordingCommand, CutAndMergeTellTheirDamageAndNeverReplaceTheirSource) {
   make("a.mcap");
   make_killed("b.mcap");

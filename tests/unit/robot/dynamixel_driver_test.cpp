@@ -6,14 +6,10 @@
 #include "common/base/random.hpp"
 #include "services/robot/core/dynamixel_emulator.hpp"
 #include "tests/unit/robot/computed_wire.hpp"
+#include "tests/unit/robot/hand_of_twelve.hpp"
 
 namespace prehend::robot::dynamixel {
 namespace {
-
-const model::HandModel& hand() {
-  static const auto loaded = model::HandModel::load(model::hand_directory("dlr"));
-  return *loaded;
-}
 
 /// Every second servo is mounted the other way round.
 std::string wiring() {
@@ -45,14 +41,6 @@ struct Wire : ComputedWire<Emulator, Driver> {
     return number(std::string_view(answer).substr(1));
   }
 };
-
-/// A share of the way from the open hand to the ends of the ranges.
-Eigen::VectorXd posture(double share) {
-  Eigen::VectorXd dof = hand().postures().at("open");
-  for (Eigen::Index d = 0; d < dof.size(); ++d)
-    dof[d] += share * (hand().dofs()[static_cast<std::size_t>(d)].upper - dof[d]);
-  return dof;
-}
 
 TEST(DynamixelDriver, IsReadyWithoutAMove) {
   Wire wire;
@@ -139,13 +127,7 @@ TEST(DynamixelDriver, ACutWireStopsTheServosThemselves) {
 TEST(DynamixelDriver, GarbageNowAndThenIsLeftOut) {
   Wire wire;
   wire.run(2);
-  Random random(3);
-  wire.spoil = [&random](std::string answer) {
-    if (!answer.empty() && random.uniform() < 0.05) answer.insert(0, "\xff\xff\xfd*");
-    if (!answer.empty() && random.uniform() < 0.05) answer[random.index(answer.size())] ^= 4;
-    if (!answer.empty() && random.uniform() < 0.05) answer.erase(random.index(answer.size()), 1);
-    return answer;
-  };
+  wire.spoil = garbage(3, 4);
   wire.tell = posture(0.4);
   wire.run(8);
   EXPECT_EQ(wire.driver.phase(), Phase::ready) << wire.first_trouble;

@@ -69,6 +69,22 @@ TEST(Config, ItsTextsMakeItAgain) {
   EXPECT_EQ(again->names("glove.sites"), (std::vector<std::string>{"thumb", "back_of_hand"}));
 }
 
+// What somebody has said, though it is the default, differs from what nobody has said: a robot's
+// default is its own.
+TEST(Config, KnowsWhatWasGiven) {
+  const auto file = write("[safety]\ndeadman = false\n");
+  EXPECT_TRUE(Config::load(file)->is_given("safety.deadman"));
+  EXPECT_FALSE(Config::load(file)->is_given("safety.on_stop"));
+  const auto empty = write("");
+  EXPECT_FALSE(Config::load(empty)->is_given("safety.deadman"));
+  EXPECT_FALSE(Config::load(empty)->texts().contains("safety.deadman"));
+  EXPECT_TRUE(Config::load(empty, {"safety.deadman=false"})->is_given("safety.deadman"));
+  setenv("PREHEND_SAFETY_DEADMAN", "false", 1);
+  EXPECT_TRUE(Config::load(empty)->is_given("safety.deadman"));
+  EXPECT_EQ(Config::load(empty)->texts().at("safety.deadman"), "false");
+  unsetenv("PREHEND_SAFETY_DEADMAN");
+}
+
 TEST(Config, MistakesAreNamed) {
   const std::pair<const char*, const char*> files[] = {
       {"[glove]\nrat = 40\n", "glove.rat"},

@@ -16,10 +16,10 @@ namespace {
 
 using namespace prehend;
 using namespace prehend::simulation;
-using carrying::ArmMotion;
-using carrying::CarryingArm;
 using arm::Hindrance;
 using arm::Joints;
+using carrying::ArmMotion;
+using carrying::CarryingArm;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
 using std::chrono::milliseconds;

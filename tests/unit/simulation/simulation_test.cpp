@@ -231,8 +231,10 @@ struct Episode {
 };
 
 /// Commands at 30 Hz: reach from 25 cm away, close, wait, lift; `offset` is the error of the reach.
-/// `tremble`: the second finger does not close but trembles by so much, rad.
-Episode reach_and_lift(const grasping::Body& body, const Vector3d& offset, double tremble = 0) {
+/// `tremble`: the second finger does not close but trembles by so much, rad. `shake`: the palm
+/// trembles to either side by so much, m.
+Episode reach_and_lift(const grasping::Body& body, const Vector3d& offset, double tremble = 0,
+                       double shake = 0) {
   Episode episode{{}, made()};
   Simulation& simulation = *episode.simulation;
   if (!simulation.see(body, Pose::Identity())) throw std::runtime_error("not placed");
@@ -241,7 +243,8 @@ Episode reach_and_lift(const grasping::Body& body, const Vector3d& offset, doubl
     const double reach = std::min(1.0, t / 1.2), close = std::clamp((t - 1.4) / 0.8, 0.0, 1.0);
     const double lift = 0.12 * std::clamp((t - 3.2) / 0.8, 0.0, 1.0);
     const Time now = start + milliseconds(static_cast<long>(1000 * t));
-    const Vector3d p = Vector3d(0, -0.25 * (1 - reach), 0.06 + lift) + offset;
+    const Vector3d p =
+        Vector3d(i % 2 == 0 ? shake : -shake, -0.25 * (1 - reach), 0.06 + lift) + offset;
     Command told = command(p, 1.4 * close);
     if (tremble > 0) told.dof[2] = 0.3 + tremble * std::sin(2 * EIGEN_PI * 3 * t);
     if (!simulation.accept(told, now)) throw std::runtime_error("refused");
@@ -270,16 +273,23 @@ TEST(Simulation, AGraspIsFoundOnceJudgedAndReallyLifted) {
   EXPECT_FALSE(episode.simulation->world().touches_others(0));
 }
 
-// DLR's hand held what stood there, and no grasp was reported: a finger that touched nothing
-// trembled with the operator's.
 TEST(Simulation, WhatTheHandHoldsIsNotTakenAwayByAnOrder) {
   Episode episode = reach_and_lift(talc, {0.005, 0.005, 0.005});
   EXPECT_FALSE(episode.simulation->place(talc, make_pose(Vector3d(0.5, 0.5, 0))));
 }
 
+// DLR's hand held what stood there, and no grasp was reported: a finger that touched nothing
+// trembled with the operator's.
 TEST(Simulation, AFingerThatTouchesNothingMayTremble) {
   EXPECT_EQ(reach_and_lift(talc, {0.005, 0.005, 0.005}, 0.04).closures.size(), 1u);
   EXPECT_TRUE(reach_and_lift(talc, {0, -0.10, 0}, 0.04).closures.empty());
+}
+
+// Hands of weak motors held what stood there, and no grasp was reported within 45 s: the operator's
+// hand trembles, and with it all fingers that press.
+TEST(Simulation, FingersThatPressMayTremble) {
+  EXPECT_EQ(reach_and_lift(talc, {0.005, 0.005, 0.005}, 0, 0.002).closures.size(), 1u);
+  EXPECT_TRUE(reach_and_lift(talc, {0, -0.10, 0}, 0, 0.002).closures.empty());
 }
 
 // Whether a hand has one drive or twelve, and whether its fingers stand at their ends or not.

@@ -11,6 +11,7 @@
 
 #include "common/audit/record.hpp"
 #include "common/base/log.hpp"
+#include "common/base/printable.hpp"
 #include "common/service/arguments.hpp"
 
 namespace prehend::cli {
@@ -21,11 +22,17 @@ struct Found {
   std::size_t damaged = 0;  // lines
 };
 
+/// A log has 8 MB. What is much larger, or a pipe on which one would wait, is none.
+constexpr std::uintmax_t max_size = 256 << 20;
+
 Expected<void> read(const std::filesystem::path& file, Found& found) {
   std::error_code code;
+  if (std::filesystem::exists(file, code) && !std::filesystem::is_regular_file(file, code))
+    return fail("is no file", file.string());
+  if (const auto size = std::filesystem::file_size(file, code); !code && size > max_size)
+    return fail("is too large for a log", file.string());
   std::ifstream stream(file);
-  if (std::filesystem::is_directory(file, code) || !stream)
-    return fail("cannot be read", file.string());
+  if (!stream) return fail("cannot be read", file.string());
   for (std::string line; std::getline(stream, line);) {
     if (line.empty()) continue;
     auto record = audit::parse(line);
@@ -50,9 +57,9 @@ Expected<std::vector<std::filesystem::path>> logs_in(const std::filesystem::path
 std::string page(const Found& found) {
   std::string text;
   for (const audit::Record& record : found.records) {
-    text += fmt::format("{}  {:<10}{:<14}{}", audit::to_text(record.time), record.hand,
-                        audit::event_names.name(record.event), record.who);
-    if (!record.what.empty()) text += ": " + record.what;
+    text += fmt::format("{}  {:<10}{:<14}{}", audit::to_text(record.time), printable(record.hand),
+                        audit::event_names.name(record.event), printable(record.who));
+    if (!record.what.empty()) text += ": " + printable(record.what);
     if (record.count != 1) text += fmt::format(" ({} times)", record.count);
     text += '\n';
   }

@@ -35,9 +35,9 @@ int doctor_command(const std::vector<std::string>& arguments) {
   // The environment first: whoever joins the lab takes charge of it.
   Findings findings{check_environment(),    check_interface(*config),
                     check_profile(*config), check_keys(*config, now),
-                    check_stale_memory(),   check_ipc_namespaces(),
-                    check_users(),          check_programs(),
-                    check_devices(*config)};
+                    check_consent(*config), check_stale_memory(),
+                    check_ipc_namespaces(), check_users(),
+                    check_programs(),       check_devices(*config)};
   const std::string network = config->text("lab.network");
   if (network == "laptop" || network == "lan") findings.push_back(check_multicast(*config));
   if (network == "wan") findings.push_back(check_sites(*config));

@@ -149,6 +149,15 @@ Check check_keys(const service::Config& config, Time now) {
   return {"keys", true, detail, ""};
 }
 
+Check check_consent(const service::Config& config) {
+  const bool given = config.is_given("safety.deadman"), asks = config.flag("safety.deadman");
+  if (given && !asks)
+    return {"consent", true, "no robot waits for consent, not even a real one (safety.deadman)",
+            ""};
+  if (asks) return {"consent", true, "every hand moves only with consent (safety.deadman)", ""};
+  return {"consent", true, "a real robot moves only with consent, others without", ""};
+}
+
 Check check_stale_memory() {
   const auto all = segments();
   const auto stale = std::count_if(all.begin(), all.end(), [](auto& one) { return !one.in_use; });

@@ -11,6 +11,8 @@ Check check_environment();
 Check check_profile(const service::Config& config);
 Check check_interface(const service::Config& config);
 Check check_keys(const service::Config& config, Time now);
+/// Who moves only while somebody holds the deadman.
+Check check_consent(const service::Config& config);
 /// Segments that Fast DDS programs have left behind when they were killed.
 Check check_stale_memory();
 /// Shared memory reaches neither into another IPC namespace nor to another user. Our profiles do

@@ -8,16 +8,13 @@
 #include <optional>
 
 #include "common/base/log.hpp"
-#include "common/dds/topics.hpp"
+#include "common/service/consent_key.hpp"
 #include "common/service/shell.hpp"
 #include "common/tool/keyboard.hpp"
-#include "services/cli/tools/orders/held_key.hpp"
 #include "services/cli/tools/orders/order.hpp"
 
 namespace prehend::cli {
 namespace {
-
-constexpr Duration consent_period = std::chrono::milliseconds(20);
 
 struct Ways {
   bool key = false;   // while the space bar is held
@@ -27,22 +24,18 @@ struct Ways {
 
 class Consent {
  public:
-  Consent(service::Shell& shell, std::string hand, const Ways& ways)
-      : shell_(shell),
-        ways_(ways),
-        begun_(shell.now()),
-        consents_(shell.publish(dds::operator_consent)) {
-    message_.hand(hand.c_str());
+  Consent(service::Shell& shell, const std::string& hand, const Ways& ways)
+      : shell_(shell), ways_(ways), begun_(shell.now()), key_(shell, hand) {
     if (ways.key) {
       keyboard_.emplace();
       log::info("hold the space bar; q ends");
     }
-    shell.on_tick(consent_period, [this](Time now) { tick(now); });
+    shell.on_tick(service::ConsentKey::period, [this](Time now) { tick(now); });
     shell.status().running();
   }
 
   /// Lets go, whatever it ended for.
-  void end() { say(false, shell_.now()); }
+  void end() { key_.end(); }
 
  private:
   void tick(Time now) {
@@ -54,27 +47,14 @@ class Consent {
     if (ways_.for_s > 0 && now - begun_ > seconds(ways_.for_s)) return shell_.stop();
     if (ways_.while_pid > 0 && ::kill(ways_.while_pid, 0) != 0 && errno == ESRCH)
       return shell_.stop();
-    const bool held = !ways_.key || key_.held(now);
-    if (held != held_) log::info("{}", held ? "held" : "let go");
-    held_ = held;
-    say(held, now);
-  }
-
-  void say(bool held, Time now) {
-    message_.sequence_number(message_.sequence_number() + 1);
-    message_.stamp_ns(to_ns(now));
-    message_.held(held);
-    consents_.publish(message_);
+    key_.tick(now, !ways_.key);
   }
 
   service::Shell& shell_;
   Ways ways_;
   Time begun_;
-  service::Shell::Output<v1::OperatorConsent> consents_;
+  service::ConsentKey key_;
   std::optional<tool::Keyboard> keyboard_;
-  HeldKey key_;
-  bool held_ = false;
-  v1::OperatorConsent message_;
 };
 
 int consent(const service::LabArguments& lab, std::string hand, const Ways& ways) {

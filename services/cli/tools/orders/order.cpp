@@ -12,16 +12,21 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "common/base/log.hpp"
+#include "common/base/printable.hpp"
 #include "common/dds/topics.hpp"
 #include "common/service/shell.hpp"
+#include "common/tool/keyboard.hpp"
 
 namespace prehend::cli {
 namespace {
 
 /// Between two tries, until all have answered: who is only just being discovered hears a later one.
 constexpr Duration order_period = std::chrono::milliseconds(50);
+constexpr Duration key_period = std::chrono::milliseconds(5);
 /// Once all gates that are known have answered, others may still turn up for so long.
 constexpr Duration grace = std::chrono::milliseconds(300);
+constexpr Duration patience = std::chrono::seconds(1);
 constexpr const char* gate_name = "gate";
 
 /// Of a gate that was heard of in the rig, or of a mapping.
@@ -34,6 +39,12 @@ bool is_done(const Answer& answer) {
   return answer.reply && answer.reply->done();
 }
 
+/// Only what tells of a gate, on a topic that nobody else may write, answers for one; anybody may
+/// reply. Mapping answers a takeover as well.
+bool counts(const Order& order, const Answer& answer) {
+  return answer.state || (order.action == v1::ACTION_TAKE_OVER && answer.reply);
+}
+
 /// Gives one order in one rig.
 class Giving {
  public:
@@ -43,62 +54,83 @@ class Giving {
         id_(fmt::format("{}-{}-{}", operator_name(), ::getpid(), to_ns(shell.now()))),
         begun_(shell.now()),
         orders_(shell.publish(dds::operator_command)) {
+    if (order.on_key) {
+      keyboard_.emplace();
+      log::info("any key stops; Ctrl-C ends without that");
+    }
     shell.subscribe(dds::operator_reply, std::function([this](const v1::OperatorReply& reply,
                                                               const dds::SampleInfo& info) {
-                      if (!info.gone && reply.id().to_string() == id_) answer(info).reply = reply;
+                      if (!info.gone && reply.id().to_string() == id_ && is_meant(reply))
+                        answer(info).reply = reply;
                     }));
     shell.subscribe(dds::robot_gate,
                     std::function([this](const v1::GateState& state, const dds::SampleInfo& info) {
                       if (!info.gone) answer(info).state = state;
                     }));
-    shell.on_tick(order_period, [this](Time now) { tick(now); });
+    shell.on_tick(keyboard_ ? key_period : order_period, [this](Time now) { tick(now); });
     shell.status().running();
   }
 
   std::vector<Answer> sorted_answers() const {
     std::vector<Answer> all;
-    for (const auto& [participant, answer] : answers_) all.push_back(answer);
+    for (const auto& [participant, answer] : answers_)
+      if (counts(order_, answer)) all.push_back(answer);
     std::stable_partition(all.begin(), all.end(), [](auto& one) { return one.state.has_value(); });
     return all;
   }
 
  private:
+  bool is_meant(const v1::OperatorReply& reply) const {
+    return order_.action == v1::ACTION_TAKE_OVER || reply.service().to_string() == gate_name;
+  }
+
   Answer& answer(const dds::SampleInfo& info) {
     if (!answers_.contains(info.participant)) newest_ = shell_.now();
     return answers_[info.participant];
   }
 
-  /// All, but for a takeover: the new leader leads one hand, and others do not know it.
+  /// By all, but for a takeover: the new leader leads one hand, and others do not know it.
   bool is_given() const {
-    const auto done = [](const auto& entry) { return is_done(entry.second); };
-    if (order_.action == v1::ACTION_TAKE_OVER)
-      return std::any_of(answers_.begin(), answers_.end(), done);
-    return !answers_.empty() && std::all_of(answers_.begin(), answers_.end(), done);
+    const std::vector<Answer> all = sorted_answers();
+    if (order_.action == v1::ACTION_TAKE_OVER) return std::any_of(all.begin(), all.end(), is_done);
+    return !all.empty() && std::all_of(all.begin(), all.end(), is_done);
   }
 
   void tick(Time now) {
+    if (keyboard_ && !pressed_) {
+      pressed_ = keyboard_->key().has_value();
+      if (!pressed_) return;
+      begun_ = now;
+    }
     const bool given = is_given();
     // What a gate says of itself comes right behind its reply.
     const bool told = std::all_of(answers_.begin(), answers_.end(), [](auto& entry) {
       const auto& [reply, state] = entry.second;
       return state || (reply && reply->service().to_string() != gate_name);
     });
-    if ((given && told && now - newest_ > grace) || now - begun_ > seconds(order_.timeout))
+    const bool over = now - begun_ > seconds(order_.timeout);
+    // Whoever replies as a gate and tells of none holds nobody up for longer than that.
+    if ((given && (told || now - newest_ > patience) && now - newest_ > grace) || over)
       return shell_.stop();
     v1::OperatorCommand message;
     message.id(id_.substr(0, 63).c_str());
-    message.stamp_ns(to_ns(now));
+    // When it was given, however often it is repeated: a release must not end a later stop.
+    message.stamp_ns(to_ns(begun_));
     message.action(order_.action);
     // Mapping chooses between gloves, a gate between those who send commands.
     if (order_.action != v1::ACTION_TAKE_OVER) message.target(gate_name);
     message.argument(order_.argument.substr(0, 127).c_str());
-    if (!given) orders_.publish(message);
+    if (given || now - sent_ < order_period / 2) return;
+    sent_ = now;
+    orders_.publish(message);
   }
 
   service::Shell& shell_;
   const Order& order_;
   std::string id_;
-  Time begun_, newest_{};
+  Time begun_, newest_{}, sent_{};
+  std::optional<tool::Keyboard> keyboard_;  // that is waited for
+  bool pressed_ = false;
   service::Shell::Output<v1::OperatorCommand> orders_;
   std::map<dds::GuidPrefix, Answer> answers_;
 };
@@ -118,7 +150,9 @@ bool report(const std::string& rig, const Answer& answer, bool json,
                       {"message", message},
                       {"stopped", answer.state && answer.state->stopped()},
                       {"leader", answer.state ? answer.state->leader().to_string() : ""}});
-  if (!json) std::cout << fmt::format("{}/{}: {}\n", rig, hand.empty() ? service : hand, message);
+  if (!json)
+    std::cout << fmt::format("{}/{}: {}\n", rig, printable(hand.empty() ? service : hand),
+                             printable(message));
   return done;
 }
 

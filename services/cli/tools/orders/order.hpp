@@ -21,7 +21,8 @@ struct Order {
   std::vector<std::string> rigs;  // other rigs than lab.rig
   bool all = false;               // every rig of the domain
   bool json = false;
-  double timeout = 5;  // s
+  double timeout = 5;   // s
+  bool on_key = false;  // waits for a key, and gives it then at once
 
   void add_to(CLI::App& app);
 };

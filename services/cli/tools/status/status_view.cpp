@@ -216,11 +216,12 @@ std::string StatusView::gates(Time now) const {
     std::string says =
         gate.leader().size() == 0 ? "nobody leads" : gate.leader().to_string() + " leads";
     if (gate.refused().size() > 0) says += "; " + gate.refused().to_string() + " is refused";
-    if (gate.deadman() && !gate.consent()) says += "; the deadman is not held";
     if (gate.stopped())
       says = fmt::format("STOPPED by {}{}{}", gate.stopped_by().to_string(),
                          gate.reason().size() == 0 ? "" : ": ", gate.reason().to_string());
-    lines += fmt::format("{:<14}{}\n", hand, says);
+    if (gate.deadman())
+      says += gate.consent() ? "; the deadman is held" : "; the deadman is not held";
+    lines += fmt::format("{:<14}{}\n", printable(hand), printable(says));
   }
   return lines;
 }

@@ -119,7 +119,7 @@ class Session : public Connection, public std::enable_shared_from_this<Session<S
     const auto& request = parser_.get();
     Asked asked = asked_of(request);
     const Verdict verdict = connections_.site.judge(asked);
-    if (verdict.route == Route::socket) return upgrade(verdict.what);
+    if (verdict.route == Route::socket) return upgrade(verdict.what, verdict.orders);
     response_ = response_of(request, connections_.site.answer(verdict, request.body()), secure);
     http::async_write(stream_, response_,
                       [self = this->shared_from_this()](Code failed, std::size_t) {
@@ -136,7 +136,7 @@ class Session : public Connection, public std::enable_shared_from_this<Session<S
     }
   }
 
-  void upgrade(const std::string& protocol) {
+  void upgrade(const std::string& protocol, bool orders) {
     beast::get_lowest_layer(stream_).expires_never();
     socket_.emplace(std::move(stream_));
     beast::websocket::stream_base::timeout times{};
@@ -151,9 +151,9 @@ class Session : public Connection, public std::enable_shared_from_this<Session<S
         [protocol](beast::websocket::response_type& response) {
           response.set(http::field::sec_websocket_protocol, protocol);
         }));
-    socket_->async_accept(parser_.get(), [self = this->shared_from_this()](Code failed) {
+    socket_->async_accept(parser_.get(), [self = this->shared_from_this(), orders](Code failed) {
       if (failed) return;
-      self->client_ = self->connections_.site.hub().connect();
+      self->client_ = self->connections_.site.hub().connect(orders);
       self->buffer_.consume(self->buffer_.size());
       self->listen();
       self->flush();

@@ -20,6 +20,9 @@ std::vector<std::string> names_of(const model::GraspTaxonomy& taxonomy) {
 
 HandSample sample_of(const SeenHand& hand, const SeenHand* before, Time begin) {
   HandSample sample{.t = to_seconds(hand.stamp - begin)};
+  sample.scale = hand.scale;
+  for (std::size_t f = 0; f < hand.p_HF.size(); ++f)
+    if (hand.p_HF[f]) sample.p_HF[f] = *hand.p_HF[f];
   const auto& thumb = hand.p_HF[static_cast<std::size_t>(model::Finger::thumb)];
   for (std::size_t f = 1; thumb && f < hand.p_HF.size(); ++f)
     if (hand.p_HF[f]) sample.p_thumb_tip_W[f - 1] = hand.X_WH.linear() * (*hand.p_HF[f] - *thumb);
@@ -40,9 +43,11 @@ double PalmSpeed::add(Time stamp, const Eigen::Vector3d& p_WH) {
   return v_WH_.norm();
 }
 
-GraspJudge::GraspJudge(const model::GraspTaxonomy& taxonomy, const Recogniser* recogniser)
+GraspJudge::GraspJudge(const model::GraspTaxonomy& taxonomy, const Recogniser* recogniser,
+                       const ObjectLikelihood* objects)
     : taxonomy_(taxonomy),
       recogniser_(recogniser),
+      objects_(objects),
       kinds_(recogniser ? recogniser->classes() : names_of(taxonomy)) {
   for (const std::string& kind : kinds_) {
     const model::GraspClass* known = taxonomy.find(kind);
@@ -61,6 +66,7 @@ void GraspJudge::begin() {
 Eigen::VectorXd GraspJudge::prior(const SeenObject* object) const {
   Eigen::VectorXd made = Eigen::VectorXd::Ones(static_cast<Eigen::Index>(kinds_.size()));
   if (!object) return made;
+  if (objects_ && model::is_valid(object->shape)) return objects_->of(object->shape);
   const std::vector<double> fit = taxonomy_.fit_to_object(object->shape);
   for (std::size_t k = 0; k < kinds_.size(); ++k)
     if (classes_[k]) made[static_cast<Eigen::Index>(k)] = fit[*classes_[k]];
@@ -87,7 +93,9 @@ Distribution GraspJudge::see(const SeenHand& hand, const SeenObject* object) {
       stream_ ? stream_->add(sample_of(hand, last_ ? &*last_ : nullptr, first_->stamp))
               : by_approach(hand);
   last_ = hand;
-  return with_prior(seen, prior(object)).value_or(seen);
+  const Distribution of_object = with_prior(seen, prior(object)).value_or(seen);
+  // A task that forbids all that is seen is not the one that is done.
+  return with_prior(of_object, prior_of_task_).value_or(of_object);
 }
 
 }  // namespace prehend::demonstration

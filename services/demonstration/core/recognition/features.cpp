@@ -8,7 +8,10 @@ namespace prehend::demonstration {
 
 namespace {
 
-constexpr Eigen::Index posture_count = 13, motion_count = 17;
+// From the thumb: ten distances and three signed lengths. On the hand: of each fingertip three
+// coordinates and how the finger stands there, and how large the hand is.
+constexpr Eigen::Index from_thumb = 13, on_hand = model::finger_count * 6 + 1;
+constexpr Eigen::Index posture_count = from_thumb + on_hand, motion_count = 17;
 constexpr double slow = 0.02;        // m/s: below, speeds count alike
 constexpr double short_time = 0.01;  // s
 constexpr double no_length = 1e-9;   // m
@@ -22,7 +25,7 @@ double signed_length(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const E
   return std::cbrt(a.dot(b.cross(c)));
 }
 
-void write_posture(const HandSample& sample, Eigen::Ref<Eigen::VectorXd> out) {
+void write_from_thumb(const HandSample& sample, Eigen::Ref<Eigen::VectorXd> out) {
   const auto& tips = sample.p_thumb_tip_W;
   Eigen::Index at = 0;
   for (std::size_t i = 0; i < tips.size(); ++i) {
@@ -32,6 +35,27 @@ void write_posture(const HandSample& sample, Eigen::Ref<Eigen::VectorXd> out) {
   out[at++] = signed_length(tips[0], tips[1], tips[2]);
   out[at++] = signed_length(tips[0], tips[1], tips[3]);
   out[at] = signed_length(tips[1], tips[2], tips[3]);
+}
+
+/// How a finger stands: how far it is stretched, how far it is bent towards the palm, how far it
+/// is spread aside, as seen from its first joint in a hand of average size.
+Eigen::Vector3d stance(const Eigen::Vector3d& p_HF, model::Finger finger) {
+  static const model::HumanHand average(1);
+  const Eigen::Vector3d d = p_HF - average.base(finger);
+  return {d.norm(), std::atan2(-d.z(), d.x()), std::atan2(d.y(), std::hypot(d.x(), d.z()))};
+}
+
+/// Lengths are those of a hand of average size, so that large and small hands look alike.
+void write_on_hand(const HandSample& sample, Eigen::Ref<Eigen::VectorXd> out) {
+  const double scale = std::isfinite(sample.scale) ? sample.scale : 1;
+  Eigen::Index at = 0;
+  for (std::size_t f = 0; f < sample.p_HF.size(); ++f) {
+    const Eigen::Vector3d p_HF = sample.p_HF[f] / scale;
+    out.segment<3>(at) = p_HF;
+    out.segment<3>(at + 3) = stance(p_HF, static_cast<model::Finger>(f));
+    at += 6;
+  }
+  out[at] = sample.scale;
 }
 
 void write_motion(const HandSample& sample, Eigen::Ref<Eigen::VectorXd> out) {
@@ -72,7 +96,10 @@ Eigen::Index summary_count(Inputs inputs) {
 
 Eigen::VectorXd features(const HandSample& sample, Inputs inputs) {
   Eigen::VectorXd made(feature_count(inputs));
-  if (inputs != Inputs::motion) write_posture(sample, made.head(posture_count));
+  if (inputs != Inputs::motion) {
+    write_from_thumb(sample, made.head(from_thumb));
+    write_on_hand(sample, made.segment(from_thumb, on_hand));
+  }
   if (inputs != Inputs::posture) write_motion(sample, made.tail(motion_count));
   return made;
 }

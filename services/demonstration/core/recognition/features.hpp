@@ -8,13 +8,16 @@ namespace prehend::demonstration {
 
 /// What a recogniser looks at.
 enum class Inputs {
-  posture,  // the hand's shape, whatever way it points: distances between fingertips
+  posture,  // the hand's shape, whatever way it points: where fingertips are to each other and on
+            // it
   motion,   // which way it points and how fast it moves, whatever its shape
   both
 };
 
-/// Of one sample. Posture: the ten distances between fingertips and three signed lengths that tell
-/// a posture from its mirror image. Motion: directions from the thumb to the fingers, the palm's
+/// Of one sample. Posture: the ten distances between fingertips, three signed lengths that tell a
+/// posture from its mirror image, and, where the back of the hand is measured, each fingertip as
+/// seen from it and how its finger is stretched, bent and spread, as in a hand of average size.
+/// Motion: directions from the thumb to the fingers, the palm's
 /// direction, logarithms of the speeds. NaN where the sample does not say.
 Eigen::VectorXd features(const HandSample& sample, Inputs inputs);
 /// Without unmeasured numbers: NaN is replaced by what came before.

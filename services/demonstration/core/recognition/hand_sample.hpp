@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "common/model/human_hand.hpp"
 #include "common/model/shape.hpp"
 
 namespace prehend::demonstration {
@@ -20,6 +21,14 @@ struct HandSample {
   std::array<Eigen::Vector3d, 4> p_thumb_tip_W{
       Eigen::Vector3d::Constant(unknown_number), Eigen::Vector3d::Constant(unknown_number),
       Eigen::Vector3d::Constant(unknown_number), Eigen::Vector3d::Constant(unknown_number)};
+  /// Fingertips in H, as the sensor on the back of the hand sees them [Thesis, eq. 4.1], m; and the
+  /// hand's length relative to an average one.
+  std::array<Eigen::Vector3d, model::finger_count> p_HF = [] {
+    std::array<Eigen::Vector3d, model::finger_count> made;
+    made.fill(Eigen::Vector3d::Constant(unknown_number));
+    return made;
+  }();
+  double scale = unknown_number;
   double hand_speed = unknown_number, wrist_speed = unknown_number;  // m/s
 };
 

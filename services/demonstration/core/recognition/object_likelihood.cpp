@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numbers>
+#include <utility>
 
 namespace prehend::demonstration {
 
@@ -12,13 +14,15 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double unseen = 0.5;          // takes, of a shape that nobody has shown
-constexpr double shape_count = 3;       // there are
-constexpr std::size_t min_takes = 5;    // to say how large objects are
-constexpr double min_deviation = 0.05;  // of a logarithm: sizes are measured no better
-constexpr double usual_size = 0.05;     // m
-constexpr double any_deviation = 1.0;   // of the logarithm of any object's size
-constexpr double surprise = 0.01;       // share of objects that are of any size
+constexpr double unseen = 0.5;        // takes, of a shape that nobody has shown
+constexpr double shape_count = 3;     // there are
+constexpr std::size_t min_takes = 5;  // to say how large objects are
+// How far an object that was shown speaks for others at least, logarithm: its width decides, and is
+// measured within a few per cent; how long and deep such things are says less.
+constexpr double of_width = 0.05, of_others = 0.15;
+constexpr double usual_size = 0.05;    // m
+constexpr double any_deviation = 1.0;  // of the logarithm of any object's size
+constexpr double surprise = 0.01;      // share of objects that are of any size
 
 /// Of its sizes those that are its own.
 VectorXd logarithms(const model::Shape& object) {
@@ -44,6 +48,32 @@ double any_size(const VectorXd& sizes) {
   return made;
 }
 
+/// At least as far as its neighbours are apart, where sizes are evenly spread.
+VectorXd reach_of(const MatrixXd& shown) {
+  VectorXd made = VectorXd::Constant(shown.rows(), of_others);
+  if (made.size() > 0) made[0] = of_width;
+  if (shown.cols() == 0) return made;
+  const auto n = static_cast<double>(shown.cols());
+  for (Index i = 0; i < made.size(); ++i) {
+    const double deviation =
+        std::sqrt((shown.row(i).array() - shown.row(i).mean()).square().mean());
+    made[i] = std::max(made[i], std::sqrt(12.0) * deviation / n);
+  }
+  return made;
+}
+
+/// The density of sizes beside these, each spread over those near it.
+double near(const VectorXd& sizes, const MatrixXd& shown, const VectorXd& reach) {
+  double sum = 0;
+  for (const auto& each : shown.colwise()) {
+    double density = 1;
+    for (Index i = 0; i < sizes.size(); ++i)
+      density *= normal(sizes[i], each[i], reach[i] * reach[i]);
+    sum += density;
+  }
+  return sum / static_cast<double>(shown.cols());
+}
+
 }  // namespace
 
 Expected<ObjectLikelihood> ObjectLikelihood::learn(const std::vector<const Take*>& takes,
@@ -59,23 +89,39 @@ Expected<ObjectLikelihood> ObjectLikelihood::learn(const std::vector<const Take*
   }
   if (shown.empty())
     return fail("no object was measured", {}, "takes need the columns shape and size_x_cm, ...");
-  ObjectLikelihood made;
-  for (const double count : counts)
-    made.otherwise_.push_back(unseen / (count + shape_count * unseen));
+  std::vector<double> otherwise;
+  for (const double count : counts) otherwise.push_back(unseen / (count + shape_count * unseen));
+  std::vector<Sizes> all;
   for (const auto& [group, sizes] : shown) {
-    Sizes learnt;
+    Sizes learnt{group.first, group.second, 0, {}, {}};
     learnt.share =
         (static_cast<double>(sizes.size()) + unseen) / (counts[group.first] + shape_count * unseen);
     if (sizes.size() >= min_takes) {
-      MatrixXd all(sizes.front().size(), static_cast<Index>(sizes.size()));
-      for (std::size_t i = 0; i < sizes.size(); ++i) all.col(static_cast<Index>(i)) = sizes[i];
-      learnt.means = all.rowwise().mean();
-      learnt.variances = ((all.colwise() - learnt.means).rowwise().squaredNorm() /
-                          static_cast<double>(sizes.size() - 1))
-                             .cwiseMax(min_deviation * min_deviation);
+      learnt.shown.resize(sizes.front().size(), static_cast<Index>(sizes.size()));
+      for (std::size_t i = 0; i < sizes.size(); ++i)
+        learnt.shown.col(static_cast<Index>(i)) = sizes[i];
     }
-    made.sizes_.emplace(group, std::move(learnt));
+    all.push_back(std::move(learnt));
   }
+  return create(std::move(all), std::move(otherwise));
+}
+
+Expected<ObjectLikelihood> ObjectLikelihood::create(std::vector<Sizes> sizes,
+                                                    std::vector<double> otherwise) {
+  const auto is_share = [](double share) { return share > 0 && share <= 1; };
+  if (!std::all_of(otherwise.begin(), otherwise.end(), is_share))
+    return fail("a share of shapes is not above 0");
+  for (Sizes& each : sizes) {
+    if (each.kind >= otherwise.size()) return fail("sizes of objects are of no class");
+    if (!is_share(each.share)) return fail("a share of shapes is not above 0");
+    const Index own = logarithms({each.shape, Eigen::Vector3d::Ones()}).size();
+    if (!each.shown.allFinite() || (each.shown.size() > 0 && each.shown.rows() != own))
+      return fail("sizes of objects do not fit their shape");
+    each.reach = reach_of(each.shown);
+  }
+  ObjectLikelihood made;
+  made.sizes_ = std::move(sizes);
+  made.otherwise_ = std::move(otherwise);
   return made;
 }
 
@@ -83,16 +129,11 @@ VectorXd ObjectLikelihood::of(const model::Shape& object) const {
   const VectorXd sizes = logarithms(object);
   const double any = any_size(sizes);
   VectorXd made(static_cast<Index>(otherwise_.size()));
-  for (std::size_t c = 0; c < otherwise_.size(); ++c) {
-    const auto found = sizes_.find({c, object.kind});
-    const double share = found == sizes_.end() ? otherwise_[c] : found->second.share;
-    double own = any;
-    if (found != sizes_.end() && found->second.means.size() > 0) {
-      own = 1;
-      for (Index i = 0; i < sizes.size(); ++i)
-        own *= normal(sizes[i], found->second.means[i], found->second.variances[i]);
-    }
-    made[static_cast<Index>(c)] = share * ((1 - surprise) * own + surprise * any);
+  for (Index c = 0; c < made.size(); ++c) made[c] = otherwise_[static_cast<std::size_t>(c)] * any;
+  for (const Sizes& each : sizes_) {
+    if (each.shape != object.kind) continue;
+    const double own = each.shown.size() > 0 ? near(sizes, each.shown, each.reach) : any;
+    made[static_cast<Index>(each.kind)] = each.share * ((1 - surprise) * own + surprise * any);
   }
   return made;
 }

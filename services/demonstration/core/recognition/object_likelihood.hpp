@@ -1,9 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <map>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "common/base/error.hpp"
@@ -13,26 +11,37 @@
 namespace prehend::demonstration {
 
 /// P(shape and size | kind of grasp), learnt from takes whose object was measured: how often a kind
-/// goes with such a shape, and how large such objects are (logarithms of sizes are normal). What a
-/// recogniser answers is multiplied by it. A value.
+/// goes with such a shape, and how large such objects are: each that was shown stands for those of
+/// nearly its size. What a recogniser answers is multiplied by it. A value.
 class ObjectLikelihood {
  public:
+  /// One kind of grasp with one kind of shape.
+  struct Sizes {
+    std::size_t kind = 0;  // index of its class
+    model::ShapeKind shape{};
+    double share = 0;       // of the kind's takes
+    Eigen::MatrixXd shown;  // logarithms of sizes, a column an object; none: too few takes to say
+    Eigen::VectorXd reach;  // logarithm: how far each of them speaks for others; made by create()
+  };
+
   /// classes: in whose order answers are. Fails when no take has an object.
   static Expected<ObjectLikelihood> learn(const std::vector<const Take*>& takes,
                                           const std::vector<std::string>& classes);
 
+  /// From stored numbers. otherwise: of each class, the share of a shape never seen with it.
+  /// Refuses what is not finite, shares that are not above 0, and sizes that do not fit their
+  /// shape.
+  static Expected<ObjectLikelihood> create(std::vector<Sizes> sizes, std::vector<double> otherwise);
+
   /// Of each class, but for a common factor; above 0.
   Eigen::VectorXd of(const model::Shape& object) const;
 
- private:
-  /// One kind of grasp with one kind of shape.
-  struct Sizes {
-    double share = 0;                  // of the kind's takes
-    Eigen::VectorXd means, variances;  // of the sizes' logarithms; empty: too few takes to say
-  };
+  const std::vector<Sizes>& sizes() const { return sizes_; }
+  const std::vector<double>& otherwise() const { return otherwise_; }
 
-  std::map<std::pair<std::size_t, model::ShapeKind>, Sizes> sizes_;  // by class and shape
-  std::vector<double> otherwise_;  // share of a shape that was never seen with a class
+ private:
+  std::vector<Sizes> sizes_;
+  std::vector<double> otherwise_;
 };
 
 }  // namespace prehend::demonstration

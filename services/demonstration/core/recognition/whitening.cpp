@@ -10,6 +10,8 @@ namespace prehend::demonstration {
 namespace {
 
 constexpr double no_deviation = 1e-9;
+// Of a feature that nobody measured in training: whatever it is later, it tells nothing.
+constexpr double says_nothing = 1e12;
 
 }  // namespace
 
@@ -40,7 +42,7 @@ Expected<Whitening> Whitening::fit(const Eigen::MatrixXd& samples) {
     for (const double x : samples.row(i))
       if (std::isfinite(x)) squares += (x - mean[i]) * (x - mean[i]);
     const double spread = count > 1 ? std::sqrt(squares / (count - 1)) : 0;
-    deviation[i] = spread > no_deviation ? spread : 1;
+    deviation[i] = count == 0 ? says_nothing : spread > no_deviation ? spread : 1;
   }
   return create(std::move(mean), std::move(deviation), {});
 }

@@ -186,7 +186,10 @@ Expected<Rehearsal> rehearse(const model::HandModel& hand, const TaskModel& task
   RehearsalOptions options = given;
   const auto order = order_of(task);
   if (!order) return tl::unexpected(order.error());
-  auto created = grasping::World::create(hand, from.X_WB, from.dof);
+  // An arm gives way to what the hand touches, in thought as it does live.
+  grasping::WorldOptions physics;
+  if (options.robot) physics.base = carrying::CarryingArm::base();
+  auto created = grasping::World::create(hand, from.X_WB, from.dof, physics);
   if (!created) return tl::unexpected(created.error());
   std::unique_ptr<grasping::World> world = std::move(*created);
   for (const Thing& thing : things)

@@ -15,10 +15,11 @@ using Eigen::Vector3d;
 using Eigen::VectorXd;
 
 constexpr double arrived_at = 0.006, arrived_turn = 0.04;  // m, rad
-constexpr double stands_for = 0.3;  // s, that fingers stand when they have closed
-constexpr double opened = 0.05;     // rad
-constexpr double above = 0.002;     // m, over its place that an object is let go
-constexpr double toppled = 0.3;     // rad
+constexpr double stands_for = 0.3;   // s, that fingers stand when they have closed
+constexpr double opened = 0.05;      // rad
+constexpr double above = 0.002;      // m, over its place that an object is let go
+constexpr double toppled = 0.3;      // rad
+constexpr double raised_by = 0.003;  // m, of an object by the fingers that close on it
 
 Pose at_height(const Pose& X, double z) {
   Pose made = X;
@@ -231,6 +232,8 @@ void StepPerformer::close(const RobotNow& robot, const Pose& X_WO) {
     stood_ = now;
     still_since_ = robot.stamp;
   }
+  // What fingers raise they have: they would go on to pull it up, and turn it.
+  if (X_WO.translation().z() - X_WO_before_.translation().z() > raised_by) return next(robot, X_WO);
   // The command must have come to its squeeze.
   if (t > 2 * stands_for && to_seconds(robot.stamp - still_since_) > stands_for)
     return next(robot, X_WO);

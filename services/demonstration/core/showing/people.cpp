@@ -143,6 +143,8 @@ std::vector<HandSample> closing(const Showing& person, const GraspClass& kind,
     for (std::size_t f = 0; f < tips.size(); ++f)
       p_HS[f] = tips[f] * person.p_TS[f] + random.normal3(noise);
     HandSample sample{.t = n / rate};
+    sample.p_HF = p_HS;
+    sample.scale = person.hand.scale();
     for (std::size_t f = 1; f < tips.size(); ++f)
       sample.p_thumb_tip_W[f - 1] = R_WH * (p_HS[f] - p_HS[0]);
     sample.hand_speed = end_speed + hand_speed * open_still * random.uniform(0.8, 1.2);

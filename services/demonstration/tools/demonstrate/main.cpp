@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <iostream>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -24,6 +25,7 @@ struct Arguments {
   service::LabArguments lab;
   std::string name;
   double seconds = 0;  // 0: until Enter is pressed
+  int button = 0;      // of the tracker: pressed, it begins, pressed again, it ends; 0: none
   bool begin = false, end = false, json = false;
 };
 
@@ -34,12 +36,21 @@ class Session {
       : shell_(shell),
         arguments_(arguments),
         orders_(shell.publish(dds::operator_command)),
-        step_(arguments.end ? Step::end : Step::begin),
+        step_(arguments.end          ? Step::end
+              : arguments.button > 0 ? Step::wait
+                                     : Step::begin),
         since_(shell.now()) {
     shell.subscribe(dds::operator_reply, std::function([this](const v1::OperatorReply& reply,
                                                               const dds::SampleInfo& info) {
                       if (!info.gone && reply.id().to_string() == id()) answered(reply);
                     }));
+    if (arguments.button > 0) {
+      shell.subscribe(dds::glove_button, std::function([this](const v1::GloveButton& button,
+                                                              const dds::SampleInfo& info) {
+                        if (!info.gone) on_button(button);
+                      }));
+      log::info("press button {} to begin, and again when it is over", arguments.button);
+    }
     shell.on_tick(order_period, [this](Time now) { tick(now); });
     shell.status().running();
   }
@@ -48,14 +59,27 @@ class Session {
   const std::string& message() const { return message_; }
 
  private:
-  enum class Step { begin, watch, end };
+  enum class Step { wait, begin, watch, end };
 
   std::string id() const {
     return fmt::format("demonstrate-{}-{}-{}", ::getpid(), to_ns(since_) / 1000000,
                        step_ == Step::begin ? "begin" : "end");
   }
 
+  /// Counts where it was up before: what is held already when we come begins nothing.
+  void on_button(const v1::GloveButton& message) {
+    if (message.glove().to_string() != shell_.config().text("glove.name")) return;
+    const auto& held = message.held();
+    const bool down = std::find(held.begin(), held.end(), arguments_.button) != held.end();
+    const bool pressed = down && !down_;
+    down_ = down;
+    if (!pressed) return;
+    if (step_ == Step::wait) go(Step::begin, shell_.now());
+    if (step_ == Step::watch) go(Step::end, shell_.now());
+  }
+
   void tick(Time now) {
+    if (step_ == Step::wait) return;
     if (step_ == Step::watch) {
       if (is_over(now)) go(Step::end, now);
       return;
@@ -87,11 +111,14 @@ class Session {
     }
     if (step_ != Step::begin) return;
     go(Step::watch, shell_.now());
-    if (arguments_.seconds <= 0) log::info("{}; press Enter when it is over", message_);
+    if (arguments_.seconds <= 0)
+      log::info("{}; press {} when it is over", message_,
+                arguments_.button > 0 ? "the button" : "Enter");
   }
 
   bool is_over(Time now) const {
     if (arguments_.seconds > 0) return now - since_ > prehend::seconds(arguments_.seconds);
+    if (arguments_.button > 0) return false;
     pollfd input{STDIN_FILENO, POLLIN, 0};
     return ::poll(&input, 1, 0) > 0;
   }
@@ -101,6 +128,7 @@ class Session {
   service::Shell::Output<v1::OperatorCommand> orders_;
   Step step_;
   Time since_;
+  bool down_ = true;  // the button, as it was said last
   bool done_ = false;
   std::string message_ = "interrupted; the demonstration goes on until prehend demonstrate --end";
 };
@@ -139,7 +167,13 @@ int main(int argc, char** argv) {
   app.add_option("--seconds", arguments.seconds, "ends by itself after so long")
       ->check(CLI::Range(0.1, 600.0));
   auto* begin = app.add_flag("--begin", arguments.begin, "only begins");
-  app.add_flag("--end", arguments.end, "only ends")->excludes(begin);
+  auto* end = app.add_flag("--end", arguments.end, "only ends")->excludes(begin);
+  app.add_option(
+         "--button", arguments.button,
+         "of the tracker: it begins when this is pressed, and ends when it is pressed again")
+      ->check(CLI::Range(1, 8))
+      ->excludes(begin)
+      ->excludes(end);
   app.add_flag("--json", arguments.json, "one JSON document");
   if (const auto code = service::parse(app, argc, argv)) return *code;
   if (arguments.name.empty() && !arguments.end)

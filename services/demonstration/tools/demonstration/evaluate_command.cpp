@@ -108,6 +108,7 @@ Json document_of(const std::vector<TaskResult>& results, const Takes& takes,
         task["methods"][std::string(to_string(method))] =
             document_of(result, method, found->second, families);
     task["classes"] = result.classes;
+    task["not_learnt"] = result.not_learnt;
   }
   document["rows"] = takes.rows;
   document["rows_left_out"] = takes.bad_rows;
@@ -208,6 +209,13 @@ Expected<std::vector<TaskResult>> results_of(const Takes& takes, const Arguments
       arguments.with_object);
 }
 
+std::string needed(const Arguments& arguments) {
+  if (!arguments.model.empty()) return "the model must have learnt the same tasks";
+  return arguments.training.empty()
+             ? "takes of at least three people and two kinds of grasps are needed"
+             : "the other folder needs the same tasks, by two people and of two kinds of grasps";
+}
+
 int evaluate(const Arguments& arguments) {
   const auto takes = told_takes(arguments.folder);
   if (!takes) return tool::complain(takes.error());
@@ -216,13 +224,14 @@ int evaluate(const Arguments& arguments) {
   bool any = false;
   for (const TaskResult& result : *results) {
     any |= !result.methods.empty();
+    if (!result.methods.empty() && !result.not_learnt.empty())
+      log::warning("task {}: nobody else showed {}: answered wrongly each time", result.task,
+                   fmt::join(result.not_learnt, ", "));
     if (result.trouble)
       log::warning(Error{result.trouble->what, "task " + result.task, result.trouble->hint});
   }
   if (arguments.json) std::cout << document_of(*results, *takes, arguments.families) << "\n";
-  if (!any)
-    return tool::complain({"no task could be judged", arguments.folder,
-                           "takes of at least two people and two kinds of grasps are needed"});
+  if (!any) return tool::complain({"no task could be judged", arguments.folder, needed(arguments)});
   if (arguments.json) return exit_done;
   for (const TaskResult& result : *results) {
     if (result.methods.empty()) continue;

@@ -5,8 +5,11 @@
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <set>
 
+#include "common/base/log.hpp"
+#include "common/base/log_format.hpp"
 #include "common/base/progress.hpp"
 #include "services/demonstration/files/recogniser_file.hpp"
 #include "services/demonstration/tools/demonstration/commands.hpp"
@@ -33,18 +36,27 @@ Expected<std::vector<TaskRecogniser>> train_all(const Takes& takes, const Traine
   Progress progress("training");
   std::vector<TaskRecogniser> made;
   std::size_t done = 0;
+  std::optional<Error> trouble;
   for (const auto& [task, own] : tasks) {
     const auto tell = [&](double share) {
       progress.show(done + static_cast<std::size_t>(100 * share), 100 * tasks.size());
     };
     auto recognisers = train_recognisers(own, {methods.begin(), methods.end()}, options, tell);
-    if (!recognisers)
-      return fail(recognisers.error().what, "task " + task, recognisers.error().hint);
-    for (Recogniser& recogniser : *recognisers)
-      made.push_back({task, std::move(recogniser), static_cast<unsigned>(people_of(own)),
-                      static_cast<unsigned>(own.size())});
     done += 100;
+    if (!recognisers) {  // the other tasks are learnt all the same
+      if (trouble) log::warning(*trouble);
+      trouble = Error{recognisers.error().what, "task " + task, recognisers.error().hint};
+      continue;
+    }
+    for (Recogniser& recogniser : *recognisers) {
+      auto objects = ObjectLikelihood::learn(own, recogniser.classes());
+      made.push_back({task, std::move(recogniser), static_cast<unsigned>(people_of(own)),
+                      static_cast<unsigned>(own.size()),
+                      objects ? std::optional(std::move(*objects)) : std::nullopt});
+    }
   }
+  if (made.empty() && trouble) return tl::unexpected(*trouble);
+  if (trouble) log::warning(*trouble);
   return made;
 }
 
@@ -63,6 +75,7 @@ int train(const TrainArguments& arguments) {
       tasks[one.task]["classes"] = one.recogniser.classes();
       tasks[one.task]["people"] = one.people;
       tasks[one.task]["takes"] = one.takes;
+      tasks[one.task]["objects"] = one.objects.has_value();
     }
     std::cout << nlohmann::ordered_json{{"tasks", tasks},
                                         {"rows", takes->rows},

@@ -103,6 +103,25 @@ std::vector<std::string> classes_of(const std::vector<const Take*>& takes,
   return {names.begin(), names.end()};
 }
 
+/// Kinds of these takes that are none of those.
+std::vector<std::string> not_among(const std::vector<const Take*>& takes,
+                                   const std::vector<std::string>& learnt) {
+  std::vector<std::string> made;
+  for (const std::string& name : classes_of(takes, {}))
+    if (std::find(learnt.begin(), learnt.end(), name) == learnt.end()) made.push_back(name);
+  return made;
+}
+
+/// Kinds that a single person shows: left out, nobody else teaches them.
+std::vector<std::string> of_one_person(const std::vector<const Take*>& takes) {
+  std::map<std::string, std::set<std::string>> people;
+  for (const Take* take : takes) people[take->label].insert(take->user);
+  std::vector<std::string> made;
+  for (const auto& [label, users] : people)
+    if (users.size() == 1) made.push_back(label);
+  return made;
+}
+
 std::vector<Job> folds_by_person(std::size_t task, const std::vector<const Take*>& takes) {
   std::map<std::string, std::vector<const Take*>> people;
   for (const Take* take : takes) people[take->user].push_back(take);
@@ -134,7 +153,15 @@ std::vector<TaskResult> judge(const std::vector<Take>& takes, const std::vector<
   for (const auto& [task, own] : by_task(takes)) {
     const auto found = trained.find(task);
     const auto shown = found == trained.end() ? std::vector<const Take*>{} : found->second;
-    results.push_back({task, classes_of(own, classes_of(shown, {})), {}, {}, {}});
+    const auto kinds = classes_of(shown, {});
+    results.push_back({task, classes_of(own, kinds), {}, {}, {}});
+    results.back().not_learnt = training ? not_among(own, kinds) : of_one_person(own);
+    if (training && shown.empty()) {
+      results.back().trouble = Error{"nobody shows it in the folder to learn from",
+                                     {},
+                                     "the same task needs the same name in both"};
+      continue;
+    }
     auto made = training ? std::vector<Job>{{results.size() - 1, shown, own, {}, {}, {}}}
                          : folds_by_person(results.size() - 1, own);
     std::move(made.begin(), made.end(), std::back_inserter(jobs));
@@ -154,6 +181,7 @@ TaskResult judge_with(const std::string& task, const std::vector<const Take*>& t
   for (const Recogniser& recogniser : recognisers)
     known.insert(known.end(), recogniser.classes().begin(), recogniser.classes().end());
   result.classes = classes_of(takes, known);
+  result.not_learnt = not_among(takes, known);
   judge_all(recognisers, takes, result.classes, result.methods);
   return result;
 }

@@ -20,6 +20,7 @@ struct TaskResult {
   std::map<Method, std::vector<Judged>> methods;
   std::map<Method, std::vector<Judged>> with_object;  // the same takes, where the object is known
   std::optional<Error> trouble;                       // why there are no answers
+  std::vector<std::string> not_learnt{};              // kinds that nobody taught: always wrong
 };
 
 /// Takes by task, in order of name.

@@ -15,10 +15,10 @@ Expected<Material> material_of(const std::vector<const Take*>& takes, int folds)
     labels.insert(take->label);
     fold_of[take->user] = 0;
   }
-  if (labels.size() < 2)
-    return fail("fewer than two kinds of grasps to learn", {}, "take more kinds");
   if (fold_of.size() < 2)
     return fail("fewer than two people to learn from", {}, "take more people");
+  if (labels.size() < 2)
+    return fail("fewer than two kinds of grasps to learn", {}, "take more kinds");
   made.classes.assign(labels.begin(), labels.end());
   made.fold_count = std::min(std::max(2, folds), static_cast<int>(fold_of.size()));
   int next = 0;

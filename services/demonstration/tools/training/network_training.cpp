@@ -17,8 +17,11 @@ Take varied(Take take, const TrainerOptions& options, Random& random) {
   const Eigen::AngleAxisd turn(random.uniform(-options.max_turn, options.max_turn),
                                Eigen::Vector3d::UnitZ());
   const double stretch = 1 + random.uniform(-options.max_stretch, options.max_stretch);
-  for (HandSample& sample : take.samples)
+  for (HandSample& sample : take.samples) {
     for (Eigen::Vector3d& tip : sample.p_thumb_tip_W) tip = stretch * (turn * tip);
+    for (Eigen::Vector3d& tip : sample.p_HF) tip *= stretch;
+    sample.scale *= stretch;
+  }
   return take;
 }
 

@@ -12,7 +12,7 @@ namespace prehend::demonstration {
 /// How recognisers are trained. What is not here is chosen within the training people.
 struct TrainerOptions {
   int folds = 4;          // by person: a network learns from all but one, which says when to stop
-  int hidden = 12;        // neurons of a network
+  int hidden = 20;        // neurons of a network
   int epochs = 80;        // at most
   int patience = 25;      // epochs without a better answer
   int copies = 1;         // of each grasp, turned about the vertical and stretched a little

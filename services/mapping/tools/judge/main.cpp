@@ -19,6 +19,7 @@
 #include "common/service/arguments.hpp"
 #include "common/service/lab.hpp"
 #include "services/mapping/files/mapping_model_file.hpp"
+#include "services/mapping/files/model_places.hpp"
 #include "services/mapping/tools/benchmark/real_reach.hpp"
 #include "services/mapping/tools/benchmark/summary_json.hpp"
 #include "services/mapping/tools/judge/external_mapping.hpp"
@@ -132,14 +133,15 @@ Expected<void> add_people(std::vector<BenchmarkTake>& takes, const std::vector<R
 }
 
 Expected<Judged> load(const Arguments& arguments, const std::string& name) {
-  const auto share = share_directory();
   auto hand = model::HandModel::load(model::hand_directory(name));
   if (!hand) return tl::unexpected(hand.error());
-  auto catalogue = model::Catalogue::load(share / "models" / "objects" / "catalogue.toml");
+  auto catalogue =
+      model::Catalogue::load(share_directory() / "models" / "objects" / "catalogue.toml");
   if (!catalogue) return tl::unexpected(catalogue.error());
-  auto model = load_mapping_model(share / "trained" / (hand->name() + ".mapping"), *hand);
+  const ModelPlaces places = model_places(name);
+  auto model = load_mapping_model(places.model, *hand);
   if (!model) return tl::unexpected(model.error());
-  auto grasps = load_robot_grasps(share / "trained" / (hand->name() + ".grasps"), *hand);
+  auto grasps = load_robot_grasps(places.grasps, *hand);
   if (!grasps) return tl::unexpected(grasps.error());
   if (grasps->empty()) return fail("there is no grasp to repeat", hand->name());
   std::vector<BenchmarkTake> takes;

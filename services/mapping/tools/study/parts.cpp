@@ -6,25 +6,28 @@
 
 #include "common/base/paths.hpp"
 #include "services/mapping/files/mapping_model_file.hpp"
+#include "services/mapping/files/model_places.hpp"
+#include "services/mapping/tools/training/derived_scheme.hpp"
 
 namespace prehend::mapping {
 
 Expected<Parts> load_parts(const std::vector<std::string>& hands, bool with_models) {
-  const auto share = share_directory();
-  auto catalogue = model::Catalogue::load(share / "models" / "objects" / "catalogue.toml");
+  auto catalogue =
+      model::Catalogue::load(share_directory() / "models" / "objects" / "catalogue.toml");
   if (!catalogue) return tl::unexpected(catalogue.error());
   Parts parts{std::move(*catalogue), {}, {}};
   for (const std::string& name : hands) {
     if (parts.hands.contains(name)) continue;  // figures and benchmark name the same ones
     auto hand = model::HandModel::load(model::hand_directory(name));
     if (!hand) return tl::unexpected(hand.error());
-    auto scheme = Scheme::load(share / "schemes" / (name + ".toml"), *hand);
+    const ModelPlaces places = model_places(name);
+    auto scheme = load_or_derive(places.scheme, *hand);
     if (!scheme) return tl::unexpected(scheme.error());
-    auto grasps = load_robot_grasps(share / "trained" / (name + ".grasps"), *hand);
+    auto grasps = load_robot_grasps(places.grasps, *hand);
     if (!grasps) return tl::unexpected(grasps.error());
     std::optional<MappingModel> model;
     if (with_models) {
-      auto loaded = load_mapping_model(share / "trained" / (name + ".mapping"), *hand);
+      auto loaded = load_mapping_model(places.model, *hand);
       if (!loaded) return tl::unexpected(loaded.error());
       model = std::move(*loaded);
     }

@@ -8,12 +8,15 @@
 #include <nlohmann/json.hpp>
 
 #include "common/base/log.hpp"
-#include "common/base/paths.hpp"
 #include "common/dds/topics.hpp"
 #include "common/service/arguments.hpp"
+#include "common/service/consent_key.hpp"
 #include "common/service/shell.hpp"
+#include "common/tool/keyboard.hpp"
+#include "services/mapping/files/model_places.hpp"
 #include "services/mapping/service/messages.hpp"
 #include "services/mapping/tools/teach/teach_recording.hpp"
+#include "services/mapping/tools/training/derived_scheme.hpp"
 #include "services/mapping/tools/training/teach.hpp"
 
 namespace prehend::mapping {
@@ -25,12 +28,12 @@ struct Arguments {
   std::vector<std::string> labels;  // POSTURE@SECONDS
   int takes = 1, postures = 7;
   double limit = 600;
-  bool grasps = false, json = false;
+  bool grasps = false, json = false, consent = false;
 
   void add_to(CLI::App& app) {
     lab.add_to(app);
     app.add_option("--hand", hand, "kind of robot hand; default: the lab's");
-    app.add_option("--scheme", scheme, "a name in schemes/ or a file; default: HAND");
+    app.add_option("--scheme", scheme, "a name in schemes/ or a file; default: the hand's");
     app.add_option("--user", user, "who shows the postures")->capture_default_str();
     app.add_option("-o,--output", output, "training set to write")->required();
     app.add_option("--takes", takes, "how often everything is shown")
@@ -46,6 +49,8 @@ struct Arguments {
         ->type_size(1)
         ->allow_extra_args(false);
     app.add_option("--limit", limit, "s after which it gives up")->check(CLI::Range(1.0, 1e6));
+    app.add_flag("--consent", consent,
+                 "the space bar, while it is held, is the deadman of the lab's hand");
     app.add_flag("--json", json, "print the outcome as one JSON document");
   }
 };
@@ -53,7 +58,8 @@ struct Arguments {
 /// A session with a glove: prompts, takes, and tells the lab what was shown.
 class Session {
  public:
-  Session(service::Shell& shell, Teacher& teacher, double limit_s)
+  /// consents: by the space bar.
+  Session(service::Shell& shell, Teacher& teacher, double limit_s, bool consents)
       : shell_(shell),
         teacher_(teacher),
         begun_(shell.now()),
@@ -64,8 +70,14 @@ class Session {
                         [this](const auto& message, const auto& info) {
                           if (!info.gone) see(message);
                         }));
-    shell.on_tick(std::chrono::milliseconds(100), [this](Time now) { tick(now); });
-    log::info("keys, each with Enter: r shows the last one again, q gives up");
+    if (consents) {
+      keyboard_.emplace();
+      consent_.emplace(shell, shell.config().text("mapping.hand_name"));
+    }
+    shell.on_tick(consents ? service::ConsentKey::period : std::chrono::milliseconds(100),
+                  [this](Time now) { tick(now); });
+    log::info("keys{}: r shows the last one again, q gives up",
+              consents ? "; hold the space bar for consent" : ", each with Enter");
     prompt();
   }
 
@@ -122,12 +134,24 @@ class Session {
                  teacher_.asked() ? label_of(*teacher_.asked()) : "the end");
       return shell_.stop(exit_no);
     }
+    if (consent_) {
+      while (const auto key = keyboard_->key()) on_key(*key, now);
+      return consent_->tick(now);
+    }
     pollfd input{STDIN_FILENO, POLLIN, 0};
     if (closed_ || ::poll(&input, 1, 0) <= 0) return;
     char key = 0;
-    if (::read(STDIN_FILENO, &key, 1) <= 0) {
+    if (::read(STDIN_FILENO, &key, 1) <= 0)
       closed_ = true;
+    else
+      on_key(key, now);
+  }
+
+  void on_key(int key, Time now) {
+    if (key == ' ' && consent_) {
+      consent_->press(now);
     } else if (key == 'q') {
+      if (consent_) consent_->end();
       shell_.stop(exit_no);
     } else if (key == 'r' && teacher_.redo()) {
       prompt();
@@ -143,6 +167,8 @@ class Session {
   std::string reason_;
   Time since_{};
   bool hinted_ = false, closed_ = false;
+  std::optional<tool::Keyboard> keyboard_;
+  std::optional<service::ConsentKey> consent_;
 };
 
 /// Exit code of the session; 0 when all was shown.
@@ -150,7 +176,7 @@ int teach(const Arguments& arguments, Teacher& teacher) {
   const auto shell = service::Shell::create(
       arguments.lab.for_service(), {"teach", "Learns postures from a person.", "operator", false});
   if (!shell) return service::complain(shell.error());
-  const Session session(**shell, teacher, arguments.limit);
+  Session session(**shell, teacher, arguments.limit, arguments.consent);
   (*shell)->status().running();
   const auto ended = (*shell)->run();
   return ended ? *ended : service::complain(ended.error());
@@ -171,7 +197,6 @@ Expected<std::multimap<std::string, double>> parse_labels(const std::vector<std:
 }
 
 int run(Arguments arguments) {
-  const auto share = share_directory();
   const auto broken = [](const Error& error) { return service::complain(error, exit_broken); };
   const auto labels = parse_labels(arguments.labels);
   if (!labels) return service::complain(labels.error(), exit_wrong_use);
@@ -184,12 +209,13 @@ int run(Arguments arguments) {
     return service::complain({"is no hand", "--hand", model::hand_hint()}, exit_wrong_use);
   const auto hand = model::HandModel::load(model::hand_directory(arguments.hand));
   if (!hand) return broken(hand.error());
-  const auto scheme = Scheme::load(
-      scheme_path(arguments.scheme.empty() ? arguments.hand : arguments.scheme), *hand);
+  const ModelPlaces places = model_places(arguments.hand);
+  const auto scheme = arguments.scheme.empty() ? load_or_derive(places.scheme, *hand)
+                                               : Scheme::load(scheme_path(arguments.scheme), *hand);
   if (!scheme) return broken(scheme.error());
   std::vector<RobotGrasp> grasps;
   if (arguments.grasps) {
-    auto loaded = load_robot_grasps(share / "trained" / (arguments.hand + ".grasps"), *hand);
+    auto loaded = load_robot_grasps(places.grasps, *hand);
     if (!loaded) return broken(loaded.error());
     for (RobotGrasp& grasp : *loaded)
       if (grasp.held) grasps.push_back(std::move(grasp));

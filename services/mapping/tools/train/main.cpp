@@ -1,8 +1,5 @@
 // prehend-train: makes the mapping model of a hand.
-#include <fmt/format.h>
-
 #include <CLI/CLI.hpp>
-#include <algorithm>
 #include <chrono>
 #include <filesystem>
 #include <iostream>
@@ -15,9 +12,9 @@
 #include "common/base/workers.hpp"
 #include "common/tool/program.hpp"
 #include "services/mapping/files/mapping_model_file.hpp"
-#include "services/mapping/tools/training/closures.hpp"
-#include "services/mapping/tools/training/teach.hpp"
-#include "services/mapping/tools/training/trainer.hpp"
+#include "services/mapping/files/model_places.hpp"
+#include "services/mapping/tools/training/derived_scheme.hpp"
+#include "services/mapping/tools/training/training_run.hpp"
 
 namespace {
 
@@ -36,21 +33,6 @@ class Steps {
   std::string step_;
   std::optional<prehend::Progress> progress_;
 };
-
-/// Adds the pairs of a file to a set for the same hand.
-Expected<void> add_taught(learning::TrainingSet& set, const std::string& file) {
-  auto more = learning::load_training_set(file);
-  if (!more) return fail(more.error().what, file, more.error().hint);
-  if (more->hand != set.hand || more->dof_names != set.dof_names)
-    return fail(fmt::format("is for the hand «{}», not for «{}»", more->hand, set.hand), file);
-  if (auto ok = check_consistent(*more); !ok)
-    return fail(ok.error().what, file + ", " + ok.error().where, ok.error().hint);
-  // Repeated until they are a tenth of all: few pairs of one person would be lost among the others.
-  const std::size_t times = std::max<std::size_t>(1, set.pairs.size() / more->pairs.size() / 10);
-  for (std::size_t i = 0; i < times; ++i)
-    set.pairs.insert(set.pairs.end(), more->pairs.begin(), more->pairs.end());
-  return {};
-}
 
 nlohmann::json describe(const RobotGrasp& grasp) {
   return {{"object", grasp.object},
@@ -77,7 +59,6 @@ nlohmann::json describe(const MappingModel& model, const MappingNetwork& network
 }
 
 struct Arguments {
-  std::filesystem::path share = share_directory();
   std::string hand = model::lab_hand(), scheme, catalogue, grasps, out, set_file;
   std::vector<std::string> taught;
   SetOptions people;
@@ -123,47 +104,30 @@ void add_trainer(CLI::App& app, TrainerOptions& trainer) {
 }
 
 void add_files(CLI::App& app, Arguments& arguments) {
-  app.add_option("--hand", arguments.hand, "kind of robot hand")->capture_default_str();
-  app.add_option("--scheme", arguments.scheme,
-                 "posture pairs: a name in schemes/ or a file; default: HAND");
+  app.add_option("--hand", arguments.hand, "kind of robot hand: a name, or a folder")
+      ->capture_default_str();
+  app.add_option(
+      "--scheme", arguments.scheme,
+      "posture pairs: a name in schemes/ or a file; default: the hand's, else derived from "
+      "how it moves");
   app.add_option("--catalogue", arguments.catalogue, "objects to grasp; default: the lab's");
-  app.add_option("--grasps", arguments.grasps,
-                 "the robot's grasps: read, or made if missing; default: trained/HAND.grasps");
+  app.add_option(
+      "--grasps", arguments.grasps,
+      "the robot's grasps: read, or made if missing; default: beside the model, HAND.grasps");
   app.add_flag("--close", arguments.close_again, "close the hand again, though the file is there");
-  app.add_option("--out", arguments.out, "model to write; default: trained/HAND.mapping");
+  app.add_option("--out", arguments.out,
+                 "model to write; default: where the mapping looks for that of the hand");
   app.add_option("--training-set", arguments.set_file, "also write the training set there");
   app.add_option("--set", arguments.taught,
                  "also learn from these sets, of prehend teach; repeatable");
 }
 
 void fill_in_defaults(Arguments& arguments) {
-  const auto& share = arguments.share;
-  if (arguments.scheme.empty()) arguments.scheme = arguments.hand;
   if (arguments.catalogue.empty())
-    arguments.catalogue = share / "models" / "objects" / "catalogue.toml";
-  if (arguments.grasps.empty()) arguments.grasps = share / "trained" / (arguments.hand + ".grasps");
-  if (arguments.out.empty()) arguments.out = share / "trained" / (arguments.hand + ".mapping");
-}
-
-/// What to learn from, what ends the training, and other people to judge the model by.
-Expected<Sets> make_sets(const Arguments& arguments, const model::HandModel& hand,
-                         const Scheme& scheme, const std::vector<RobotGrasp>& grasps) {
-  Sets sets;
-  SetOptions others = arguments.people;
-  others.users = 3;
-  others.grasps = static_cast<int>(grasps.size());
-  sets.training = demonstrate(hand, scheme, grasps, arguments.people);
-  others.seed = arguments.people.seed + 1;
-  sets.validation = demonstrate(hand, scheme, grasps, others);
-  others.seed = arguments.people.seed + 2;
-  others.users = 30;
-  sets.test = demonstrate(hand, scheme, grasps, others);
-  for (const std::string& file : arguments.taught)
-    if (auto added = add_taught(sets.training, file); !added) return tl::unexpected(added.error());
-  if (!arguments.set_file.empty())
-    if (auto saved = learning::save(arguments.set_file, sets.training); !saved)
-      return tl::unexpected(saved.error());
-  return sets;
+    arguments.catalogue = share_directory() / "models" / "objects" / "catalogue.toml";
+  const ModelPlaces places = model_places(arguments.hand);
+  if (arguments.grasps.empty()) arguments.grasps = places.grasps;
+  if (arguments.out.empty()) arguments.out = places.model;
 }
 
 void print(const nlohmann::json& document) {
@@ -186,40 +150,39 @@ Expected<nlohmann::json> train(const Arguments& arguments) {
   const auto since_begin = [&] {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   };
-  const auto hand = model::HandModel::load(arguments.share / "models" / "hands" / arguments.hand);
+  const auto hand = model::HandModel::load(model::hand_directory(arguments.hand));
   if (!hand) return tl::unexpected(hand.error());
-  const auto scheme = Scheme::load(scheme_path(arguments.scheme), *hand);
+  const auto scheme = arguments.scheme.empty()
+                          ? load_or_derive(model_places(arguments.hand).scheme, *hand)
+                          : Scheme::load(scheme_path(arguments.scheme), *hand);
   if (!scheme) return tl::unexpected(scheme.error());
-  const auto grasps = !arguments.close_again && std::filesystem::exists(arguments.grasps)
-                          ? load_robot_grasps(arguments.grasps, *hand)
-                          : close_and_save(*hand, *scheme, arguments.catalogue, arguments.grasps);
-  if (!grasps) return tl::unexpected(grasps.error());
-  const auto sets = make_sets(arguments, *hand, *scheme, *grasps);
-  if (!sets) return tl::unexpected(sets.error());
-  const auto catalogue = model::Catalogue::load(arguments.catalogue);
-  if (!catalogue) return tl::unexpected(catalogue.error());
-
-  TrainerOptions trainer = arguments.trainer;
-  trainer.network.seed = static_cast<std::uint32_t>(arguments.people.seed);
-  trainer.precision = precision_discriminant(*catalogue, hand->reach(), arguments.people);
-  trainer.places = learnt_places(*grasps);
+  const TrainingRun run{.catalogue = arguments.catalogue,
+                        .grasps = arguments.grasps,
+                        .close_again = arguments.close_again,
+                        .people = arguments.people,
+                        .trainer = arguments.trainer,
+                        .taught = {arguments.taught.begin(), arguments.taught.end()},
+                        .set_file = arguments.set_file};
   Steps steps;
-  const double before = since_begin();
-  const auto model = train_mapping(
-      *hand, *scheme, *sets, trainer,
-      [](std::size_t count, const auto& work) { share_work(count, 0, work, [](std::size_t) {}); },
+  double before = 0;
+  const auto trained = run_training(
+      run, *hand, *scheme,
+      [&](std::size_t count, const auto& work) {
+        before = since_begin();
+        share_work(count, 0, work, [](std::size_t) {});
+      },
       std::ref(steps));
-  if (!model) return tl::unexpected(model.error());
+  if (!trained) return tl::unexpected(trained.error());
   nlohmann::json document{{"hand", arguments.hand}, {"scheme", scheme->name}};
-  for (const RobotGrasp& grasp : *grasps) document["grasps"].push_back(describe(grasp));
+  for (const RobotGrasp& grasp : trained->grasps) document["grasps"].push_back(describe(grasp));
   document["training_seconds"] = since_begin() - before;
-  if (auto saved = save_mapping_model(arguments.out, *model, *hand); !saved)
+  if (auto saved = save_mapping_model(arguments.out, trained->model, *hand); !saved)
     return tl::unexpected(saved.error());
   document["model"] = arguments.out;
-  document["pairs"] = sets->training.pairs.size();
-  document["training_set"] = model->traits().training_set_digest;
-  for (const MappingNetwork& network : model->networks())
-    document["networks"].push_back(describe(*model, network, sets->test));
+  document["pairs"] = trained->sets.training.pairs.size();
+  document["training_set"] = trained->model.traits().training_set_digest;
+  for (const MappingNetwork& network : trained->model.networks())
+    document["networks"].push_back(describe(trained->model, network, trained->sets.test));
   document["seconds"] = since_begin();
   return document;
 }

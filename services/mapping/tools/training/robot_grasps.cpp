@@ -6,8 +6,7 @@
 #include <optional>
 
 #include "common/grasping/closing.hpp"
-#include "common/grasping/hold_test.hpp"
-#include "common/grasping/world.hpp"
+#include "common/grasping/table_test.hpp"
 #include "common/model/placement.hpp"
 #include "common/proto/pose_numbers.hpp"
 #include "common/proto/robot_grasps.pb.h"
@@ -20,8 +19,7 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr std::string_view kind = "robot-grasps";
-constexpr double max_closing = 3;      // s, until the fingers must have stopped
-constexpr double closing_speed = 1.0;  // rad/s, of the fingers that close as the mapping does
+constexpr double max_closing = 3;                // s, until the fingers must have stopped
 constexpr double aside = 0.012, nearer = 0.015;  // m, where else the hand is tried
 constexpr double unsure = 0.008;  // m, beside its place where a grasp shall hold as well
 
@@ -78,40 +76,13 @@ bool above_table(const model::HandModel& hand, const Pose& X_OB, const Eigen::Ve
   return true;
 }
 
-/// Whether the object is held when it stands on the table and the fingers close as the mapping has
-/// them close: from the open hand, in proportion, so that they arrive together, then squeezed. The
-/// hand stands `beside` its place, m, in the direction in which it closes.
+/// Held on the table. The hand stands `beside` its place, m, in the direction in which it closes.
 bool survives(const model::HandModel& hand, const Eigen::VectorXd& open,
               const grasping::Body& object, const RobotGrasp& grasp, double beside) {
-  const Pose X_WO = make_pose(Vector3d(0, 0, model::half_extents(object.shape).z()));
-  const Pose X_WB =
-      X_WO * grasp.X_OR() * Eigen::Translation3d(0, beside, 0) * hand.X_BG().inverse();
-  auto world = grasping::World::create(hand, X_WB, open);
-  if (!world || !(*world)->add_body(object, X_WO)) return false;
-  if ((*world)->distance_to_hand(0, 0.01) < 0) return false;
-  Eigen::VectorXd squeezed = grasp.dof;
-  for (Eigen::Index i = 0; i < squeezed.size(); ++i)
-    squeezed[i] += grasp.closing[i] * hand.dofs()[static_cast<std::size_t>(i)].squeeze;
-  const Eigen::VectorXd way = hand.clamp(squeezed) - open;
-  double closing = 0;  // s
-  for (Eigen::Index i = 0; i < way.size(); ++i)
-    closing = std::max(
-        closing, std::abs(way[i]) /
-                     (closing_speed * model::radian_of(hand.dofs()[static_cast<std::size_t>(i)])));
-  constexpr double settling = 0.4;  // s
-  const double dt = (*world)->time_step();
-  for (double t = 0; t < closing + settling; t += dt) {
-    if (!(*world)->command(X_WB, open + std::min(1.0, t / closing) * way)) return false;
-    (*world)->step();
-  }
+  const Pose X_OG = grasp.X_OR() * Eigen::Translation3d(0, beside, 0);
   grasping::HoldOptions hold{.shake = true};
   if (beside != 0) hold.hold = 0.5;  // drops what it drops at once
-  // Shoved or toppled by its fingers, it is not grasped where it stood.
-  const Pose X_WO_after = (*world)->body_motion(0).X_WO;
-  if ((X_WO_after.translation() - X_WO.translation()).norm() > hold.max_slip ||
-      angle_between(X_WO_after.linear(), X_WO.linear()) > hold.max_turn)
-    return false;
-  return grasping::hold_test(**world, 0, hold).held;
+  return grasping::held_on_table(hand, object, {X_OG, open, grasp.dof, grasp.closing}, hold);
 }
 
 /// Closes the hand from a preshape on the object where it stands; fills in what comes of it.

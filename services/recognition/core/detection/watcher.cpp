@@ -28,18 +28,66 @@ Watcher::Watcher(Detector detector, const WatcherOptions& options)
       movement_(options.movement),
       tracker_(options.tracker) {}
 
-bool Watcher::disturbed(const Known& known, const Plane& moved) const {
+void Watcher::told(const model::GraspTaxonomy& taxonomy, SeenGrasp grasp) {
+  taxonomy_ = &taxonomy;
+  grasp_ = std::move(grasp);
+}
+
+bool Watcher::hand_is_seen(Time stamp) const {
+  return grasp_ && stamp >= grasp_->stamp - options_.grasp_lasts &&
+         stamp <= grasp_->stamp + options_.grasp_lasts;
+}
+
+double Watcher::by_grasp(const Sighting& doubtful) const {
+  return raised(doubtful.probability, support(*taxonomy_, grasp_->p, doubtful.shape));
+}
+
+/// What a hand makes likely enough goes to what is seen, the likeliest first; each place is taken
+/// once.
+void Watcher::raise(std::vector<Sighting> doubtful, const Plane& moved,
+                    std::vector<Sighting>& seen) const {
+  for (Sighting& each : doubtful) each.probability = by_grasp(each);
+  std::stable_sort(doubtful.begin(), doubtful.end(), [](const Sighting& a, const Sighting& b) {
+    return a.probability > b.probability;
+  });
+  for (Sighting& each : doubtful) {
+    if (each.probability < detector_.options().accept || !disturbed(each.box, moved)) continue;
+    const double apart = model::half_extents(each.shape).head<2>().norm();
+    const bool taken = std::any_of(seen.begin(), seen.end(), [&](const Sighting& other) {
+      return std::hypot(other.at->x - each.at->x, other.at->y - each.at->y) < apart;
+    });
+    if (!taken) seen.push_back(std::move(each));
+  }
+}
+
+bool Watcher::disturbed(const Box& box, const Plane& moved) const {
   bool any = false;
-  around(known.seen.box, options_.movement.cell_size, moved,
+  around(box, options_.movement.cell_size, moved,
          [&](int x, int y) { any = any || moved.at(x, y); });
   return any;
+}
+
+/// What only a grasp made likely, as long as the hand is there and it stays so.
+std::optional<Sighting> Watcher::follow_by_hand(const FittingImage& frame,
+                                                const CameraModel& camera, const Sighting& before,
+                                                Time stamp) const {
+  if (!hand_is_seen(stamp)) return std::nullopt;
+  auto seen = detector_.judge(frame, camera, static_cast<std::size_t>(before.class_index),
+                              before.at->x, before.at->y);
+  if (!seen || seen->probability < detector_.options().doubtful) return std::nullopt;
+  seen->probability = by_grasp(*seen);
+  if (seen->probability < detector_.options().accept) return std::nullopt;
+  return seen;
 }
 
 void Watcher::measure(const FittingImage& frame, const CameraModel& camera, Known& known,
                       Time stamp) {
   ++fits_;
   known.measured = pictures_;
-  if (auto seen = detector_.follow(frame, camera, known.seen)) {
+  auto seen = detector_.follow(frame, camera, known.seen);
+  known.by_hand = known.by_hand && !seen;
+  if (known.by_hand) seen = follow_by_hand(frame, camera, known.seen, stamp);
+  if (seen) {
     known.seen = std::move(*seen);
     known.failed = 0;
     known.last_seen = stamp;
@@ -68,15 +116,21 @@ Expected<std::vector<Track>> Watcher::look(Time stamp, const Picture& picture,
   };
   std::vector<Sighting> seen = look_at_known(stamp, camera, moved, prepared);
   const std::size_t before = seen.size();
+  std::size_t certain = before;
   if (std::any_of(open_.values.begin(), open_.values.end(), [](auto v) { return v != 0; })) {
     FittingImage& whole = prepared();
     std::fill(whole.taken.values.begin(), whole.taken.values.end(), std::uint8_t{0});
     const int most = movement_.all_new() ? std::numeric_limits<int>::max() : options_.places;
-    fits_ += detector_.search(whole, camera, open_, most, seen);
+    // In a picture that is new as a whole everything moves: it does not say where a hand is.
+    const bool hand = hand_is_seen(stamp) && !movement_.all_new();
+    std::vector<Sighting> doubtful;
+    fits_ += detector_.search(whole, camera, open_, most, seen, hand ? &doubtful : nullptr);
+    certain = seen.size();
+    if (hand) raise(std::move(doubtful), moved, seen);
   }
   give_up(stamp, std::span(seen).subspan(before));
   for (std::size_t i = before; i < seen.size(); ++i)
-    known_.push_back({seen[i], pictures_, 0, stamp});
+    known_.push_back({seen[i], pictures_, 0, stamp, i >= certain});
 
   Plane looked_at(open_.width, open_.height);
   for (std::size_t i = 0; i < open_.values.size(); ++i) looked_at.values[i] = !open_.values[i];
@@ -109,7 +163,7 @@ std::vector<Sighting> Watcher::look_at_known(Time stamp, const CameraModel& came
       due = &known;
   std::vector<Sighting> seen;
   for (Known& known : known_) {
-    const bool stirred = disturbed(known, moved);
+    const bool stirred = disturbed(known.seen.box, moved);
     const bool again = stirred || known.failed > 0 || &known == due;
     if (again) {
       FittingImage& own = prepared();

@@ -81,6 +81,10 @@ int train_models(const TrainArguments& arguments) {
     else if (c.views.size() < 3)
       log::warning("class {} has {} picture(s): how sure an answer is cannot be judged well",
                    c.name, c.views.size());
+  if (dataset->classes.size() == 1 && arguments.others.empty())
+    log::warning(
+        "{} is the only class: whatever is shown is taken for it (add a class, or --others)",
+        dataset->classes.front().name);
   const auto options = arguments.choice.options(*dataset);
   if (!options) {
     log::error(options.error());

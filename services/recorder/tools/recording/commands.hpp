@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -27,5 +28,10 @@ int complain_of(const std::filesystem::path& file, const Error& error);
 
 /// Which topics are meant: a shell pattern (* and ?) matches whole names; none at all: every topic.
 bool matches(const std::vector<std::string>& patterns, const std::string& topic);
+/// Topics of a recording that are meant, each once.
+std::set<std::string> matching(const std::vector<std::string>& patterns,
+                               const recording::mcap::Contents& contents);
+/// What to say where there is none of them.
+Error no_such_topic(const std::vector<std::string>& patterns, const std::string& file);
 
 }  // namespace prehend::recorder

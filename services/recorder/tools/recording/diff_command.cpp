@@ -95,6 +95,9 @@ int diff(const DiffArguments& arguments) {
   if (!expected) return complain_of(arguments.expected, expected.error());
   auto actual = recording::mcap::Reader::open(arguments.actual);
   if (!actual) return complain_of(arguments.actual, actual.error());
+  if (!arguments.topics.empty() && matching(arguments.topics, expected->contents()).empty() &&
+      matching(arguments.topics, actual->contents()).empty())
+    return complain(no_such_topic(arguments.topics, arguments.expected), exit_no);
 
   Comparison comparison(*tolerances, arguments.keep);
   Feed left(*expected, Side::expected, arguments.topics);

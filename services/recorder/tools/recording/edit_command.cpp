@@ -1,8 +1,10 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cmath>
 #include <iostream>
+#include <limits>
 #include <memory>
 #include <nlohmann/json.hpp>
 
@@ -55,15 +57,26 @@ std::uint64_t moment(std::uint64_t start, double seconds) {
 /// The recordings of `files` into one. `tolerant`: damage is what one came for.
 int run(const EditArguments& arguments, bool tolerant) {
   std::vector<recording::mcap::Reader> sources;
-  std::uint64_t start = std::numeric_limits<std::uint64_t>::max();
+  std::uint64_t start = std::numeric_limits<std::uint64_t>::max(), end = 0;
   for (const std::string& file : arguments.files) {
     auto reader = recording::mcap::Reader::open(file);
     if (!reader) return complain_of(file, reader.error());
     const auto statistics = reader->statistics();
     if (statistics && statistics->message_count > 0)
       start = std::min(start, statistics->message_start_time);
+    if (!arguments.topics.empty() && matching(arguments.topics, reader->contents()).empty())
+      return complain(no_such_topic(arguments.topics, file), exit_no);
+    if (statistics) end = std::max(end, statistics->message_end_time);
     sources.push_back(std::move(*reader));
   }
+  if (!(arguments.from_s <= arguments.until_s))
+    return complain({"ends before it begins",
+                     fmt::format("--from {} --until {}", arguments.from_s, arguments.until_s),
+                     "give seconds after the recording's start"},
+                    exit_wrong_use);
+  if (arguments.from_s > 0 && end >= start && moment(start, arguments.from_s) > end)
+    log::warning(Error{fmt::format("is {:.3f} s long", static_cast<double>(end - start) * 1e-9),
+                       arguments.files.front(), "the part holds only what still stands then"});
   CopyOptions options{.progress = progress_bar()};
   options.writer.compression = recording::mcap::compression_named(
                                    arguments.compression == "none" ? "" : arguments.compression)

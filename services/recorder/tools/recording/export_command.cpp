@@ -138,12 +138,8 @@ class Export {
 int run_tables(const ExportArguments& arguments) {
   auto reader = recording::mcap::Reader::open(arguments.file);
   if (!reader) return complain_of(arguments.file, reader.error());
-  std::set<std::string> topics;
-  for (const auto& [id, channel] : reader->contents().channels) {
-    const auto topic = recording::recorded_topic(channel, reader->contents());
-    if (topic.end.empty() && matches(arguments.topics, topic.name)) topics.insert(topic.name);
-  }
-  if (topics.empty()) return complain({"no such topic", arguments.file, ""}, exit_no);
+  const auto topics = matching(arguments.topics, reader->contents());
+  if (topics.empty()) return complain(no_such_topic(arguments.topics, arguments.file), exit_no);
   if (arguments.folder.empty() && arguments.format == "csv" && topics.size() > 1)
     return complain({"a table holds one topic", fmt::format("{} topics", topics.size()),
                      "choose one with --topic, or a folder for all with -o"},

@@ -307,11 +307,12 @@ void warn_of_old_commands(const Tape& tape, const Arguments& arguments) {
 }
 
 /// What processes said of themselves then is not so now: beacons would tell the services wrong
-/// clocks, and a status services that are not there.
+/// clocks, and a status services that are not there. Nor is consent of then consent now.
 Expected<Tape> open_tape(const Arguments& arguments) {
   const auto wanted = [&](const std::string& topic) {
     const dds::TopicInfo* known = dds::find_topic(topic);
-    return !(known && known->content == dds::Content::process) && arguments.topics.wants(topic);
+    return !(known && known->content == dds::Content::process) &&
+           topic != dds::operator_consent.name && arguments.topics.wants(topic);
   };
   auto tape = Tape::open({arguments.files.begin(), arguments.files.end()}, wanted);
   if (!tape) return tape;

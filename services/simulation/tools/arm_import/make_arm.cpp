@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 
 #include "services/simulation/tools/arm_import/arm_toml.hpp"
 #include "services/simulation/tools/arm_import/chain.hpp"
@@ -34,6 +35,16 @@ void find_faults(const Robot& robot, const ArmChain& chain, std::vector<UrdfFind
       error("coupled", "joint " + joint.name, joint.line, "follows another joint",
             "joints of an arm move alone: leave <mimic> out");
   }
+}
+
+/// Is it about how a joint beside the arm moves? That one is fixed.
+bool is_of_the_still(const UrdfFinding& finding, const Robot& robot, const ArmChain& chain) {
+  constexpr std::array codes{"no-limits",  "zero-axis", "mimic-missing", "mimic-loop",
+                             "mimic-zero", "no-effort", "no-velocity",   "continuous"};
+  return std::find(codes.begin(), codes.end(), finding.code) != codes.end() &&
+         std::any_of(chain.beside.begin(), chain.beside.end(), [&](std::size_t i) {
+           return finding.element == "joint " + robot.joints[i].name;
+         });
 }
 
 /// The robot with the joints beside the chain fixed.
@@ -72,6 +83,7 @@ std::vector<UrdfFinding> check_arm(const Robot& robot, const MeshReader& meshes,
                                        chain.error().what, chain.error().hint});
     return findings;
   }
+  std::erase_if(findings, [&](const UrdfFinding& f) { return is_of_the_still(f, robot, *chain); });
   std::vector<UrdfFinding> faults;
   find_faults(robot, *chain, faults);
   findings.insert(findings.begin(), faults.begin(), faults.end());

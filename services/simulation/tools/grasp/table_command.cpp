@@ -111,7 +111,7 @@ std::optional<grasping::Plan> left_by_earlier_run(const std::filesystem::path& f
 
 int table(const TableArguments& arguments) {
   std::vector<model::HandModel> hands;
-  for (const std::string& name : arguments.hands.empty() ? hand_names() : arguments.hands) {
+  for (const std::string& name : arguments.hands.empty() ? model::hand_names() : arguments.hands) {
     auto hand = find_hand(name);
     if (!hand) return tool::complain(hand.error(), exit_wrong_use);
     hands.push_back(std::move(*hand));

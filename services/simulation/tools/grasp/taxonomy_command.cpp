@@ -2,12 +2,17 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
+#include <filesystem>
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "common/model/task_kinds.hpp"
 #include "services/simulation/tools/grasp/planning_commands.hpp"
 #include "services/simulation/tools/grasp/quality_file.hpp"
+#include "services/simulation/tools/picture/class_picture.hpp"
+#include "services/simulation/tools/picture/grasp_picture.hpp"
 #include "services/simulation/tools/planning/grasp_class.hpp"
 #include "services/simulation/tools/planning/grasp_file.hpp"
 #include "services/simulation/tools/planning/planning_task.hpp"
@@ -17,8 +22,10 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+constexpr int picture_width = 320, picture_height = 240;  // px
+
 struct TaxonomyArguments {
-  std::string object;
+  std::string object, task, pictures;
   std::vector<std::string> needed;
   bool json = false;
 };
@@ -37,7 +44,7 @@ std::vector<std::string> words(const Values& values, const auto& names) {
 
 Json to_json(const model::GraspTaxonomy& taxonomy, const model::GraspClass& one) {
   Json robot = Json::object();
-  for (const std::string& hand : hand_names()) robot[hand] = taxonomy.robot_type(one, hand);
+  for (const std::string& hand : model::hand_names()) robot[hand] = taxonomy.robot_type(one, hand);
   std::vector<std::string> shapes;
   for (const model::ShapeKind shape : one.shapes) shapes.emplace_back(model::to_string(shape));
   return {{"name", one.name},
@@ -54,12 +61,27 @@ Json to_json(const model::GraspTaxonomy& taxonomy, const model::GraspClass& one)
           {"robot", robot}};
 }
 
+std::vector<std::string> names_of(const model::TaskKinds& tasks) {
+  std::vector<std::string> made;
+  for (const model::TaskKind& kind : tasks.kinds()) made.push_back(kind.name);
+  return made;
+}
+
 /// How plausible each class is for the object and task that were named; all 1 without.
 Expected<std::vector<double>> fits(const TaxonomyArguments& arguments,
                                    const model::GraspTaxonomy& taxonomy) {
   std::vector<model::ObjectPart> needed;
   for (const std::string& name : arguments.needed)
     needed.push_back(*model::object_parts.value(name));
+  if (!arguments.task.empty()) {
+    const auto tasks = model::TaskKinds::of_the_house();
+    if (!tasks) return tl::unexpected(tasks.error());
+    const model::TaskKind* task = tasks->of_task(arguments.task);
+    if (!task)
+      return fail("is no kind of task", arguments.task,
+                  fmt::format("there are {}", fmt::join(names_of(*tasks), ", ")));
+    needed.insert(needed.end(), task->keep_free.begin(), task->keep_free.end());
+  }
   std::vector<double> made = taxonomy.fit_to_task(needed);
   if (arguments.object.empty()) return made;
   const auto body = find_body(arguments.object);
@@ -69,12 +91,35 @@ Expected<std::vector<double>> fits(const TaxonomyArguments& arguments,
   return made;
 }
 
+/// One picture a class, NAME.png.
+Expected<void> draw_all(const model::GraspTaxonomy& taxonomy, const std::filesystem::path& folder) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error) return fail(error.message(), folder.string(), "choose another folder");
+  for (const model::GraspClass& kind : taxonomy.classes()) {
+    std::string name = kind.name;
+    std::replace(name.begin(), name.end(), ' ', '-');
+    const Drawing drawing = draw_class(kind);
+    const Viewpoint view =
+        view_of_class(drawing, static_cast<double>(picture_width) / picture_height);
+    if (auto saved =
+            save(folder / (name + ".png"), drawing.draw(view, picture_width, picture_height));
+        !saved)
+      return saved;
+  }
+  return {};
+}
+
 int show(const TaxonomyArguments& arguments) {
   const auto taxonomy = model::GraspTaxonomy::of_the_house();
   if (!taxonomy) return tool::complain(taxonomy.error());
   const auto fit = fits(arguments, *taxonomy);
   if (!fit) return tool::complain(fit.error(), exit_wrong_use);
-  const bool asked = !arguments.object.empty() || !arguments.needed.empty();
+  if (!arguments.pictures.empty())
+    if (const auto drawn = draw_all(*taxonomy, arguments.pictures); !drawn)
+      return tool::complain(drawn.error(), exit_broken);
+  const bool asked =
+      !arguments.object.empty() || !arguments.needed.empty() || !arguments.task.empty();
   Json document{{"classes", Json::array()}};
   if (!arguments.json)
     fmt::print("{:18} {:>4} {:9} {:9} {:5} {:7} {:8} {:6} {:15} {:9} {}{}\n", "class", "Feix",
@@ -179,6 +224,11 @@ void add_taxonomy(tool::Program& program) {
       ->add_option("--keep-free", arguments->needed,
                    "what the task needs: opening, handle, blade; kinds that lie on it do not fit")
       ->check(CLI::IsMember({"opening", "handle", "blade"}));
+  command->add_option("--task", arguments->task,
+                      "what is to be done with it: pour, fill, cut, ...; kinds that lie on what "
+                      "this needs do not fit");
+  command->add_option("--pictures", arguments->pictures,
+                      "folder for a picture of each kind: a hand that grasps so");
   command->add_flag("--json", arguments->json, "one JSON document");
   program.on(*command, [arguments] { return show(*arguments); });
 }

@@ -80,6 +80,13 @@ nlohmann::ordered_json report(const MadeHand& hand, const std::vector<grasping::
   return document;
 }
 
+/// What other commands call the hand: by its name, if that leads to its folder.
+std::string called(const std::string& name, const std::string& folder) {
+  std::error_code none;
+  if (std::filesystem::equivalent(model::hand_directory(name), folder, none)) return name;
+  return folder.find('/') == std::string::npos ? "./" + folder : folder;
+}
+
 void print(const nlohmann::ordered_json& document) {
   for (const auto& change : document["changes"]) fmt::print("{}\n", change.get<std::string>());
   fmt::print("\n{:<24} {:>7}\n", "DoF", "closing");
@@ -99,8 +106,10 @@ void print(const nlohmann::ordered_json& document) {
                trial["held"].get<bool>()
                    ? fmt::format("held, epsilon {:.3f}", trial["epsilon"].get<double>())
                    : "not held: " + trial["reason"].get<std::string>());
-  fmt::print("\nthe hand is in {}; correct hand.toml there where it guessed wrong\n",
-             document["folder"].get<std::string>());
+  const auto folder = document["folder"].get<std::string>();
+  fmt::print("\nthe hand is in {}; correct hand.toml there where it guessed wrong\n", folder);
+  const std::string hand = called(document["name"].get<std::string>(), folder);
+  fmt::print("then: prehend train --hand {0}; prehend demo --hand {0}\n", hand);
 }
 
 int run_add(AddArguments arguments) {
@@ -118,7 +127,7 @@ int run_add(AddArguments arguments) {
         exit_wrong_use);
   const auto robot = read_robot_file(arguments.file);
   if (!robot) return tool::complain(robot.error(), exit_no);
-  const auto hand = make_hand(*robot, arguments.name, mesh_files(arguments.file));
+  const auto hand = make_hand(*robot, arguments.name, mesh_files(arguments.file), {.trials = true});
   if (!hand) {
     log::error("{}: {}; `prehend hand check` lists everything", arguments.file,
                hand.error().message());

@@ -71,8 +71,13 @@ struct Finger {
 
 class Finder {
  public:
-  Finder(const Robot& robot, const HandModel& hand, const SearchEffort& effort)
-      : robot_(robot), hand_(hand), effort_(effort), rest_(hand.postures().at("open")) {
+  Finder(const Robot& robot, const HandModel& hand, const SearchEffort& effort,
+         const AnatomyJudge& judge)
+      : robot_(robot),
+        hand_(hand),
+        effort_(effort),
+        judge_(judge),
+        rest_(hand.postures().at("open")) {
     find_palm();
   }
 
@@ -418,11 +423,24 @@ class Finder {
       known.p_LT.push_back(finger.p_LT);
     }
     const ContactWorld world(hand_, closing, known.last);
-    const Opposition best = find_opposition(world, known, found_.X_BG, effort_);
+    const Anatomy before = found_;
+    const auto judge = [&](const Opposition& opposition, double needed) {
+      found_ = before;
+      take(opposition);
+      return judge_(found_, needed);
+    };
+    const Opposition best = find_opposition(world, known, found_.X_BG, effort_,
+                                            judge_ ? OppositionJudge(judge) : OppositionJudge());
+    found_ = before;
+    take(best);
+  }
+
+  /// What was found is said of the hand.
+  void take(const Opposition& best) {
     if (best.opening < 0.01) return;
     found_.X_BG = best.X_BG;
     found_.reach.opening = best.opening;
-    found_.reach.engage = std::clamp(0.7 * best.depth, 0.01, 0.05);
+    found_.reach.engage = std::clamp(best.depth - 0.004, 0.005, 0.05);
     found_.preshapes = best.preshapes;
     if (best.alone >= 0)
       for (const int i : fingers_[at(best.alone)].joints)
@@ -437,7 +455,7 @@ class Finder {
     const Vector3d p = found_.X_BG.translation(), out = found_.X_BG.linear().col(2),
                    side = found_.X_BG.linear().col(0);
     double below = 0.01, width = 0.02;
-    for (double share = 0.3; share <= 1; share += 0.1)
+    for (double share = 0; share <= 1; share += 0.1)
       for (const Vector3d& tip : tips(closed_by(share))) below = std::max(below, out.dot(tip - p));
     for (const Vector3d& on_palm : palm_points())
       width = std::max(width, std::abs(side.dot(on_palm - p)));
@@ -448,6 +466,7 @@ class Finder {
   const Robot& robot_;
   const HandModel& hand_;
   const SearchEffort effort_;
+  const AnatomyJudge& judge_;
   VectorXd rest_;
   int palm_ = 0;            // link
   std::vector<int> wrist_;  // joints before it
@@ -458,7 +477,8 @@ class Finder {
 
 }  // namespace
 
-Expected<Anatomy> find_anatomy(const Robot& robot, const SearchEffort& effort) {
+Expected<Anatomy> find_anatomy(const Robot& robot, const SearchEffort& effort,
+                               const AnatomyJudge& judge) {
   // DoFs in the order of the tree, as HandModel has its joints.
   std::vector<std::string> leaders;
   for (const RobotJoint& joint : robot.joints)
@@ -466,7 +486,7 @@ Expected<Anatomy> find_anatomy(const Robot& robot, const SearchEffort& effort) {
   const auto hand =
       HandModel::parse(write_robot(robot, "provisional"), provisional_toml(robot, leaders));
   if (!hand) return tl::unexpected(hand.error());
-  return Finder(robot, *hand, effort).run();
+  return Finder(robot, *hand, effort, judge).run();
 }
 
 }  // namespace prehend::simulation

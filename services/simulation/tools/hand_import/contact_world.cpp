@@ -14,7 +14,7 @@ using Eigen::VectorXd;
 constexpr double touching = 0.0015;  // m
 constexpr double stride = 0.05;      // share of a DoF's range, of a step of closing, at most
 constexpr double friction = 0.6;     // less than that of rubber: contacts of boxes are not exact
-constexpr int balls = 5;             // along a rod
+constexpr int min_balls = 5;         // along a rod, and no gaps between them
 
 /// The point of a shape that is nearest to p; p itself inside.
 Vector3d nearest_point(const model::Shape& shape, const Vector3d& p) {
@@ -63,6 +63,8 @@ ContactWorld::Nearest ContactWorld::nearest(const Part& part, const std::vector<
   Nearest found{most, Vector3d::Zero()};
   const Pose X_BS = X_BL[at(part.link)] * part.X_LS;
   const Vector3d along = rod.X_BR.linear().col(0);
+  const int balls =
+      std::max(min_balls, static_cast<int>(std::ceil(rod.half_length / rod.radius)) + 1);
   for (int i = 0; i < balls; ++i) {
     const Vector3d p_B =
         rod.X_BR.translation() + (2.0 * i / (balls - 1) - 1) * rod.half_length * along;

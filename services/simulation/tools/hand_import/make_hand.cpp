@@ -4,6 +4,7 @@
 
 #include "services/simulation/tools/hand_import/anatomy.hpp"
 #include "services/simulation/tools/hand_import/hand_toml.hpp"
+#include "services/simulation/tools/hand_import/trial_grasps.hpp"
 
 namespace prehend::simulation {
 
@@ -21,9 +22,13 @@ Expected<MadeHand> make_hand(const Robot& robot, const std::string& name, const 
   std::erase_if(findings, [](const UrdfFinding& f) { return f.code == "self-collision"; });
   for (UrdfFinding& finding : check(mended->robot, meshes))
     if (finding.code == "self-collision") findings.push_back(std::move(finding));
-  const auto anatomy = find_anatomy(mended->robot, effort);
-  if (!anatomy) return tl::unexpected(anatomy.error());
   std::string urdf = write_robot(mended->robot, "Made by `prehend hand add`.");
+  const AnatomyJudge judge = [&](const Anatomy& tried, double needed) {
+    const auto hand = model::HandModel::parse(urdf, write_toml(tried, name, mended->robot));
+    return hand ? trial_grasps(*hand, needed) : 0;
+  };
+  const auto anatomy = find_anatomy(mended->robot, effort, effort.trials ? judge : AnatomyJudge());
+  if (!anatomy) return tl::unexpected(anatomy.error());
   std::string toml = write_toml(*anatomy, name, mended->robot);
   auto model = model::HandModel::parse(urdf, toml);
   if (!model) return tl::unexpected(model.error());

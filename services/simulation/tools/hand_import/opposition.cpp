@@ -17,11 +17,15 @@ using Eigen::VectorXd;
 constexpr int kept = 8;                           // of the samples, to be refined
 constexpr std::array radii{0.015, 0.022, 0.033};  // m, of the rods that are tried
 constexpr double good = 0.4;                      // quality of a grip that counts
+constexpr double clearly = 0.5;                   // objects more that another place must hold
 constexpr double better = 0.8;      // by which a found place must surpass the known axes
 constexpr double aside = 0.25;      // what a DoF costs that leaves its rest by its whole range
 constexpr double clear = 0.002;     // m, between the open hand and a rod
 constexpr double way_in = 0.16;     // m, along which the hand must be able to come
 constexpr double max_aside = 0.06;  // m, that thick rods may lie further out
+constexpr double long_half = 0.06;  // m: what stands or lies on a table is longer than its grip
+constexpr double step_in = 0.005;   // m, along that way
+constexpr double edge = 0.006;      // m, radius of the edges of a box
 constexpr double widest = 0.25;     // m
 
 /// A posture and place, and what they are worth.
@@ -46,28 +50,46 @@ class Search {
         p_LT_(fingers.p_LT),
         tips_(fingers.last) {}
 
-  Opposition run(const Pose& X_BG_known) {
+  Opposition run(const Pose& X_BG_known, const OppositionJudge& judge) {
     Trial known{open_, X_BG_known.translation(), X_BG_known.linear().col(1),
                 X_BG_known.linear().col(2)};
     known.worth = worth(known);
-    Trial best = known;
+    std::vector<Trial> found{known};
     if (p_LT_.size() > 1) {
-      const Trial near = about(known), found = searched();
-      best = near.worth > found.worth - better ? near : from_the_thumb(found);
+      const Trial near = about(known);
+      found = searched();
+      for (Trial& trial : found) trial = from_the_thumb(trial);
+      const bool keep = found.empty() || near.worth > found.front().worth - better;
+      found.insert(keep ? found.begin() : found.begin() + 1, near);
     }
-    Opposition result;
-    result.open = best.dof;
-    result.quality = best.worth;
-    result.depth = depth(best);
-    result.alone = alone(best);
-    result.opening = opening(best);
-    result.X_BG = best.X_BG();
-    add_preshape(result, best, "tripod", {{}, 0.018, 0.008}, 3);
-    add_preshape(result, best, "pinch", {{}, 0.012, 0.004}, 2);
+    std::size_t best = 0;
+    Opposition result = described(found[0]);
+    double most = judge ? judge(result, 0) : 0;
+    for (std::size_t i = 1; judge && i < found.size(); ++i) {
+      Opposition other = described(found[i]);
+      const double held = judge(other, most + clearly);
+      if (held < most + clearly) continue;
+      most = held;
+      best = i;
+      result = std::move(other);
+    }
+    add_preshape(result, found[best], "tripod", {{}, 0.018, 0.008}, 3);
+    add_preshape(result, found[best], "pinch", {{}, 0.012, 0.004}, 2);
     return result;
   }
 
  private:
+  Opposition described(const Trial& trial) const {
+    Opposition result;
+    result.open = trial.dof;
+    result.quality = trial.worth;
+    result.depth = depth(trial);
+    result.alone = alone(trial);
+    result.opening = opening(trial);
+    result.X_BG = trial.X_BG();
+    return result;
+  }
+
   bool turns_aside(std::size_t i) const { return world_.closing()[i] == 0 && !fixed_[i]; }
 
   /// How far the way in along `out` is free, at most to `wanted`: the least room on it, m.
@@ -78,6 +100,22 @@ class Search {
       least = std::min(least, world_.room(trial.dof, rod, 0.02));
     }
     return least;
+  }
+
+  /// How near to the middle something can come along `out` from outside, at most to `nearest`, m:
+  /// rods at these places along y, moved together.
+  double comes_in(const Trial& trial, double radius, const std::vector<double>& at_y,
+                  double nearest) const {
+    Rod rod{trial.X_BG(), radius, long_half};
+    double free = way_in;
+    for (double s = way_in; s > nearest - 0.5 * step_in; s -= step_in) {
+      for (const double y : at_y) {
+        rod.X_BR.translation() = trial.middle + s * trial.out + y * rod.X_BR.linear().col(1);
+        if (world_.room(trial.dof, rod, 2 * clear) < clear) return free;
+      }
+      free = s;
+    }
+    return free;
   }
 
   /// The rod about the middle, or further out where it does not fit; none if it fits nowhere.
@@ -212,24 +250,26 @@ class Search {
     return trial;
   }
 
-  Trial searched() {
+  /// The best of many, refined.
+  std::vector<Trial> searched() {
     std::vector<Trial> best;
     for (int i = 0; i < effort_.samples; ++i) {
       const auto trial = sampled();
       if (trial && trial->worth > 0) best.push_back(*trial);
     }
-    std::stable_sort(best.begin(), best.end(),
-                     [](const Trial& a, const Trial& b) { return a.worth > b.worth; });
+    const auto order = [&] {
+      std::stable_sort(best.begin(), best.end(),
+                       [](const Trial& a, const Trial& b) { return a.worth > b.worth; });
+    };
+    order();
     if (best.size() > kept) best.resize(kept);
-    Trial winner;
-    for (Trial& trial : best) {
+    for (Trial& trial : best)
       for (int i = 0; i < effort_.refinements; ++i) {
         Trial next = varied(trial, 0.006, 0.12);
         if (next.worth > trial.worth) trial = std::move(next);
       }
-      if (trial.worth > winner.worth) winner = trial;
-    }
-    return winner;
+    order();
+    return best;
   }
 
   /// The fingers that touch a rod from -y and from +y.
@@ -262,16 +302,21 @@ class Search {
     return -1;
   }
 
-  /// How far a thin rod can come towards the palm, and its radius.
+  /// How far beyond the origin of G the top of a box of this width can come to the palm, m.
+  double depth(const Trial& trial, double width) const {
+    std::vector<double> at_y;
+    const double end = 0.5 * width - edge;
+    for (double y = -end; y < end; y += 2 * edge) at_y.push_back(y);
+    at_y.push_back(end);
+    return edge - comes_in(trial, edge, at_y, -0.06);
+  }
+
+  /// The same for the widest of some boxes for which it is not negative.
   double depth(const Trial& trial) const {
-    Rod rod{trial.X_BG(), 0.012, 0.02};
-    double inwards = 0;
-    while (inwards < 0.06) {
-      rod.X_BR.translation() = trial.middle - (inwards + 0.002) * trial.out;
-      if (world_.room(trial.dof, rod) < 0) break;
-      inwards += 0.002;
-    }
-    return inwards + rod.radius;
+    double found = 0;
+    for (const double width : {0.024, 0.034, 0.044, 0.056, 0.068})
+      if (const double deep = depth(trial, width); deep > 0.005) found = deep;
+    return found;
   }
 
   double opening(const Trial& trial) const {
@@ -330,8 +375,9 @@ class Search {
 }  // namespace
 
 Opposition find_opposition(const ContactWorld& world, const Fingers& fingers,
-                           const Pose& X_BG_known, const SearchEffort& effort) {
-  return Search(world, fingers, effort).run(X_BG_known);
+                           const Pose& X_BG_known, const SearchEffort& effort,
+                           const OppositionJudge& judge) {
+  return Search(world, fingers, effort).run(X_BG_known, judge);
 }
 
 }  // namespace prehend::simulation

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <map>
 #include <optional>
 #include <string>
@@ -35,13 +36,20 @@ struct SearchEffort {
   int refinements = 60;  // steps of each of the best
   int shapings = 250;    // postures tried for each preshape
   double step = 0.001;   // m, from one radius to the next when the opening is measured
+  /// The best are also tried in the physics, see trial_grasps(), and that counts: half a minute.
+  bool trials = false;
 };
+
+/// How much is held by a hand of this posture and place. Less than `needed` need not be exact.
+using OppositionJudge = std::function<double(const Opposition&, double needed)>;
 
 /// Searches the postures of what does not close (opposition of the thumb, abduction, spread) and
 /// the places between fingers that can meet: rods are gripped best there, and the hand can come
 /// around them along z. X_BG_known is kept, with the posture `open`, unless something clearly
-/// better is found. The same answer each time.
+/// better is found. Of the best, that counts which the judge says holds clearly most. The same
+/// answer each time.
 Opposition find_opposition(const ContactWorld& world, const Fingers& fingers,
-                           const Pose& X_BG_known, const SearchEffort& effort = {});
+                           const Pose& X_BG_known, const SearchEffort& effort = {},
+                           const OppositionJudge& judge = {});
 
 }  // namespace prehend::simulation

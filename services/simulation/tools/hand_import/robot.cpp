@@ -249,6 +249,10 @@ Expected<Robot> read_robot(const std::string& text) {
   const XMLElement* root = document.FirstChildElement("robot");
   if (!root)
     return fail("has no <robot>", {}, "a URDF; xacro files must be expanded by `xacro` first");
+  for (const XMLElement* each = root->FirstChildElement(); each; each = each->NextSiblingElement())
+    if (std::string_view(each->Name()).starts_with("xacro:"))
+      return fail("is xacro", fmt::format("line {}", each->GetLineNum()),
+                  "`xacro FILE > FILE.urdf` makes a URDF of it");
   Reader reader;
   reader.read(*root);
   return std::move(reader.robot);

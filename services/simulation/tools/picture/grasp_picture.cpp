@@ -45,7 +45,8 @@ void append(std::vector<Triangle>& to, std::vector<Triangle> more) {
   to.insert(to.end(), more.begin(), more.end());
 }
 
-/// From that direction, so near that all of it just fills the picture.
+}  // namespace
+
 Viewpoint look_at(const Drawing& drawing, const Vector3d& from, double aspect) {
   Viewpoint view;
   view.width = field;
@@ -73,8 +74,6 @@ Viewpoint look_at(const Drawing& drawing, const Vector3d& from, double aspect) {
   view.X_WV = make_pose(target + distance * from, R);
   return view;
 }
-
-}  // namespace
 
 Expected<GraspDrawing> draw_grasp(const model::HandModel& hand, const grasping::Body& object,
                                   const grasping::PlannedGrasp& grasp) {

@@ -21,6 +21,9 @@ struct GraspDrawing {
 Expected<GraspDrawing> draw_grasp(const model::HandModel& hand, const grasping::Body& object,
                                   const grasping::PlannedGrasp& grasp);
 
+/// From that direction (unit, not straight up), so near that all of it just fills the picture.
+Viewpoint look_at(const Drawing& drawing, const Eigen::Vector3d& from, double aspect);
+
 /// The view, of many around the object, that shows most of the object and the contacts.
 Viewpoint best_view(const GraspDrawing& scene, double aspect);
 

@@ -11,33 +11,15 @@
 #include "common/model/catalogue.hpp"
 
 namespace prehend::simulation {
-namespace {
 
 using grasping::Body;
 
-std::filesystem::path hands_directory() {
-  return share_directory() / "models" / "hands";
-}
-
-}  // namespace
-
-std::vector<std::string> hand_names() {
-  std::vector<std::string> names;
-  std::error_code error;
-  for (const auto& entry : std::filesystem::directory_iterator(hands_directory(), error))
-    if (std::filesystem::exists(entry.path() / "hand.toml", error))
-      names.push_back(entry.path().filename().string());
-  std::sort(names.begin(), names.end());
-  return names;
-}
-
 Expected<model::HandModel> find_hand(const std::string& name) {
-  if (name.find('/') != std::string::npos) return model::HandModel::load(name);
-  const auto names = hand_names();
-  if (std::find(names.begin(), names.end(), name) == names.end())
-    return fail("there is no such hand", name,
-                fmt::format("one of {}, or the path of a folder", fmt::join(names, ", ")));
-  return model::HandModel::load(hands_directory() / name);
+  const auto folder = model::hand_directory(name);
+  std::error_code none;
+  if (name.find('/') == std::string::npos && !std::filesystem::exists(folder / "hand.toml", none))
+    return fail("there is no such hand", name, model::hand_hint());
+  return model::HandModel::load(folder);
 }
 
 Expected<std::vector<Body>> catalogue_bodies() {

@@ -12,7 +12,6 @@ namespace prehend::simulation {
 
 /// A hand of the lab by name, or of the folder of that path. The error lists those that there are.
 Expected<model::HandModel> find_hand(const std::string& name);
-std::vector<std::string> hand_names();
 
 /// The catalogue's objects as bodies, all or one by name. The error lists those that there are.
 Expected<std::vector<grasping::Body>> catalogue_bodies();

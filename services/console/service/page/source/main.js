@@ -3,7 +3,7 @@ import { Connection } from "./connection.js";
 import { showConsent } from "./consent.js";
 import { setUpOrders, showObject, showReply, showWhoObeys } from "./orders.js";
 import { setUpHand } from "./hand.js";
-import { forgetLists, showLag, showLatency, showLink, showLog, showReport, showStatus } from "./panels.js";
+import { forgetLists, showLag, showLatency, showLink, showLog, showReport, showStatus, showTraining } from "./panels.js";
 import { Picture } from "./picture.js";
 import { Playback } from "./playback.js";
 import { Plots } from "./plots.js";
@@ -85,6 +85,7 @@ const topics = {
     plots.latency(message);
   },
   "/signals": (message) => plots.show(message),
+  "/training": showTraining,
   "/log": showLog,
   "/operator/reply": showReply,
 };

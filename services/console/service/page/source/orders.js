@@ -54,7 +54,8 @@ export function showReply(reply) {
 }
 
 // An order that nobody would obey is greyed, and says why. A stop is always given.
-const obeyedBy = { record: "recorder", replay: "replayer", mode: "mapping", place: "simulation", show: "demonstration" };
+const obeyedBy = { record: "recorder", replay: "replayer", mode: "mapping", place: "simulation", show: "demonstration",
+                   teach: "teacher" };
 export function showWhoObeys({ services }) {
   for (const [action, name] of Object.entries(obeyedBy)) {
     const there = services.some((one) => one.name === name);
@@ -70,6 +71,13 @@ export function setUpOrders() {
   document.getElementById("orders").hidden = false;
   document.getElementById("stop").onclick = () => give("stop", "by the console");
   document.getElementById("shown").onclick = () => give("shown", "");
+  document.getElementById("orders-address").textContent =
+    `${location.protocol === "https:" ? "wss" : "ws"}://${location.host}/?orders=${token}`;
+  document.getElementById("teach").onsubmit = (event) => {
+    event.preventDefault();
+    const { verb, name } = Object.fromEntries(new FormData(event.target));
+    give("teach", verb === "show" || verb === "train" ? `${verb} ${name}` : verb);
+  };
   for (const action of ["release", "record", "replay", "mode", "place", "show", "lead"])
     document.getElementById(action).onsubmit = (event) => {
       event.preventDefault();

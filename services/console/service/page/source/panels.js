@@ -55,6 +55,24 @@ export function showReport(report) {
   while (body.rows.length > maxGrasps) body.deleteRow(-1);
 }
 
+const phases = {
+  TRAINING_SHOWING: ({ step, shown, asked }) => `Show «${step}» (${shown + 1} of ${asked})`,
+  TRAINING_COMPUTING: ({ name, share }) => `Training for ${name}: ${(100 * share).toFixed(0)} %`,
+  TRAINING_DONE: () => "Done",
+  TRAINING_FAILED: () => "Failed",
+};
+
+// A teacher that has nothing to do shows nothing.
+export function showTraining(told) {
+  const words = phases[told.phase];
+  byId("training").hidden = !words;
+  if (!words) return;
+  byId("training-step").textContent = words(told);
+  byId("training-step").className = told.phase === "TRAINING_FAILED" ? "bad" : "";
+  byId("training-share").value = told.share;
+  byId("training-message").textContent = told.message;
+}
+
 export function showLog({ timestamp, level, name, message }) {
   const list = byId("log");
   const time = new Date(timestamp.sec * 1000).toLocaleTimeString();

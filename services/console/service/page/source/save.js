@@ -1,4 +1,4 @@
-// The last grasp for other programs: its contacts as CSV, the scene as it is drawn as PNG.
+// The last grasp for other programs: its contacts as CSV, and the scene with its figures as PNG.
 const byId = (id) => document.getElementById(id);
 let last;
 
@@ -10,6 +10,7 @@ function save(name, blob) {
   setTimeout(() => URL.revokeObjectURL(link.href), 10000);
 }
 
+const nameOf = ({ object }) => object.replace(/\W+/g, "-");
 // Names are the lab's own words; a quote in one would end its cell.
 const quoted = (text) => `"${String(text).replaceAll('"', '""')}"`;
 
@@ -21,6 +22,27 @@ function contactsOf(report) {
   return `${[head, ...lines].join("\n")}\n`;
 }
 
+function figuresOf({ object, epsilon, volume, contacts, held, reason }) {
+  const figure = (value, digits) => (Number.isFinite(value) ? value.toFixed(digits) : "–");
+  return `${object}: ε ${figure(epsilon, 3)}, volume ${figure(volume, 3)}, ${contacts.length} contacts, ` +
+    (held ? "held" : `dropped${reason ? `: ${reason}` : ""}`);
+}
+
+// The scene, and below it a line of figures.
+function pictureOf(view) {
+  const line = 40, made = document.createElement("canvas");
+  made.width = view.width;
+  made.height = view.height + line;
+  const context = made.getContext("2d");
+  context.fillStyle = "#fff";
+  context.fillRect(0, 0, made.width, made.height);
+  context.drawImage(view, 0, 0);
+  context.fillStyle = "#1b2430";
+  context.font = "20px sans-serif";
+  if (last) context.fillText(figuresOf(last), 12, view.height + 27, made.width - 24);
+  return made;
+}
+
 export function keepReport(report) {
   last = report;
   byId("csv").disabled = false;
@@ -29,10 +51,10 @@ export function keepReport(report) {
 // draw: draws the scene at once, for its buffer is empty between two frames.
 export function setUpSaving(draw) {
   byId("csv").onclick = () =>
-    save(`grasp-of-${last.object.replace(/\W+/g, "-")}.csv`, new Blob([contactsOf(last)], { type: "text/csv" }));
+    save(`grasp-of-${nameOf(last)}.csv`, new Blob([contactsOf(last)], { type: "text/csv" }));
   byId("png").disabled = !draw;
   byId("png").onclick = () => {
     draw();
-    byId("view").toBlob((blob) => save("scene.png", blob));
+    pictureOf(byId("view")).toBlob((blob) => save(last ? `grasp-of-${nameOf(last)}.png` : "scene.png", blob));
   };
 }

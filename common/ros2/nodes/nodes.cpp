@@ -1,0 +1,44 @@
+#include "common/ros2/nodes/nodes.hpp"
+
+#include <charconv>
+#include <cstdlib>
+#include <string_view>
+
+namespace prehend::ros2 {
+namespace {
+
+constexpr int max_domain = 232;
+
+}  // namespace
+
+Expected<int> domain_of_nodes() {
+  const char* said = std::getenv("ROS_DOMAIN_ID");
+  const std::string_view text = said ? said : "";
+  if (text.empty()) return 0;
+  int domain = -1;
+  const auto [end, failed] = std::from_chars(text.data(), text.data() + text.size(), domain);
+  if (failed != std::errc{} || end != text.data() + text.size() || domain < 0 ||
+      domain > max_domain)
+    return wrong_use("is no domain", "ROS_DOMAIN_ID=" + std::string(text), "0 to 232");
+  return domain;
+}
+
+Expected<dds::Participant> join_nodes(const std::string& name, int domain,
+                                      const std::string& network) {
+  dds::ParticipantOptions options{.name = name, .domain = domain};
+  options.network.profile = network;
+  return dds::Participant::create(options);
+}
+
+dds::RawTopic topic_of_nodes(const std::string& name, const std::string& type, bool kept) {
+  const auto slash = type.find('/');
+  dds::RawTopic topic{"rt/" + name,
+                      type.substr(0, slash) + "::msg::dds_::" + type.substr(slash + 1) + "_",
+                      false,
+                      {}};
+  topic.qos.transient_local = kept;
+  topic.qos.writer_depth = kept ? 1 : 10;
+  return topic;
+}
+
+}  // namespace prehend::ros2

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <string>
+
+#include "common/base/error.hpp"
+#include "common/dds/participant.hpp"
+#include "common/dds/raw.hpp"
+
+/// Where nodes of ROS 2 meet: a domain of DDS, without partition, and topics with a name before
+/// their name.
+namespace prehend::ros2 {
+
+/// Of ROS_DOMAIN_ID, as nodes take it: 0 where nothing is said. Else 0 to 232.
+Expected<int> domain_of_nodes();
+
+/// network: laptop (nodes of this machine) or lan (of the network).
+Expected<dds::Participant> join_nodes(const std::string& name, int domain,
+                                      const std::string& network);
+
+/// The topic /name of nodes. type: as «sensor_msgs/JointState». kept: who comes late gets the
+/// last one. Readers and writers of nodes match it.
+dds::RawTopic topic_of_nodes(const std::string& name, const std::string& type, bool kept = false);
+
+}  // namespace prehend::ros2

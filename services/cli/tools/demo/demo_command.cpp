@@ -1,0 +1,147 @@
+#include "services/cli/tools/demo/demo_command.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <chrono>
+#include <iostream>
+
+#include "common/base/log_format.hpp"
+#include "services/cli/tools/demo/demonstration.hpp"
+#include "services/cli/tools/demo/series.hpp"
+
+namespace prehend::cli {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+/// One line that is renewed on a terminal; otherwise a line whenever there is news, but not often.
+class Screen {
+ public:
+  explicit Screen(bool quiet)
+      : quiet_(quiet || log::format() == log::Format::json),
+        terminal_(::isatty(STDERR_FILENO) != 0) {}
+  ~Screen() { clear(); }
+
+  void show(const std::string& text) {
+    const auto now = Clock::now();
+    if (quiet_ || text == last_ ||
+        now - shown_ < (terminal_ ? std::chrono::milliseconds(100) : std::chrono::seconds(2)))
+      return;
+    last_ = text;
+    shown_ = now;
+    if (terminal_)
+      fmt::print(stderr, "\r\033[K{}", text.substr(0, 100));
+    else
+      fmt::print(stderr, "{}\n", text);
+    std::fflush(stderr);
+  }
+  void clear() {
+    if (!quiet_ && terminal_ && !last_.empty()) fmt::print(stderr, "\r\033[K");
+    last_.clear();
+  }
+
+ private:
+  bool quiet_, terminal_;
+  std::string last_;
+  Clock::time_point shown_{};
+};
+
+/// "A..B" or "A" as seeds.
+bool read_range(const std::string& text, SeriesOptions& series) {
+  unsigned long long first = 0, last = 0;
+  int used = 0;
+  const int length = static_cast<int>(text.size());
+  if (std::sscanf(text.c_str(), "%llu..%llu%n", &first, &last, &used) != 2 || used != length) {
+    if (std::sscanf(text.c_str(), "%llu%n", &first, &used) != 1 || used != length) return false;
+    last = first;
+  }
+  series.first = first;
+  series.last = last;
+  return first <= last && last - first < 10000;
+}
+
+/// What measures, sees and moves.
+void add_devices(CLI::App& app, DemoOptions& demo) {
+  app.add_option(
+      "--glove", demo.glove,
+      "DEVICE[:PORT or FILE], see `prehend glove devices`: what has an emulator is\n"
+      "emulated unless a port is given, HOST:PORT for datagrams; webcam: your own hand, by\n"
+      "the page of --watch");
+  app.add_option("--camera", demo.camera, "SOURCE[:PATH], see `prehend camera sources`");
+  auto* robot =
+      app.add_option("--robot", demo.robot,
+                     "emulated:DEVICE, see `prehend robot emulate`: its driver moves the hand");
+  app.add_option("--arm", demo.arm, "the arm that carries the hand, a name or folder: puma560")
+      ->excludes(robot);
+}
+
+/// For the help: who uses it gets another one.
+void add_task(CLI::App& app) {
+  app.add_option("--task",
+                 "a task (pick-and-place), or a file of one: it is shown, and done again "
+                 "elsewhere;\nprehend demo --task pick-and-place --help tells more");
+}
+
+}  // namespace
+
+// Long: one option after the other.
+int demo_command(const std::vector<std::string>& arguments) {
+  CLI::App app{
+      "Starts glove, recognition, mapping and simulation as processes on this machine, plays a\n"
+      "demonstration through them and says what was grasped and how well. Exit code 0: held,\n"
+      "1: not held, 2: wrong use, 3: the environment is broken.",
+      "prehend demo"};
+  DemoOptions demo;
+  SeriesOptions series;
+  bool json = false, quiet = false;
+  std::string mode, seeds;
+  demo.lab.add_to(app);
+  auto* seed = app.add_option("--seed", demo.seed, "draws object, poses, light, person and noise");
+  app.add_option("--object", demo.object, "the object that is reached for");
+  app.add_option("--hand", demo.hand, "the robot hand");
+  app.add_option("--without", demo.without, "a service that is left out; may be repeated")
+      ->check(CLI::IsMember({"glove", "recognition", "mapping", "simulation"}))
+      ->type_size(1)
+      ->allow_extra_args(false);
+  add_devices(app, demo);
+  app.add_option("--mode", mode, "direct: the mapping does not use what is recognised")
+      ->check(CLI::IsMember({"direct", "intelligent"}));
+  app.add_option("--timeout", demo.timeout, "s until it ends without a grasp")
+      ->check(CLI::Range(1.0, 3600.0));
+  app.add_option("--record", demo.record, "record all topics into this file");
+  add_task(app);
+  auto* watch =
+      app.add_flag("--watch", demo.watch, "with a page that shows it (console.port), until Ctrl-C");
+  app.add_flag("--attach", demo.attach, "start nothing, judge the lab that runs")->excludes(watch);
+  app.add_flag("--keep", demo.keep, "keep scene and logs");
+  app.add_flag("--json", json, "one JSON document on standard output");
+  app.add_flag("--quiet", quiet, "no progress");
+  app.add_option("--seeds", seeds, "A..B: a table over several seeds")->excludes(seed, watch);
+  app.add_flag("--compare-direct", series.compare_direct,
+               "with --seeds: each once more with direct mapping");
+  if (const auto code = service::parse(app, arguments)) return *code;
+  demo.direct = mode == "direct";
+
+  Screen screen(quiet);
+  const Progress progress = [&screen](const std::string& text) { screen.show(text); };
+  if (!seeds.empty()) {
+    series.json = json;
+    if (!read_range(seeds, series))
+      return service::complain({"must be A..B", "--seeds " + seeds, ""}, exit_wrong_use);
+    return run_series(demo, series, progress);
+  }
+  const auto show = [&](const Outcome& outcome) {
+    screen.clear();
+    std::cout << (json ? to_json(outcome) + "\n" : to_table(outcome)) << std::flush;
+  };
+  if (demo.watch) demo.on_outcome = show;
+  const auto outcome = demonstrate(demo, progress);
+  screen.clear();
+  if (!outcome) return service::complain(outcome.error().error, outcome.error().exit_code);
+  if (!demo.watch) show(*outcome);
+  return outcome->grasp.held ? exit_done : exit_no;
+}
+
+}  // namespace prehend::cli

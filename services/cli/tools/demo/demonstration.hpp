@@ -1,0 +1,14 @@
+#pragma once
+
+#include <tl/expected.hpp>
+
+#include "services/cli/service/outcome.hpp"
+#include "services/cli/tools/demo/options.hpp"
+
+namespace prehend::cli {
+
+/// Gives one demonstration with the services as processes of their own, or watches a lab that runs,
+/// until the first grasp has been judged. Ctrl-C ends it, and the services with it.
+tl::expected<Outcome, Failure> demonstrate(const DemoOptions& options, const Progress& progress);
+
+}  // namespace prehend::cli

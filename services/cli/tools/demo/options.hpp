@@ -1,0 +1,53 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/service/arguments.hpp"
+#include "services/cli/service/outcome.hpp"
+
+namespace prehend::cli {
+
+/// What is demonstrated, and with what.
+struct DemoOptions {
+  service::LabArguments lab;
+  std::uint64_t seed = 1;
+  std::string object;                // empty: drawn by the seed
+  std::string hand;                  // empty: the configuration's
+  std::vector<std::string> without;  // services that are left out
+  std::string glove;                 // DEVICE[:FILE or port]; empty: the first emulated one
+  std::string camera;                // SOURCE[:PATH]; empty: the first
+  std::string robot;    // emulated:DEVICE moves the simulated hand; empty: nothing does
+  std::string arm;      // that carries the hand; empty: the configuration's
+  bool direct = false;  // recognition runs, but the mapping does not use it
+  bool attach = false;  // starts nothing, judges a lab that runs
+  bool keep = false;    // keeps the folder with scene and logs
+  double timeout = 45;  // s
+  std::string record;   // file that takes all topics; empty: none
+  bool watch = false;   // with a console, and it goes on until it is interrupted
+  /// Told the outcome before it goes on, where it does.
+  std::function<void(const Outcome&)> on_outcome = [](const Outcome&) {};
+};
+
+/// A demonstration that could not be given.
+struct Failure {
+  Error error;
+  int exit_code = exit_broken;
+};
+
+/// Nothing, or why the demonstration ends here.
+using Trouble = std::optional<Failure>;
+inline Trouble wrong(const Error& error) {
+  return Failure{error, exit_wrong_use};
+}
+inline Trouble broken(const Error& error) {
+  return Failure{error, exit_broken};
+}
+
+/// Says how it goes: a few words, several times a second.
+using Progress = std::function<void(const std::string&)>;
+
+}  // namespace prehend::cli
