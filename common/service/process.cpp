@@ -40,6 +40,18 @@ namespace {
   ::_exit(127);
 }
 
+bool is_crash(int signal) {
+  return signal == SIGSEGV || signal == SIGABRT || signal == SIGBUS || signal == SIGILL ||
+         signal == SIGFPE;
+}
+
+/// Behind the program's own last words, which say nothing of it.
+void note_crash(const std::filesystem::path& log, int signal) {
+  if (!log.empty())
+    std::ofstream(log, std::ios::app) << "crashed: signal " << signal << " (" << ::strsignal(signal)
+                                      << ")\n";
+}
+
 std::vector<char*> pointers(std::vector<std::string>& texts) {
   std::vector<char*> result;
   for (std::string& text : texts) result.push_back(text.data());
@@ -128,6 +140,7 @@ std::optional<Process::Exit> Process::exit() {
   }
   exit_ = WIFSIGNALED(status) ? Exit{128 + WTERMSIG(status), WTERMSIG(status)}
                               : Exit{WEXITSTATUS(status), 0};
+  if (is_crash(exit_->signal)) note_crash(log_, exit_->signal);
   return exit_;
 }
 

@@ -2,6 +2,7 @@
 // bound the waiting; a passing test waits for events.
 #include "common/service/process.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -56,6 +57,15 @@ TEST_F(ProcessTest, TellsHowItEnded) {
   EXPECT_EQ(exit->code, 7);
   EXPECT_EQ(exit->signal, 0);
   EXPECT_EQ(process->exit()->code, 7) << "asking again gives the same answer";
+}
+
+// Guards that a service which falls in a live test is seen as a crash, whatever else failed there.
+TEST_F(ProcessTest, ACrashStandsInItsLog) {
+  const auto log = folder_ / "log";
+  auto process = Process::start(shell("echo begun; kill -SEGV $$", log));
+  ASSERT_TRUE(process) << process.error().message();
+  ASSERT_TRUE(process->wait(seconds(10)));
+  EXPECT_THAT(last_lines(log, 2), testing::MatchesRegex("begun\ncrashed: signal 11 .*"));
 }
 
 TEST_F(ProcessTest, TellsTheSignalThatKilledIt) {
