@@ -16,8 +16,9 @@ using Eigen::Vector3d;
 
 constexpr int steps_a_command = 5;    // 100 Hz, as robot/state
 constexpr double max_step_time = 60;  // s
-constexpr int more_tries = 2;         // once one grasp has done it, for a better one
-constexpr double sure = 0.25;         // of what is permitted: no other grasp needs to be tried
+// Of what is permitted. A sure grasp ends the search; one that will do, after so many more.
+constexpr double sure = 0.25, will_do = 0.4;
+constexpr int more_tries = 2;
 constexpr const char* out_of_reach = "approach";  // of a grasp that could not even be tried
 constexpr double beside = 0.003, aslant = 0.035;  // m, rad (2°), that a hand may stand off
 
@@ -133,7 +134,7 @@ Expected<Tried> best_trial(const model::HandModel& hand, const TaskModel& task,
     if (!is_reached && tries > 0) continue;  // there is something better to say
     tries += is_reached;
     if (!best || (tried && tried->worst < best->worst)) best = std::move(tried);
-    if (!best || !std::isfinite(best->worst)) continue;
+    if (!best || best->worst > will_do) continue;
     if (best->worst <= sure) break;
     --left;
   }
