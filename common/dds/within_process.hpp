@@ -24,7 +24,7 @@ inline void talk_over_the_network_within_process() {
   namespace library = eprosima::fastdds;
   library::LibrarySettings settings;
 #endif
-  settings.intraprocess_delivery = library::INTRAPROCESS_USER_DATA_ONLY;
+  settings.intraprocess_delivery = library::INTRAPROCESS_OFF;
 #if PREHEND_FAST_DDS == 2
   library::xmlparser::XMLProfileManager::library_settings(settings);
 #else
