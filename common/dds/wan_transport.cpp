@@ -174,8 +174,8 @@ struct Door {
 };
 
 /// As long as the participant has it, the port is its own.
-struct BetweenSitesDescriptor final : transport::ChainingTransportDescriptor {
-  BetweenSitesDescriptor(std::shared_ptr<transport::TransportDescriptorInterface> lower,
+struct WanTransportDescriptor final : transport::ChainingTransportDescriptor {
+  WanTransportDescriptor(std::shared_ptr<transport::TransportDescriptorInterface> lower,
                          Dialled dialled, Door door)
       : ChainingTransportDescriptor(std::move(lower)),
         dialled_(std::move(dialled)),
@@ -362,7 +362,7 @@ Expected<void> join_sites(eprosima::fastdds::dds::DomainParticipantQos& qos,
       announce(own);
     }
   }
-  *found = std::make_shared<BetweenSitesDescriptor>(*found, std::move(places), std::move(door));
+  *found = std::make_shared<WanTransportDescriptor>(*found, std::move(places), std::move(door));
   return {};
 }
 

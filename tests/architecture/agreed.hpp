@@ -18,6 +18,12 @@ struct Exception {
   std::string_view reason;
 };
 
+/// A name that was given up for another.
+struct Retired {
+  std::string_view was, is;
+  std::string_view where = {};  // the folder, anywhere, in which it meant that; empty: all
+};
+
 /// What the rules leave to the house to say. An entry that nothing needs breaks its rule.
 struct Agreed {
   std::span<const Edge> edges;                // between folders of common; idl is one, too
@@ -26,6 +32,7 @@ struct Agreed {
   std::span<const Exception> ends;            // what: the function that ends the process
   std::span<const Exception> commands;        // what: the function that adds a subcommand
   std::span<const Exception> raw_targets;     // what: the name of the target
+  std::span<const Retired> retired;           // those of the glossary, and functions
 };
 
 /// Where these tables stand.
@@ -127,8 +134,25 @@ inline constexpr std::array raw_targets{
               "generated sources, compiled without our warnings"},
 };
 
+// «(was X)» in the glossary of ARCHITECTURE.md.
+inline constexpr std::array retired{
+    Retired{"Arrival", "FingerDistances", "mapping"},
+    Retired{"BetweenSites", "WanTransport"},
+    Retired{"Claim", "PortLock", "dds"},
+    Retired{"DeafnessWatch", "DeadlockWatchdog"},
+    Retired{"Ear", "DiscoveryListener"},
+    Retired{"Figures", "Stats"},
+    Retired{"figures", "stats"},
+    Retired{"Gate", "SerializedTransport", "dds"},
+    Retired{"Grip", "GripController"},
+    Retired{"LearntPlace", "PalmOffset"},
+    Retired{"mend", "hint"},
+    Retired{"RightOfWay", "FingerCollisionLimiter"},
+    Retired{"Standing", "LatchedSamples"},
+};
+
 /// What this house has agreed on.
-inline constexpr Agreed agreed_here{common_edges, {}, long_functions,
-                                    process_ends, {}, raw_targets};
+inline constexpr Agreed agreed_here{common_edges, {},          long_functions, process_ends,
+                                    {},           raw_targets, retired};
 
 }  // namespace prehend::architecture

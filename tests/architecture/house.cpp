@@ -157,6 +157,14 @@ House read_house(const std::filesystem::path& root) {
   return house;
 }
 
+bool is_of_the_product(const File& file) {
+  return file.path.starts_with("common/") || file.path.starts_with("services/");
+}
+
+bool is_main(const File& file) {
+  return file.path.ends_with("/main.cpp");
+}
+
 std::string folder_of(std::string_view path) {
   const auto end = path.rfind('/');
   return std::string(end == std::string_view::npos ? "" : path.substr(0, end));

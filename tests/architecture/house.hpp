@@ -47,6 +47,11 @@ struct House {
 /// Reads the tree below `root`; what is no house is an empty one.
 House read_house(const std::filesystem::path& root);
 
+/// Neither a test nor how it is deployed.
+bool is_of_the_product(const File& file);
+/// It has main().
+bool is_main(const File& file);
+
 /// The folder that a file lies in: common/dds of common/dds/raw.hpp; empty at the root.
 std::string folder_of(std::string_view path);
 

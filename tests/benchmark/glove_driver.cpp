@@ -158,7 +158,7 @@ glove::Frame hand(int n) {
   return frame;
 }
 
-struct Figures {
+struct Stats {
   double driver_cpu = 0, service_cpu = 0;  // share of a core
   double floor_us = 0, service_us = 0;     // medians
   std::size_t samples = 0;
@@ -171,8 +171,8 @@ double median(std::vector<double> values) {
   return values[values.size() / 2];
 }
 
-Figures measure(const std::string& kind, const std::string& format, double length,
-                const std::string& self) {
+Stats measure(const std::string& kind, const std::string& format, double length,
+              const std::string& self) {
   const int domain = static_cast<int>(std::random_device{}() % 200);
   const std::string rig = fmt::format("glove-driver-{}", ::getpid());
   const auto row = must(glove::find_device(kind));
@@ -195,7 +195,7 @@ Figures measure(const std::string& kind, const std::string& format, double lengt
              "glove.port=" + service_line.where(), "--set", "glove.format=" + format, "--set",
              fmt::format("glove.rate={}", rate)});
 
-  Figures figures;
+  Stats stats;
   std::vector<double> floors, services;
   const auto start = std::chrono::steady_clock::now();
   const auto elapsed = [&] {
@@ -237,18 +237,18 @@ Figures measure(const std::string& kind, const std::string& format, double lengt
     }
   }
   const double span = to_seconds(elapsed()) - cpu_begin;
-  figures.driver_cpu = (cpu_time(driver_process.pid()) - driver_begin) / span;
-  figures.service_cpu = (cpu_time(service_process.pid()) - service_begin) / span;
-  figures.floor_us = median(floors);
-  figures.service_us = median(services);
-  figures.samples = services.size();
+  stats.driver_cpu = (cpu_time(driver_process.pid()) - driver_begin) / span;
+  stats.service_cpu = (cpu_time(service_process.pid()) - service_begin) / span;
+  stats.floor_us = median(floors);
+  stats.service_us = median(services);
+  stats.samples = services.size();
   if (services.empty() || driver_line.sent() == 0) {
     std::cerr << "no postures: " << service::last_lines(log, 5) << "\n";
     std::exit(3);
   }
   for (auto* process : {&service_process, &floor_process, &driver_process}) process->stop(1s);
   std::filesystem::remove(log);
-  return figures;
+  return stats;
 }
 
 int run(bool json, double length, const std::string& self) {
@@ -258,7 +258,7 @@ int run(bool json, double length, const std::string& self) {
                                                          {"joint_glove", "-"},
                                                          {"landmarks", "-"}};
   for (const auto& [kind, format] : devices) {
-    const Figures f = measure(kind, *format == '-' ? "position_matrix" : format, length, self);
+    const Stats f = measure(kind, *format == '-' ? "position_matrix" : format, length, self);
     rows.push_back({{"device", kind},
                     {"format", format},
                     {"driver_cpu_percent", 100 * f.driver_cpu},

@@ -119,7 +119,7 @@ int floor_relay(const Place& place) {
   return 0;
 }
 
-struct Figures {
+struct Stats {
   double p50 = 0, p99 = 0;
   std::size_t count = 0;
 };
@@ -169,7 +169,7 @@ class Case {
 };
 
 /// The floor's last process is this one: latencies of `wanted` commands.
-Figures measure_floor(double rate, std::size_t wanted, const std::string& self, const Case& at) {
+Stats measure_floor(double rate, std::size_t wanted, const std::string& self, const Case& at) {
   const Place place = at.place(fmt::format("floor-{}-{}", getpid(), rate));
   const auto spawn = [&](const char* role, const char* host) {
     return at.start(host, {self, role, std::to_string(place.domain), place.rig,
@@ -197,8 +197,8 @@ Figures measure_floor(double rate, std::size_t wanted, const std::string& self, 
 }
 
 /// The real chain: the world's own measure, from its status.
-Figures measure_lab(double rate, std::size_t wanted, const Case& at,
-                    const std::filesystem::path& audit) {
+Stats measure_lab(double rate, std::size_t wanted, const Case& at,
+                  const std::filesystem::path& audit) {
   const std::string rig = fmt::format("lab-{}-{}", getpid(), rate);
   const Place place = at.place(rig);
   const auto spawn = [&](const std::string& name, std::vector<std::string> more) {
@@ -219,7 +219,7 @@ Figures measure_lab(double rate, std::size_t wanted, const Case& at,
   auto simulation = spawn("simulation", {"safety.audit=" + audit.string()});
   auto mapping = spawn("mapping", {});
   auto glove = spawn("glove", {fmt::format("glove.rate={}", rate)});
-  Figures figures;
+  Stats stats;
   std::uint64_t accepted = 0;
   // A full window that was begun after the start: the world keeps the last 1024.
   const std::uint64_t needed = static_cast<std::uint64_t>(rate) + wanted;
@@ -230,7 +230,7 @@ Figures measure_lab(double rate, std::size_t wanted, const Case& at,
         continue;
       for (const auto& stage : sample.data.latency())
         if (std::string_view(stage.stage().c_str()) == "glove to accepted")
-          figures = {stage.p50_us(), stage.p99_us(), static_cast<std::size_t>(stage.count())};
+          stats = {stage.p50_us(), stage.p99_us(), static_cast<std::size_t>(stage.count())};
       for (const auto& r : sample.data.rates())
         if (std::string_view(r.name().c_str()) == "commands") accepted = r.total();
     }
@@ -240,7 +240,7 @@ Figures measure_lab(double rate, std::size_t wanted, const Case& at,
         std::exit(3);
       }
   }
-  return figures;
+  return stats;
 }
 
 int run(bool json, double seconds, const std::vector<std::string>& cases, const std::string& self) {
@@ -266,9 +266,9 @@ int run(bool json, double seconds, const std::vector<std::string>& cases, const 
     const Case at(name, keys);
     for (const double rate : {30.0, 500.0}) {
       const auto wanted = static_cast<std::size_t>(std::min(1024.0, rate * seconds));
-      const Figures before = measure_floor(rate, wanted, self, at);
-      const Figures lab = measure_lab(rate, wanted, at, folder->path() / "audit");
-      const Figures after = measure_floor(rate, wanted, self, at);
+      const Stats before = measure_floor(rate, wanted, self, at);
+      const Stats lab = measure_lab(rate, wanted, at, folder->path() / "audit");
+      const Stats after = measure_floor(rate, wanted, self, at);
       const double p50 = 0.5 * (before.p50 + after.p50), p99 = 0.5 * (before.p99 + after.p99);
       rows.push_back({{"case", name},
                       {"rate_hz", rate},

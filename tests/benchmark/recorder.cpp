@@ -151,24 +151,8 @@ class Bench {
   template <class P>
   Run record(const dds::Topic<P>& topic, std::vector<typename P::type>& messages, double rate,
              double seconds, const std::vector<std::string>& more = {}) {
-    const std::string file = (folder_ / "run.mcap").string();
-    std::vector<std::string> command{(program_directory() / "prehend-record").string(),
-                                     "--output",
-                                     file,
-                                     "--force",
-                                     "--json",
-                                     "--set",
-                                     "lab.rig=" + rig_,
-                                     "--set",
-                                     fmt::format("lab.domain={}", domain_),
-                                     std::string(topic.name)};
-    command.insert(command.end(), more.begin(), more.end());
     const double processor_before = processor_time(RUSAGE_CHILDREN);
-    std::filesystem::remove(folder_ / "answer");
-    pin_to(recorders_core);
-    auto recorder = must(service::Process::start(
-        {.command = command, .log = folder_ / "log", .output = folder_ / "answer"}));
-    pin_to(our_core);
+    auto recorder = start_recorder(topic.name, more);
     auto participant =
         must(dds::Participant::create({.name = "benchmark", .domain = domain_, .rig = rig_}));
     auto writer = must(participant.writer(topic));
@@ -176,21 +160,7 @@ class Bench {
     while (matched.current_count == 0 && !recorder.exit())
       writer.raw().get_publication_matched_status(matched);
 
-    Run run;
-    const auto start = Clock::now();
-    const auto wanted = static_cast<std::uint64_t>(rate * seconds);
-    while (run.sent < wanted) {
-      const auto due = static_cast<std::uint64_t>(rate * seconds_since(start)) + 1;
-      for (; run.sent < std::min(due, wanted); ++run.sent) {
-        auto& message = messages[run.sent % messages.size()];
-        message.sequence_number(run.sent);
-        message.stamp_ns(to_ns(std::chrono::system_clock::now()));
-        writer.write(message);
-      }
-      std::this_thread::sleep_for(500us);
-    }
-    run.seconds = seconds_since(start);
-    run.rate = static_cast<double>(run.sent) / run.seconds;
+    Run run = send(writer, messages, rate, seconds);
     run.bytes = run.sent * dds::encode(topic, messages.front()).size();
     // Reliable topics: until it has all. What is still on its way on others comes at once.
     writer.raw().wait_for_acknowledgments({5, 0});
@@ -201,13 +171,7 @@ class Bench {
     if (!exit || exit->code != 0) give_up(service::last_lines(folder_ / "log", 5));
     run.processor_s = processor_time(RUSAGE_CHILDREN) - processor_before;
     run.load = run.processor_s / run.seconds;
-    const auto answer = nlohmann::json::parse(std::ifstream(folder_ / "answer"));
-    run.said_lost = answer["lost"];
-    // What is only in a ring is in no file that could be counted.
-    if (answer["files"].empty()) run.recorded = run.sent - run.said_lost;
-    for (const std::string path : answer["files"])
-      run.recorded += must(must(recording::mcap::Reader::open(path)).statistics()).message_count;
-    for (const std::string path : answer["files"]) std::filesystem::remove(path);
+    count_what_was_recorded(run);
     return run;
   }
 
@@ -285,6 +249,59 @@ class Bench {
   }
 
  private:
+  /// On its own core.
+  service::Process start_recorder(std::string_view topic, const std::vector<std::string>& more) {
+    std::vector<std::string> command{(program_directory() / "prehend-record").string(),
+                                     "--output",
+                                     (folder_ / "run.mcap").string(),
+                                     "--force",
+                                     "--json",
+                                     "--set",
+                                     "lab.rig=" + rig_,
+                                     "--set",
+                                     fmt::format("lab.domain={}", domain_),
+                                     std::string(topic)};
+    command.insert(command.end(), more.begin(), more.end());
+    std::filesystem::remove(folder_ / "answer");
+    pin_to(recorders_core);
+    auto recorder = must(service::Process::start(
+        {.command = command, .log = folder_ / "log", .output = folder_ / "answer"}));
+    pin_to(our_core);
+    return recorder;
+  }
+
+  /// Message after message, each numbered and stamped as it is sent.
+  template <class Writer, class Message>
+  static Run send(Writer& writer, std::vector<Message>& messages, double rate, double seconds) {
+    Run run;
+    const auto start = Clock::now();
+    const auto wanted = static_cast<std::uint64_t>(rate * seconds);
+    while (run.sent < wanted) {
+      const auto due = static_cast<std::uint64_t>(rate * seconds_since(start)) + 1;
+      for (; run.sent < std::min(due, wanted); ++run.sent) {
+        Message& message = messages[run.sent % messages.size()];
+        message.sequence_number(run.sent);
+        message.stamp_ns(to_ns(std::chrono::system_clock::now()));
+        writer.write(message);
+      }
+      std::this_thread::sleep_for(500us);
+    }
+    run.seconds = seconds_since(start);
+    run.rate = static_cast<double>(run.sent) / run.seconds;
+    return run;
+  }
+
+  /// By what the recorder said at its end, and by its files, which go.
+  void count_what_was_recorded(Run& run) const {
+    const auto answer = nlohmann::json::parse(std::ifstream(folder_ / "answer"));
+    run.said_lost = answer["lost"];
+    // What is only in a ring is in no file that could be counted.
+    if (answer["files"].empty()) run.recorded = run.sent - run.said_lost;
+    for (const std::string path : answer["files"])
+      run.recorded += must(must(recording::mcap::Reader::open(path)).statistics()).message_count;
+    for (const std::string path : answer["files"]) std::filesystem::remove(path);
+  }
+
   template <class Prepare>
   double median_ms(const std::vector<std::string>& command, Prepare prepare) {
     std::vector<double> times;

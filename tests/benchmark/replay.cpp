@@ -86,11 +86,11 @@ void write_recording(const std::filesystem::path& path, double duration_s) {
   if (!file.close()) std::exit(3);
 }
 
-struct Figures {
+struct Stats {
   double p50 = 0, p99 = 0, max = 0;  // us
 };
 
-Figures figures_of(std::vector<double> late_us) {
+Stats stats_of(std::vector<double> late_us) {
   std::sort(late_us.begin(), late_us.end());
   const auto quantile = [&](double q) {
     return late_us[static_cast<std::size_t>(q * static_cast<double>(late_us.size() - 1))];
@@ -98,11 +98,11 @@ Figures figures_of(std::vector<double> late_us) {
   return {quantile(0.5), quantile(0.99), quantile(1)};
 }
 
-Json to_json(const Figures& figures) {
-  return {{"p50", figures.p50}, {"p99", figures.p99}, {"max", figures.max}};
+Json to_json(const Stats& stats) {
+  return {{"p50", stats.p50}, {"p99", stats.p99}, {"max", stats.max}};
 }
 
-Figures from_json(const Json& json) {
+Stats from_json(const Json& json) {
   return {json["p50"], json["p99"], json["max"]};
 }
 
@@ -123,12 +123,12 @@ int floor_player(const Place& place, const std::string& file, std::int64_t start
     writer.write(one.sample, one.sample.sent);
   }
   writer.raw().wait_for_acknowledgments({2, 0});
-  std::cout << Json{{"late_us", to_json(figures_of(late_us))}}.dump() << "\n";
+  std::cout << Json{{"late_us", to_json(stats_of(late_us))}}.dump() << "\n";
   return 0;
 }
 
 struct Run {
-  Figures writing, arriving;
+  Stats writing, arriving;
   std::size_t lost = 0;
 };
 
@@ -169,7 +169,7 @@ Run measure(const std::filesystem::path& file, int domain,
     std::exit(3);
   }
   run.lost = count - heard.size();
-  run.arriving = figures_of(late_us);
+  run.arriving = stats_of(late_us);
   return run;
 }
 
@@ -205,8 +205,8 @@ int run(bool json, double duration_s, const std::string& self) {
   Json document{{"rate_hz", rate}, {"seconds", duration_s}};
   for (const auto& [name, of] :
        {std::pair("write_call", &Run::writing), std::pair("subscriber", &Run::arriving)}) {
-    const Figures &a = before.*of, &b = after.*of, &x = player.*of;
-    const Figures mean{0.5 * (a.p50 + b.p50), 0.5 * (a.p99 + b.p99), std::max(a.max, b.max)};
+    const Stats &a = before.*of, &b = after.*of, &x = player.*of;
+    const Stats mean{0.5 * (a.p50 + b.p50), 0.5 * (a.p99 + b.p99), std::max(a.max, b.max)};
     document[name] = {
         {"floor_us", to_json(mean)}, {"player_us", to_json(x)}, {"ratio_of_p99", x.p99 / mean.p99}};
     if (!json)

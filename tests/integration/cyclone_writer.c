@@ -63,9 +63,10 @@ static void write_image(dds_entity_t writer, const char* camera, uint64_t number
 int main(int argc, char** argv) {
   if (argc != 3) return 2;
   // Where the recorder of the test is.
-  setenv("CYCLONEDDS_URI",
-         "<General><Interfaces><NetworkInterface name='lo' multicast='true'/></Interfaces></General>",
-         1);
+  setenv(
+      "CYCLONEDDS_URI",
+      "<General><Interfaces><NetworkInterface name='lo' multicast='true'/></Interfaces></General>",
+      1);
   const dds_entity_t participant =
       must(dds_create_participant((dds_domainid_t)atoi(argv[1]), NULL, NULL), "participant");
   dds_qos_t* qos = dds_create_qos();

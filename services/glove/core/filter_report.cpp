@@ -114,19 +114,18 @@ void FilterMeasurement::add(const FilterMeasurement& other) {
   for (std::size_t d = 0; d < delayed_.size(); ++d) delayed_[d] += other.delayed_[d];
 }
 
-FilterFigures FilterMeasurement::figures() const {
-  FilterFigures figures{.frames = frames_, .slow = slow_, .fast = fast_, .extremes = extremes_};
+FilterStats FilterMeasurement::stats() const {
+  FilterStats stats{.frames = frames_, .slow = slow_, .fast = fast_, .extremes = extremes_};
   const double slow = 3 * std::max<double>(1, static_cast<double>(slow_));
-  figures.noise_in = std::sqrt(in_ / slow);
-  figures.noise_out = std::sqrt(out_ / slow);
-  figures.lag =
-      delay_step *
-      static_cast<double>(std::min_element(delayed_.begin(), delayed_.end()) - delayed_.begin());
-  figures.moved = moved_;
-  figures.far = far_;
-  figures.withheld =
+  stats.noise_in = std::sqrt(in_ / slow);
+  stats.noise_out = std::sqrt(out_ / slow);
+  stats.lag = delay_step * static_cast<double>(std::min_element(delayed_.begin(), delayed_.end()) -
+                                               delayed_.begin());
+  stats.moved = moved_;
+  stats.far = far_;
+  stats.withheld =
       static_cast<double>(withheld_) / std::max<double>(1, static_cast<double>(published_));
-  return figures;
+  return stats;
 }
 
 std::vector<Frame> frames_of(const FrameSource& source, double rate) {

@@ -20,7 +20,7 @@ struct TrackerNoise {
 
 /// What the Processor makes of hands whose truth is known, when a tracker's noise is added to them.
 /// All lengths are those of fingertips in H. A fingertip's speed is that of the truth over 1/15 s.
-struct FilterFigures {
+struct FilterStats {
   std::size_t frames = 0, slow = 0, fast = 0, extremes = 0;  // slow, fast: fingertips counted
   double noise_in = 0;   // m, RMS of a coordinate that the noise gives an unfiltered fingertip ...
   double noise_out = 0;  // ... and error of the published one, below slow_speed
@@ -32,7 +32,7 @@ struct FilterFigures {
 inline constexpr double slow_speed = 0.05, fast_speed = 0.20;  // m/s
 inline constexpr double moved_aim = 0.005;                     // m
 
-/// Gathers the figures over any number of takes.
+/// Gathers them over any number of takes.
 class FilterMeasurement {
  public:
   explicit FilterMeasurement(const TrackerNoise& noise) : noise_(noise) {}
@@ -40,7 +40,7 @@ class FilterMeasurement {
   /// Clean frames with sensors on back of hand and fingers, in the order of time.
   void add(const std::vector<Frame>& truth);
   void add(const FilterMeasurement& other);
-  FilterFigures figures() const;
+  FilterStats stats() const;
 
  private:
   static constexpr int delays = 81;  // 0 to 0.1 s

@@ -20,7 +20,7 @@ struct FilterReportArguments {
   bool json = false;
 };
 
-nlohmann::ordered_json to_json(const std::string& name, const FilterFigures& f) {
+nlohmann::ordered_json to_json(const std::string& name, const FilterStats& f) {
   return {{"recording", name},
           {"frames", f.frames},
           {"slow", f.slow},
@@ -34,7 +34,7 @@ nlohmann::ordered_json to_json(const std::string& name, const FilterFigures& f) 
           {"withheld", f.withheld}};
 }
 
-void print(const std::string& name, const FilterFigures& f) {
+void print(const std::string& name, const FilterStats& f) {
   const std::string lag = f.fast > 0 ? fmt::format("{:.1f} ms", 1000 * f.lag) : "–";
   const std::string ratio = f.noise_in > 0 ? fmt::format("{:.2f}", f.noise_out / f.noise_in) : "–";
   fmt::print("| {} | {} | {:.2f} mm | {:.2f} mm | {} | {} | {} | {:.1f} mm | {} | {:.2f} % |\n",
@@ -63,15 +63,15 @@ int report(const FilterReportArguments& arguments) {
     for (int round = 0; round < arguments.rounds; ++round) one.add(frames);
     all.add(one);
     if (arguments.json)
-      std::cout << to_json(file.stem(), one.figures()).dump() << '\n';
+      std::cout << to_json(file.stem(), one.stats()).dump() << '\n';
     else
-      print(file.stem(), one.figures());
+      print(file.stem(), one.stats());
   }
   if (arguments.json)
-    std::cout << to_json("all", all.figures()).dump() << '\n';
+    std::cout << to_json("all", all.stats()).dump() << '\n';
   else
-    print("all", all.figures());
-  return all.figures().frames > 0 ? 0 : 1;
+    print("all", all.stats());
+  return all.stats().frames > 0 ? 0 : 1;
 }
 
 }  // namespace

@@ -235,25 +235,25 @@ std::string Player::state() const {
                      to_seconds(to_ - from_), transport_.rate(), stats_.published);
 }
 
-Player::Stats Player::figures() {
+Player::Stats Player::stats() {
   const std::scoped_lock lock(mutex_);
-  Stats figures = stats_;
-  figures.runs = !options_.paused;
-  figures.loops = options_.loop;
-  figures.rate = transport_.rate();
-  figures.position = to_seconds(std::min(transport_.position(clock()), to_) - from_);
-  figures.length = to_seconds(to_ - from_);
-  if (!lateness_us_.empty() && figures.ended) {
+  Stats now = stats_;
+  now.runs = !options_.paused;
+  now.loops = options_.loop;
+  now.rate = transport_.rate();
+  now.position = to_seconds(std::min(transport_.position(clock()), to_) - from_);
+  now.length = to_seconds(to_ - from_);
+  if (!lateness_us_.empty() && now.ended) {
     std::sort(lateness_us_.begin(), lateness_us_.end());
     const auto quantile = [&](double q) {
       return static_cast<double>(
           lateness_us_[static_cast<std::size_t>(q * static_cast<double>(lateness_us_.size() - 1))]);
     };
-    figures.late_p50_us = quantile(0.5);
-    figures.late_p99_us = quantile(0.99);
-    figures.late_max_us = quantile(1);
+    now.late_p50_us = quantile(0.5);
+    now.late_p99_us = quantile(0.99);
+    now.late_max_us = quantile(1);
   }
-  return figures;
+  return now;
 }
 
 }  // namespace prehend::recorder

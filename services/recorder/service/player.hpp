@@ -54,7 +54,7 @@ class Player {
     std::uint64_t published = 0, refused = 0, rounds = 0;
     double late_p50_us = 0, late_p99_us = 0, late_max_us = 0;
   };
-  Stats figures();
+  Stats stats();
 
   Tape& tape() { return tape_; }  // before play()
   /// Writes a sample of the tape with another payload; before play().

@@ -38,7 +38,7 @@ constexpr std::array names{"HandSplay-110fps",
                            "three-claps",
                            "wave"};
 
-void print(const char* name, const FilterFigures& f) {
+void print(const char* name, const FilterStats& f) {
   std::printf(
       "%-22s %6zu frames: noise %.2f mm in, %.2f mm out (%.2f), lag %4.1f ms, "
       "%4zu extreme points moved at most %.1f mm, %.2f %% withheld\n",
@@ -48,7 +48,7 @@ void print(const char* name, const FilterFigures& f) {
 
 /// All recordings, each `rounds` times with other noise; checks each by itself.
 template <class Check>
-FilterFigures measure(double rate, int rounds, const Check& check) {
+FilterStats measure(double rate, int rounds, const Check& check) {
   FilterMeasurement all(TrackerNoise{});
   for (const char* name : names) {
     const auto recording = Recording::load(folder() / (std::string(name) + ".csv"), {});
@@ -59,17 +59,17 @@ FilterFigures measure(double rate, int rounds, const Check& check) {
     FilterMeasurement one(TrackerNoise{});
     const auto frames = frames_of(*recording, rate);
     for (int round = 0; round < rounds; ++round) one.add(frames);
-    print(name, one.figures());
-    check(name, one.figures());
+    print(name, one.stats());
+    check(name, one.stats());
     all.add(one);
   }
-  print("all", all.figures());
-  return all.figures();
+  print("all", all.stats());
+  return all.stats();
 }
 
 TEST(FilterReport, MeetsTheAimsOnEveryRecording) {
   if (!fs::exists(folder())) GTEST_SKIP() << "no " << folder();
-  const auto all = measure(0, 10, [](const char* name, const FilterFigures& f) {
+  const auto all = measure(0, 10, [](const char* name, const FilterStats& f) {
     EXPECT_GT(f.slow, 100u) << name;
     EXPECT_LE(f.noise_out, f.noise_in / 2) << name;
     if (f.fast > 0) {
@@ -86,7 +86,7 @@ TEST(FilterReport, MeetsTheAimsOnEveryRecording) {
 
 TEST(FilterReport, SaysWhatThirtyHertzAllow) {
   if (!fs::exists(folder())) GTEST_SKIP() << "no " << folder();
-  const auto all = measure(30, 10, [](const char* name, const FilterFigures& f) {
+  const auto all = measure(30, 10, [](const char* name, const FilterStats& f) {
     if (f.fast > 0) {
       EXPECT_LE(f.lag, 1. / 30) << name;
     }
@@ -106,11 +106,11 @@ TEST(FilterReport, MeasuresNothingWhereNothingIsAdded) {
   }
   FilterMeasurement clean(TrackerNoise{.sigma = 0, .extreme_rate = 0});
   clean.add(frames);
-  EXPECT_EQ(clean.figures().noise_in, 0);
-  EXPECT_LT(clean.figures().noise_out, 0.0015) << "lag alone";
-  EXPECT_EQ(clean.figures().moved, 0);
-  EXPECT_EQ(clean.figures().withheld, 0);
-  EXPECT_GT(clean.figures().slow, 200u);
+  EXPECT_EQ(clean.stats().noise_in, 0);
+  EXPECT_LT(clean.stats().noise_out, 0.0015) << "lag alone";
+  EXPECT_EQ(clean.stats().moved, 0);
+  EXPECT_EQ(clean.stats().withheld, 0);
+  EXPECT_GT(clean.stats().slow, 200u);
 }
 
 }  // namespace

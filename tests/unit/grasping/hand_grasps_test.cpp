@@ -13,7 +13,7 @@ using namespace prehend::grasping;
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-struct Grip {
+struct Trial {
   const char* hand;
   const char* object;
   const char* posture;
@@ -21,31 +21,31 @@ struct Grip {
   double ahead;  // m, of the object's middle before the grasp frame
 };
 
-void PrintTo(const Grip& grip, std::ostream* out) {
-  *out << grip.hand << " on " << grip.object;
+void PrintTo(const Trial& trial, std::ostream* out) {
+  *out << trial.hand << " on " << trial.object;
 }
 
-class HandGrasps : public testing::TestWithParam<Grip> {};
+class HandGrasps : public testing::TestWithParam<Trial> {};
 
 TEST_P(HandGrasps, HoldWhatStandsAtTheGraspFrame) {
-  const Grip& grip = GetParam();
+  const Trial& trial = GetParam();
   const std::string models = std::string(PREHEND_SOURCE) + "/common/models/";
-  const auto hand = model::HandModel::load(models + "hands/" + grip.hand);
+  const auto hand = model::HandModel::load(models + "hands/" + trial.hand);
   ASSERT_TRUE(hand) << hand.error().message();
   const auto catalogue = model::Catalogue::load(models + "objects/catalogue.toml");
   ASSERT_TRUE(catalogue) << catalogue.error().message();
-  const model::CatalogueObject* object = catalogue->find(grip.object);
+  const model::CatalogueObject* object = catalogue->find(trial.object);
   ASSERT_TRUE(object);
 
   Matrix3d R_GO = Matrix3d(Eigen::AngleAxisd(EIGEN_PI, Vector3d::UnitX()));
-  if (grip.across) R_GO = Matrix3d(Eigen::AngleAxisd(EIGEN_PI / 2, Vector3d::UnitY()));
+  if (trial.across) R_GO = Matrix3d(Eigen::AngleAxisd(EIGEN_PI / 2, Vector3d::UnitY()));
   ClosingOptions options;
   options.hold_test = HoldOptions{};
   options.down_B = hand->X_BG().linear() * R_GO * -Vector3d::UnitZ();
   const auto grasp =
       close_hand(*hand, {object->name, object->shape, object->mass, object->material, {}},
-                 hand->X_BG() * make_pose(Vector3d(0, 0, grip.ahead), R_GO),
-                 hand->postures().at(grip.posture), options);
+                 hand->X_BG() * make_pose(Vector3d(0, 0, trial.ahead), R_GO),
+                 hand->postures().at(trial.posture), options);
   ASSERT_TRUE(grasp) << grasp.error().message();
   EXPECT_GE(grasp->contacts.size(), 2u);
   for (Eigen::Index i = 0; i < grasp->joints.size(); ++i) {
@@ -58,11 +58,11 @@ TEST_P(HandGrasps, HoldWhatStandsAtTheGraspFrame) {
 }
 
 INSTANTIATE_TEST_SUITE_P(All, HandGrasps,
-                         testing::Values(Grip{"barrett", "Talc", "open", true, 0.0},
-                                         Grip{"dlr", "Talc", "power", true, 0.026},
-                                         Grip{"robonaut", "Talc", "power", true, -0.01},
-                                         Grip{"human", "Talc", "power", true, 0.01},
-                                         Grip{"parallel_jaw", "Talc", "open", true, 0.0},
-                                         Grip{"parallel_jaw", "Wood cube", "open", false, 0.0}));
+                         testing::Values(Trial{"barrett", "Talc", "open", true, 0.0},
+                                         Trial{"dlr", "Talc", "power", true, 0.026},
+                                         Trial{"robonaut", "Talc", "power", true, -0.01},
+                                         Trial{"human", "Talc", "power", true, 0.01},
+                                         Trial{"parallel_jaw", "Talc", "open", true, 0.0},
+                                         Trial{"parallel_jaw", "Wood cube", "open", false, 0.0}));
 
 }  // namespace

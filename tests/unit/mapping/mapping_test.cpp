@@ -139,7 +139,7 @@ TEST(MappingOfKnownObject, GoesOnWhereFingersReachIntoIt) {
   const model::Shape wide{ShapeKind::cylinder, {0.04, 0.04, 0.15}};
   const Pose X_WO = standing(wide), X_WG = side_grasp(wide, X_WO);
   const Features f = *features(tips({0.4, 0.4, 0.4, 0.4, 0.4}), 1);
-  const FingerDistances arrival(barrett());
+  const FingerDistances fingers(barrett());
   int gone = 0, clear = 0, alone = 0;
   for (std::uint64_t seed = 1; seed <= 40; ++seed) {
     const MappingModel model = random_model(seed);
@@ -155,7 +155,7 @@ TEST(MappingOfKnownObject, GoesOnWhereFingersReachIntoIt) {
     const Eigen::VectorXd answer =
         barrett().clamp(model.intelligent(f, wide, Pose::Identity())->dof);
     const Eigen::ArrayXd distances =
-        arrival.distances(answer, wide, last->X_WB.inverse() * X_WO).array();
+        fingers.distances(answer, wide, last->X_WB.inverse() * X_WO).array();
     double further = 0;  // rad, of the finger that has gone farthest
     for (Eigen::Index i = 0; i < answer.size(); ++i)
       further = std::max(further, barrett().dofs()[static_cast<std::size_t>(i)].closing *
@@ -237,7 +237,7 @@ TEST_F(MappingTest, StandsWhereItLearntToStand) {
 
 TEST_F(MappingTest, TheHandYieldsToFingersThatComeFirst) {
   const MappingModel closing = closing_model();
-  const FingerDistances arrival(barrett());
+  const FingerDistances fingers(barrett());
   const Pose X_WO = standing(talc);
   // Finger 3 comes first or fingers 1 and 2: never does one push while another is 2 cm away.
   const auto pushed = [&](bool place, double off) {
@@ -249,7 +249,7 @@ TEST_F(MappingTest, TheHandYieldsToFingersThatComeFirst) {
       EXPECT_TRUE(mapping.on_detection(detection(talc, X_WO, ms)).has_value());
       const auto command = mapping.on_posture(posture(X_WG, ms, 0.6), at(ms));
       const Eigen::VectorXd distances =
-          arrival.distances(command->dof, talc, command->X_WB.inverse() * X_WO);
+          fingers.distances(command->dof, talc, command->X_WB.inverse() * X_WO);
       if (distances.maxCoeff() > 0.02) deepest = std::min(deepest, distances.minCoeff());
     }
     return deepest;

@@ -178,9 +178,9 @@ class PlayerTest : public ::testing::Test {
   /// Waits for the end of what was played.
   static void end(Player& player) {
     const auto limit = std::chrono::steady_clock::now() + std::chrono::seconds(30);
-    while (!player.figures().ended && std::chrono::steady_clock::now() < limit)
+    while (!player.stats().ended && std::chrono::steady_clock::now() < limit)
       std::this_thread::sleep_for(milliseconds(2));
-    EXPECT_TRUE(player.figures().ended);
+    EXPECT_TRUE(player.stats().ended);
   }
 
   const testing::Scratch scratch_;
@@ -370,7 +370,7 @@ TEST_F(PlayerTest, PlaysOnlyWantedTopics) {
   const auto thread = run(*player);
   EXPECT_THAT(reports.numbers(4), ElementsAre(0, 1, 2, 3));
   end(*player);
-  EXPECT_EQ(player->figures().published, 4u);
+  EXPECT_EQ(player->stats().published, 4u);
   EXPECT_FALSE(offered_.contains("object/detection"));
 }
 
@@ -407,14 +407,14 @@ TEST_F(PlayerTest, LoopsUntilItIsTold) {
   auto player = this->player(path, {.loop = true});
   const auto thread = run(*player);
   const auto three_rounds = collector.numbers(9);
-  EXPECT_TRUE(player->figures().loops);
+  EXPECT_TRUE(player->stats().loops);
   ASSERT_TRUE(player->execute("loop off"));
   end(*player);
   ASSERT_GE(three_rounds.size(), 9u);
   const auto all = collector.numbers(9);
   EXPECT_EQ(all.size() % 3, 0u);
   for (std::size_t i = 0; i < all.size(); ++i) EXPECT_EQ(all[i], i % 3);
-  EXPECT_EQ(player->figures().rounds + 1, all.size() / 3);
+  EXPECT_EQ(player->stats().rounds + 1, all.size() / 3);
 }
 
 /// The player's state as soon as it says `what`; what it says at last when it never does.
@@ -443,10 +443,10 @@ TEST_F(PlayerTest, StepsAndPlaysBursts) {
   // A burst over the end is what is left, and it stays there: somebody may seek.
   ASSERT_TRUE(player->execute("burst 100"));
   EXPECT_EQ(collector.numbers(10).size(), 10u);
-  EXPECT_FALSE(player->figures().ended);
+  EXPECT_FALSE(player->stats().ended);
   ASSERT_TRUE(player->execute("resume"));
   end(*player);
-  EXPECT_EQ(player->figures().published, 10u);
+  EXPECT_EQ(player->stats().published, 10u);
 }
 
 // A pause that came before the start used to be forgotten at the start.
@@ -507,8 +507,8 @@ TEST_F(PlayerTest, TheRateChangesWhileItPlays) {
   ASSERT_TRUE(player->execute("rate 1000"));
   // 3.6 s each now; then the rest is sought, not waited for.
   EXPECT_THAT(collector.numbers(2), ElementsAre(0, 1));
-  EXPECT_EQ(player->figures().rate, 1000);
-  const double position = player->figures().position;
+  EXPECT_EQ(player->stats().rate, 1000);
+  const double position = player->stats().position;
   EXPECT_GE(position, 3600);
   EXPECT_LT(position, 3600 + 1000 * 60);
   player->execute("pause");

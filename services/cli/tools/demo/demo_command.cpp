@@ -86,7 +86,6 @@ void add_task(CLI::App& app) {
 
 }  // namespace
 
-// Long: one option after the other.
 int demo_command(const std::vector<std::string>& arguments) {
   CLI::App app{
       "Starts glove, recognition, mapping and simulation as processes on this machine, plays a\n"

@@ -241,7 +241,7 @@ Eigen::VectorXd precision_discriminant(const model::Catalogue& catalogue, const 
   return squares.ldlt().solve(sums);
 }
 
-std::vector<PalmOffset> learnt_places(const std::vector<RobotGrasp>& grasps) {
+std::vector<PalmOffset> palm_offsets(const std::vector<RobotGrasp>& grasps) {
   std::vector<PalmOffset> places;
   for (const RobotGrasp& grasp : grasps)
     if (grasp.held)

@@ -55,7 +55,7 @@ Eigen::VectorXd precision_discriminant(const model::Catalogue& catalogue, const 
                                        const SetOptions& options);
 
 /// Where the hand stood in each grasp that held.
-std::vector<PalmOffset> learnt_places(const std::vector<RobotGrasp>& grasps);
+std::vector<PalmOffset> palm_offsets(const std::vector<RobotGrasp>& grasps);
 
 struct TrainerOptions {
   learning::TrainingOptions network{
@@ -63,7 +63,7 @@ struct TrainerOptions {
   SizeInput size_input = SizeInput::seen;
   learning::ScalingKind scaling = learning::ScalingKind::each_feature;  // of the inputs
   Eigen::VectorXd precision;                                            // see ModelTraits
-  std::vector<PalmOffset> places;                                       // see learnt_places()
+  std::vector<PalmOffset> places;                                       // see palm_offsets()
 };
 
 /// A set for each purpose; their users are disjoint.

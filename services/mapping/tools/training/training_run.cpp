@@ -65,7 +65,7 @@ Expected<TrainedMapping> run_training(const TrainingRun& run, const model::HandM
   TrainerOptions trainer = run.trainer;
   trainer.network.seed = static_cast<std::uint32_t>(run.people.seed);
   trainer.precision = precision_discriminant(*catalogue, hand.reach(), run.people);
-  trainer.places = learnt_places(*grasps);
+  trainer.places = palm_offsets(*grasps);
   auto model = train_mapping(hand, scheme, *sets, trainer, for_each, progress);
   if (!model) return tl::unexpected(model.error());
   return TrainedMapping{std::move(*grasps), std::move(*sets), std::move(*model)};

@@ -37,6 +37,31 @@ class Fitter {
 
   std::optional<Fit> run(double x, double y, double reach) {
     if (!choose_area(x, y, reach)) return std::nullopt;
+    const Evidence evidence = learned_evidence();
+    const std::vector<Candidate> hypotheses = promising(evidence, x, y, reach);
+    if (hypotheses.empty()) return std::nullopt;
+    Settled winner = best_of(hypotheses);
+    // Something before it? Then what is seen of it counts.
+    double hidden = 0;
+    if (look_for_hidden(winner.at)) {
+      winner = best_of({Candidate{winner.at}});
+      hidden = hidden_share(winner.at);
+    }
+    return describe(winner, hidden);
+  }
+
+ private:
+  std::size_t local(int px, int py) const { return area_.index(px, py); }
+
+  /// A hypothesis that stands still, with the estimate of what is object that it came to.
+  struct Settled {
+    TablePose at;
+    double agreement = 0;  // of its outline: overlap by either estimate, and contrast
+    Evidence evidence;
+  };
+
+  /// By the colours that were learned, before anything is estimated from the picture.
+  Evidence learned_evidence() {
     Evidence evidence(area_.left, area_.top, area_.width(), area_.height());
     initial_.resize(static_cast<std::size_t>(area_.width() * area_.height()));
     hidden_.assign(initial_.size(), 0);
@@ -49,51 +74,51 @@ class Fitter {
       initial_[local(px, py)] = value;
       return static_cast<double>(value);
     });
+    return evidence;
+  }
+
+  /// The hypotheses that are worth settling; none where no outline agrees with the first evidence.
+  std::vector<Candidate> promising(const Evidence& evidence, double x, double y,
+                                   double reach) const {
     std::vector<Candidate> best = search(evidence, x, y, reach);
-    if (best.empty()) return std::nullopt;
     double promise = 0;
     for (Candidate& candidate : best) {
       refine(evidence, candidate, 0.006, 0.13);
       promise = std::max(promise, first_agreement(candidate.at));
     }
-    if (promise < min_promise) return std::nullopt;
+    if (promise < min_promise) return {};
     drop_repeated(best);
+    return best;
+  }
 
-    // Scores of different estimates do not compare: the hypotheses compete by how well each outline
-    // agrees with its own estimate of what is object and what is around.
-    Candidate winner;
-    double most = -1;
-    Evidence sharp = evidence;
-    const auto compete = [&](Candidate& candidate) {
+  /// Scores of different estimates do not compare: the hypotheses compete by how well each outline
+  /// agrees with its own estimate of what is object and what is around. Of one hypothesis at least.
+  Settled best_of(std::vector<Candidate> hypotheses) const {
+    std::optional<Settled> best;
+    for (Candidate& candidate : hypotheses) {
       Evidence own = settle(candidate);
       const double agreed =
           agreement(candidate.at, [&](int px, int py) { return own.at(px, py) > 0; }) +
           first_agreement(candidate.at) + contrast(candidate.at);
-      if (agreed <= most) return;
-      most = agreed;
-      winner = candidate;
-      sharp = own;
-    };
-    for (Candidate& candidate : best) compete(candidate);
-    // Something before it? Then what is seen of it counts.
-    Fit fit;
-    if (look_for_hidden(winner.at)) {
-      most = -1;
-      Candidate again = winner;
-      compete(again);
-      fit.hidden = hidden_share(winner.at);
+      if (!best || agreed > best->agreement) best = Settled{candidate.at, agreed, std::move(own)};
     }
-    const auto region = silhouette(camera_, shape_, winner.at);
+    return *std::move(best);
+  }
+
+  std::optional<Fit> describe(const Settled& settled, double hidden) const {
+    const auto region = silhouette(camera_, shape_, settled.at);
     if (!region) return std::nullopt;
-    fit.at = winner.at;
+    Fit fit;
+    fit.at = settled.at;
     fit.at.yaw = wrap(fit.at.yaw);
     fit.region = *region;
     fit.visible = Plane(frame_.taken.width, frame_.taken.height);
     area_.visit(*region, [&](int px, int py) { fit.visible.at(px, py) = seen(px, py); });
-    fit.measured = measured_size(sharp, camera_, shape_, winner.at);
-    fit.contrast = contrast(winner.at);
-    fit.agreement = (most - fit.contrast) / 2;
-    fit.covariance = covariance(sharp, camera_, shape_, winner.at);
+    fit.hidden = hidden;
+    fit.measured = measured_size(settled.evidence, camera_, shape_, settled.at);
+    fit.contrast = contrast(settled.at);
+    fit.agreement = (settled.agreement - fit.contrast) / 2;
+    fit.covariance = covariance(settled.evidence, camera_, shape_, settled.at);
     // An outline that agrees badly may lie elsewhere altogether: a centimetre at an agreement of
     // 0.4.
     const double elsewhere = 0.025 * std::max(0.0, 0.8 - fit.agreement);
@@ -103,9 +128,6 @@ class Fitter {
     fit.covariance.diagonal() += unseen.cwiseAbs2();
     return fit;
   }
-
- private:
-  std::size_t local(int px, int py) const { return area_.index(px, py); }
 
   /// Moves a hypothesis until it stands still, re-estimating what is object and what is not; two
   /// rounds are enough where object and table part well. Returns the last estimate.

@@ -207,17 +207,16 @@ class Replay {
   }
 
   void on_key(int key) {
-    const Player::Stats figures = player_.figures();
-    if (key == ' ') say(figures.runs ? "pause" : "resume");
+    const Player::Stats stats = player_.stats();
+    if (key == ' ') say(stats.runs ? "pause" : "resume");
     if (key == 's') say("step");
     if (key == 'b') say("burst 10");
     if (key == 'q') say("stop");
-    if (key == 'l') say(figures.loops ? "loop off" : "loop on");
-    if (key == tool::Keyboard::up) say(fmt::format("rate {}", figures.rate * 1.25));
-    if (key == tool::Keyboard::down) say(fmt::format("rate {}", figures.rate / 1.25));
-    if (key == tool::Keyboard::right) say(fmt::format("seek {}", figures.position + 5));
-    if (key == tool::Keyboard::left)
-      say(fmt::format("seek {}", std::max(0.0, figures.position - 5)));
+    if (key == 'l') say(stats.loops ? "loop off" : "loop on");
+    if (key == tool::Keyboard::up) say(fmt::format("rate {}", stats.rate * 1.25));
+    if (key == tool::Keyboard::down) say(fmt::format("rate {}", stats.rate / 1.25));
+    if (key == tool::Keyboard::right) say(fmt::format("seek {}", stats.position + 5));
+    if (key == tool::Keyboard::left) say(fmt::format("seek {}", std::max(0.0, stats.position - 5)));
   }
 
   void tick(Time now) {
@@ -231,12 +230,12 @@ class Replay {
         shell_.stop();
       });
     }
-    const Player::Stats figures = player_.figures();
-    shell_.status().count("messages", figures.published - counted_);
-    counted_ = figures.published;
+    const Player::Stats stats = player_.stats();
+    shell_.status().count("messages", stats.published - counted_);
+    counted_ = stats.published;
     progress_.show(fmt::format("{} {:.1f} of {:.1f} s  rate {:g}  {} messages",
-                               figures.runs ? "playing" : "paused", figures.position,
-                               figures.length, figures.rate, figures.published));
+                               stats.runs ? "playing" : "paused", stats.position, stats.length,
+                               stats.rate, stats.published));
   }
 
   /// True when the hand is in its place.
@@ -328,14 +327,13 @@ Expected<std::unique_ptr<service::Shell>> join(const Arguments& arguments) {
 }
 
 nlohmann::ordered_json document(Player& player) {
-  const Player::Stats figures = player.figures();
-  return {
-      {"published", figures.published},
-      {"refused", figures.refused},
-      {"loops", figures.rounds},
-      {"damage", player.tape().damage().size()},
-      {"late_us",
-       {{"p50", figures.late_p50_us}, {"p99", figures.late_p99_us}, {"max", figures.late_max_us}}}};
+  const Player::Stats stats = player.stats();
+  return {{"published", stats.published},
+          {"refused", stats.refused},
+          {"loops", stats.rounds},
+          {"damage", player.tape().damage().size()},
+          {"late_us",
+           {{"p50", stats.late_p50_us}, {"p99", stats.late_p99_us}, {"max", stats.late_max_us}}}};
 }
 
 int replay(const Arguments& arguments) {
@@ -372,9 +370,9 @@ int replay(const Arguments& arguments) {
   const auto ended = (*shell)->run();
   if (!ended) return service::complain(ended.error());
   work.finish();
-  const Player::Stats figures = (*player)->figures();
-  log::info("{} messages played{}", figures.published,
-            figures.refused ? fmt::format(", {} could not be", figures.refused) : "");
+  const Player::Stats stats = (*player)->stats();
+  log::info("{} messages played{}", stats.published,
+            stats.refused ? fmt::format(", {} could not be", stats.refused) : "");
   if (arguments.json) std::cout << document(**player).dump() << "\n";
   return *ended;
 }

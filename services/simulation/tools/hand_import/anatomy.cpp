@@ -334,77 +334,103 @@ class Finder {
     return thumb;
   }
 
-  void find_grasp_frame() {
-    const std::size_t n = fingers_.size();
-    const auto open = tips(closed_by(0)), half = tips(closed_by(0.5));
-    std::vector<Vector3d> motion;
-    for (std::size_t i = 0; i < n; ++i) motion.push_back(half[i] - open[i]);
-    const std::size_t thumb = find_thumb(motion, open);
-    const auto split = [&](const std::vector<Vector3d>& p, Vector3d& others) {
-      others = n == 1 ? p_BP_ : Vector3d(Vector3d::Zero());
-      for (std::size_t k = 0; k < n; ++k)
-        if (k != thumb) others += p[k] / static_cast<double>(n - 1);
-      return p[thumb];
-    };
-    // The fingers' place when thumb and fingers have come as near as 5 cm, or as near as they do.
+  /// The middle of all tips but the thumb's; of a single finger it is the palm's.
+  Vector3d middle_of_others(const std::vector<Vector3d>& tips, std::size_t thumb) const {
+    const std::size_t n = tips.size();
+    Vector3d others = n == 1 ? p_BP_ : Vector3d(Vector3d::Zero());
+    for (std::size_t k = 0; k < n; ++k)
+      if (k != thumb) others += tips[k] / static_cast<double>(n - 1);
+    return others;
+  }
+
+  /// Thumb and fingers about to meet.
+  struct Meeting {
+    Vector3d middle = Vector3d::Zero();    // between them
+    Vector3d closing = Vector3d::UnitY();  // from thumb to fingers
+    double share = 0;                      // of closing, at which they are there
+    double widest = 0;                     // m, between them before
+  };
+
+  /// Where they have come as near as 5 cm, or as near as they do.
+  Meeting find_meeting(std::size_t thumb) const {
     constexpr double wanted = 0.05;
-    Vector3d middle = Vector3d::Zero(), closing = Vector3d::UnitY();
-    double nearest = 1e9, widest = 0, at_best = 0;
+    Meeting meeting;
+    double nearest = 1e9;
     for (int i = 0; i <= 40 && nearest > wanted; ++i) {
-      Vector3d others;
-      const Vector3d p = split(tips(closed_by(i / 40.0)), others);
+      const std::vector<Vector3d> now = tips(closed_by(i / 40.0));
+      const Vector3d p = now[thumb], others = middle_of_others(now, thumb);
       const double gap = (others - p).norm();
-      widest = std::max(widest, gap);
+      meeting.widest = std::max(meeting.widest, gap);
       if (gap < 0.005 || gap > nearest) continue;
       nearest = gap;
-      middle = 0.5 * (others + p);
-      closing = (others - p).normalized();
-      at_best = i / 40.0;
+      meeting.middle = 0.5 * (others + p);
+      meeting.closing = (others - p).normalized();
+      meeting.share = i / 40.0;
     }
-    found_.opposed = widest > 0.01 && n > 1;
-    // Out of the palm is where the tips go when they begin to close. Where the thumb moves against
-    // the fingers, what brings them together cancels out; beside fingers that it does not move
-    // against, as in a human hand, it does not count. Jaws that slide point out of the palm.
-    const auto begun = tips(closed_by(0.1));
+    return meeting;
+  }
+
+  /// Of the grasp frame; at right angles.
+  struct Directions {
+    Vector3d closing, approach;
+  };
+
+  /// Out of the palm is where the tips go when they begin to close. Where the thumb moves against
+  /// the fingers, what brings them together cancels out; beside fingers that it does not move
+  /// against, as in a human hand, it does not count. Jaws that slide point out of the palm.
+  Directions find_directions(std::size_t thumb, const Meeting& meeting) const {
+    const auto open = tips(closed_by(0)), begun = tips(closed_by(0.1));
     const auto direction = [&](std::size_t i) {
       return Vector3d((begun[i] - open[i]).normalized());
     };
     Vector3d fingers = Vector3d::Zero();
-    for (std::size_t i = 0; i < n; ++i)
+    for (std::size_t i = 0; i < fingers_.size(); ++i)
       if (i != thumb) fingers += direction(i);
     fingers.normalize();
-    const bool like_human = n >= 4 && direction(thumb).dot(fingers) > -0.6;
+    const bool like_human = fingers_.size() >= 4 && direction(thumb).dot(fingers) > -0.6;
     Vector3d approach = like_human ? fingers : Vector3d(fingers + direction(thumb));
-    if (approach.norm() < 0.2) approach = middle - p_BP_;
+    if (approach.norm() < 0.2) approach = meeting.middle - p_BP_;
     const auto across = [](const Vector3d& v, const Vector3d& unit) {
       const Vector3d rest = v - v.dot(unit) * unit;
       return Vector3d(rest.norm() > 1e-3 * v.norm() ? rest : unit.unitOrthogonal()).normalized();
     };
-    if (like_human) {
-      approach.normalize();
-      closing = across(closing, approach);
-    } else {
-      approach = across(approach, closing);
-    }
-    // How far the palm's surface is away below the tips' meeting point.
+    if (!like_human) return {meeting.closing, across(approach, meeting.closing)};
+    approach.normalize();
+    return {across(meeting.closing, approach), approach};
+  }
+
+  /// The grasp frame a little nearer to the palm than where the tips meet, and what fits between.
+  void place_grasp_frame(const Meeting& meeting, const Directions& directions) {
+    const Vector3d &closing = directions.closing, &approach = directions.approach;
     double surface = -1e9, width = 0.02;
     const Vector3d side = closing.cross(approach);
     for (const Vector3d& p : palm_points()) {
       surface = std::max(surface, approach.dot(p));
-      width = std::max(width, std::abs(side.dot(p - middle)));
+      width = std::max(width, std::abs(side.dot(p - meeting.middle)));
     }
-    const double depth = std::clamp(approach.dot(middle) - surface, 0.02, 0.2);
-    const Vector3d origin = middle - 0.25 * depth * approach;
+    // How far the palm's surface is away below the tips' meeting point.
+    const double depth = std::clamp(approach.dot(meeting.middle) - surface, 0.02, 0.2);
+    const Vector3d origin = meeting.middle - 0.25 * depth * approach;
     found_.X_BG = make_pose(origin, model::grasp_axes(approach, closing));
     double below = 0.01;
-    for (double share = at_best; share <= 1; share += 0.1)
+    for (double share = meeting.share; share <= 1; share += 0.1)
       for (const Vector3d& tip : tips(closed_by(share)))
         below = std::max(below, approach.dot(tip - origin));
     model::Reach& reach = found_.reach;
-    reach.opening = std::clamp(std::min(0.9 * widest, 1.6 * depth), 0.01, 0.25);
+    reach.opening = std::clamp(std::min(0.9 * meeting.widest, 1.6 * depth), 0.01, 0.25);
     reach.engage = std::clamp(0.5 * depth, 0.01, 0.06);
     reach.clearance = below + 0.01;
     reach.half_width = std::min(width, 0.15) + 0.01;
+  }
+
+  void find_grasp_frame() {
+    const auto open = tips(closed_by(0)), half = tips(closed_by(0.5));
+    std::vector<Vector3d> motion;
+    for (std::size_t i = 0; i < open.size(); ++i) motion.push_back(half[i] - open[i]);
+    const std::size_t thumb = find_thumb(motion, open);
+    const Meeting meeting = find_meeting(thumb);
+    found_.opposed = meeting.widest > 0.01 && fingers_.size() > 1;
+    place_grasp_frame(meeting, find_directions(thumb, meeting));
   }
 
   /// What the fingers can really hold, and from which posture.

@@ -40,7 +40,7 @@ using AnatomyJudge = std::function<double(const Anatomy&, double needed)>;
 /// reach almost as far as the farthest. A tip is the end of the last link along its bone. A DoF
 /// closes if its joints turn about about the same axis as the last joint of a finger (else it is
 /// abduction), towards the side on which the tips come nearer to the palm, or slides tips towards
-/// each other. robot: as mend() made it.
+/// each other. robot: as repair() made it.
 Expected<Anatomy> find_anatomy(const Robot& robot, const SearchEffort& effort = {},
                                const AnatomyJudge& judge = {});
 

@@ -1,7 +1,8 @@
 // Squeezing: found by lag or torque, kept past the contact, let go by the operator only.
+#include "services/mapping/core/grip_controller.hpp"
+
 #include <gtest/gtest.h>
 
-#include "services/mapping/core/grip_controller.hpp"
 #include "tests/unit/mapping/fixtures.hpp"
 
 namespace prehend::mapping {

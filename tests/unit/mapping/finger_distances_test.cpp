@@ -4,23 +4,24 @@
 // at most spacing² / (8 · ball radius) = 0.8 mm on flat faces and by the rim of a cylinder that
 // counts as a capsule, (√2 − 1) · radius = 5.6 mm of the thickest finger; Bullet rounds by its
 // margin of 0.5 mm.
+#include "services/mapping/core/finger_distances.hpp"
+
 #include <gtest/gtest.h>
 
 #include <filesystem>
 
 #include "common/grasping/world.hpp"
-#include "services/mapping/core/finger_distances.hpp"
 #include "tests/unit/mapping/fixtures.hpp"
 
 namespace prehend::mapping {
 namespace {
 
-class ArrivalOf : public testing::TestWithParam<std::string> {};
+class FingerDistancesOf : public testing::TestWithParam<std::string> {};
 
-TEST_P(ArrivalOf, EqualsThePhysicalDistance) {
+TEST_P(FingerDistancesOf, EqualsThePhysicalDistance) {
   const model::HandModel& hand = test::hand(GetParam());
-  const FingerDistances arrival(hand);
-  ASSERT_EQ(arrival.fingers(), static_cast<int>(hand.fingertips().size()));
+  const FingerDistances fingers(hand);
+  ASSERT_EQ(fingers.fingers(), static_cast<int>(hand.fingertips().size()));
   const model::Shape ball{model::ShapeKind::sphere, Eigen::Vector3d::Constant(0.01)};
   Random random(4);
   double sum = 0;
@@ -42,7 +43,7 @@ TEST_P(ArrivalOf, EqualsThePhysicalDistance) {
       ASSERT_TRUE(world) << world.error().message();
       ASSERT_TRUE((*world)->add_body({"ball", ball, 0, "wood", {}, {}}, X_BO));
       const double real = (*world)->distance_to_hand(0, 0.2);
-      const double found = arrival.distances(dof, ball, X_BO).minCoeff();
+      const double found = fingers.distances(dof, ball, X_BO).minCoeff();
       EXPECT_GT(found, real - 0.001);
       EXPECT_LT(found, real + 0.006);
       sum += std::abs(found - real);
@@ -52,22 +53,22 @@ TEST_P(ArrivalOf, EqualsThePhysicalDistance) {
   EXPECT_LT(sum / count, 0.003);
 }
 
-TEST_P(ArrivalOf, FallsWhileAFingerClosesOnWhatItWillTouch) {
+TEST_P(FingerDistancesOf, FallsWhileAFingerClosesOnWhatItWillTouch) {
   const model::HandModel& hand = test::hand(GetParam());
-  const FingerDistances arrival(hand);
+  const FingerDistances fingers(hand);
   // In the middle of the closing fingers.
   const model::Shape ball{model::ShapeKind::sphere, Eigen::Vector3d::Constant(0.02)};
   Eigen::VectorXd dof = hand.postures().at("open");
-  const Eigen::VectorXd open = arrival.distances(dof, ball, hand.X_BG());
+  const Eigen::VectorXd open = fingers.distances(dof, ball, hand.X_BG());
   for (std::size_t i = 0; i < hand.dofs().size(); ++i) {
     const model::HandDof& limits = hand.dofs()[i];
     double& q = dof[static_cast<Eigen::Index>(i)];
     if (limits.closing != 0) q += 0.3 * ((limits.closing > 0 ? limits.upper : limits.lower) - q);
   }
-  EXPECT_LT(arrival.distances(dof, ball, hand.X_BG()).sum(), open.sum());
+  EXPECT_LT(fingers.distances(dof, ball, hand.X_BG()).sum(), open.sum());
 }
 
-INSTANTIATE_TEST_SUITE_P(Mapping, ArrivalOf, testing::ValuesIn(test::hand_names()),
+INSTANTIATE_TEST_SUITE_P(Mapping, FingerDistancesOf, testing::ValuesIn(test::hand_names()),
                          [](const auto& named) { return named.param; });
 
 }  // namespace

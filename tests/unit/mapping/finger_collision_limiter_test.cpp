@@ -2,10 +2,11 @@
 // Bullet, is the judge of which finger lies on which and in what order they open; the mapping must
 // come to the same by its capsules. Joint values are compared to 1e-9, sums of a few hundred steps;
 // 1e-5 m is ten times what FingerCollisionLimiter takes for rounding.
+#include "services/mapping/core/finger_collision_limiter.hpp"
+
 #include <gtest/gtest.h>
 
 #include "common/grasping/blocking.hpp"
-#include "services/mapping/core/finger_collision_limiter.hpp"
 #include "services/mapping/core/mapping.hpp"
 #include "services/mapping/tools/training/scheme.hpp"
 #include "tests/unit/mapping/fixtures.hpp"
@@ -34,7 +35,7 @@ class EveryFinger : public testing::TestWithParam<Case> {
   Scheme scheme_ =
       Scheme::load(PREHEND_SOURCE "/services/mapping/schemes/" + GetParam().scheme + ".toml", hand_)
           .value();
-  FingerCollisionLimiter way_{hand_};
+  FingerCollisionLimiter limiter_{hand_};
 
   VectorXd anywhere(Random& random) const {
     VectorXd dof = scheme_.lower;
@@ -49,7 +50,7 @@ class EveryFinger : public testing::TestWithParam<Case> {
       const double most = hand_.dofs()[static_cast<std::size_t>(i)].max_velocity / 30;
       next[i] += std::clamp(target[i] - now[i], -most, most);
     }
-    return way_.go(now, next);
+    return limiter_.go(now, next);
   }
   int finger(int link) const { return hand_.links()[static_cast<std::size_t>(link)].finger; }
   /// What closes these fingers (a bit each), opened.
@@ -85,7 +86,7 @@ TEST_P(EveryFinger, NeverInterlocksAndOpensWhatLiesOnTopFirst) {
     const VectorXd target = anywhere(random);
     for (int k = 0; k < 25; ++k) {
       now = command(now, target);
-      ASSERT_GE(way_.clearance(now), -1e-5);
+      ASSERT_GE(limiter_.clearance(now), -1e-5);
     }
     const auto found = grasping::find_blocking(hand_, hand_.joint_angles(now));
     ASSERT_TRUE(found) << found.error().message();
@@ -114,14 +115,14 @@ INSTANTIATE_TEST_SUITE_P(All, EveryFinger, testing::ValuesIn(cases),
 // A mapping that is started again while the third finger of the Barrett hand lies on another, in
 // front of an operator whose hand is open.
 TEST(LockedHand, IsOpenedByTheMappingFromTheTop) {
-  const FingerCollisionLimiter way(barrett());
+  const FingerCollisionLimiter limiter(barrett());
   VectorXd locked = barrett().postures().at("open");
   std::vector<grasping::LinkPair> blocked;
   for (double spread = 0; spread < 0.8 && blocked.empty(); spread += 0.1)
     for (double closed = 1.6; closed < 2.4 && blocked.empty(); closed += 0.1) {
       const VectorXd below = Eigen::Vector4d(spread, closed, closed, 0);
-      locked =
-          way.go(way.go(Eigen::Vector4d::Zero(), below), below + Eigen::Vector4d(0, 0, 0, 2.4));
+      locked = limiter.go(limiter.go(Eigen::Vector4d::Zero(), below),
+                          below + Eigen::Vector4d(0, 0, 0, 2.4));
       blocked = grasping::find_blocking(barrett(), barrett().joint_angles(locked))->blocked;
     }
   ASSERT_FALSE(blocked.empty());
@@ -138,14 +139,14 @@ TEST(LockedHand, IsOpenedByTheMappingFromTheTop) {
   const VectorXd still = VectorXd::Zero(static_cast<Eigen::Index>(barrett().joints().size()));
   ASSERT_TRUE(mapping.on_state({at(0), locked, still, still, Pose::Identity()}));
   std::vector<int> opened(4, -1);
-  const double overlap = std::min(0.0, way.clearance(locked));
+  const double overlap = std::min(0.0, limiter.clearance(locked));
   VectorXd now = locked;
   for (int frame = 0; frame < 150; ++frame) {
     const Time time = at(33 * frame);
     const auto command = mapping.on_posture({time, time, Pose::Identity(), 1, tips({})}, time);
     ASSERT_TRUE(command) << command.error().message();
     now = command->dof;
-    EXPECT_GE(way.clearance(now), overlap - 1e-5);
+    EXPECT_GE(limiter.clearance(now), overlap - 1e-5);
     for (std::size_t i = 0; i < opened.size(); ++i)
       if (opened[i] < 0 && now[static_cast<Eigen::Index>(i)] < 1e-9) opened[i] = frame;
   }

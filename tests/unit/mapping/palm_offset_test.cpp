@@ -1,13 +1,14 @@
 // Where a hand learnt to stand, for sizes that it knows and others: Shepard's interpolation with a
 // softening of 5 mm. Sizes 3 cm apart then count (1 + 36)² ≈ 1400 to 1, so that a known size keeps
 // its place within 0.1 mm.
+#include "services/mapping/core/palm_offset.hpp"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
 
 #include "common/model/placement.hpp"
-#include "services/mapping/core/palm_offset.hpp"
 #include "services/mapping/core/size_input.hpp"
 
 namespace prehend::mapping {
