@@ -22,13 +22,13 @@
 #include <fstream>
 #include <iostream>
 #include <nlohmann/json.hpp>
-#include <random>
 #include <thread>
 
 #include "common/base/paths.hpp"
 #include "common/dds/participant.hpp"
 #include "common/service/lab.hpp"
 #include "tests/integration/web_client.hpp"
+#include "tests/support/domains/domain_lease.hpp"
 
 namespace prehend {
 namespace {
@@ -56,7 +56,8 @@ double quantile(std::vector<double> values, double q) {
 }
 
 struct Place {
-  int domain = static_cast<int>(std::random_device{}() % 200);
+  test::DomainLease lease;
+  int domain = lease.domain();
   std::string rig = fmt::format("console-{}", ::getpid());
 };
 

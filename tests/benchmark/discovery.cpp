@@ -23,7 +23,6 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
 #include <optional>
-#include <random>
 #include <thread>
 
 #include "common/base/paths.hpp"
@@ -31,6 +30,7 @@
 #include "common/service/lab.hpp"
 #include "common/service/process.hpp"
 #include "tests/integration/hosts.hpp"
+#include "tests/support/domains/domain_lease.hpp"
 
 namespace prehend {
 namespace {
@@ -227,11 +227,9 @@ std::optional<Row> measure(const std::string& network, int n, const std::filesys
                            const std::string& self) {
   Hosts hosts;
   for (int i = 0; i < hosts_count; ++i) hosts.add(host_name(i));
-  Role role{static_cast<int>(std::random_device{}() % 200),
-            fmt::format("discovery-{}", getpid()),
-            {.profile = network},
-            "viewer",
-            n};
+  const test::DomainLease lease;
+  Role role{
+      lease.domain(), fmt::format("discovery-{}", getpid()), {.profile = network}, "viewer", n};
   std::optional<service::Process> server;
   if (network == "server") {
     hosts.add("server");
@@ -361,7 +359,8 @@ int sites(int rounds, const std::filesystem::path& folder, const std::string& se
     for (int round = 0; round < rounds; ++round) {
       const auto place = folder / fmt::format("sites-{}-{}", secure, round);
       std::filesystem::create_directories(place);
-      Role listens{static_cast<int>(std::random_device{}() % 200),
+      const test::DomainLease lease;
+      Role listens{lease.domain(),
                    fmt::format("sites-{}", getpid()),
                    {.profile = "wan", .insecure = !secure},
                    "mapping",

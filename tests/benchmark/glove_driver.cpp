@@ -18,7 +18,6 @@
 #include <fstream>
 #include <iostream>
 #include <nlohmann/json.hpp>
-#include <random>
 #include <thread>
 
 #include "common/base/clock.hpp"
@@ -27,6 +26,7 @@
 #include "common/serial/pseudo_terminal.hpp"
 #include "common/service/process.hpp"
 #include "services/glove/devices/device.hpp"
+#include "tests/support/domains/domain_lease.hpp"
 
 namespace prehend {
 namespace {
@@ -104,10 +104,10 @@ double cpu_time(pid_t pid) {
 /// A line with a device at this end.
 class DeviceLine {
  public:
-  DeviceLine(const glove::DeviceKind& kind, const std::string& format)
+  /// port: of this machine, for what sends datagrams.
+  DeviceLine(const glove::DeviceKind& kind, const std::string& format, int port)
       : datagrams_(kind.line == glove::Line::datagrams) {
-    const std::string address =
-        datagrams_ ? fmt::format("127.0.0.1:{}", 20000 + std::random_device{}() % 10000) : "";
+    const std::string address = datagrams_ ? fmt::format("127.0.0.1:{}", port) : "";
     const auto emulation = glove::emulation_of(kind, device_options(address, format), {});
     plug_ = must(emulation.plug_in());
     device_ = emulation.device();
@@ -173,10 +173,11 @@ double median(std::vector<double> values) {
 
 Stats measure(const std::string& kind, const std::string& format, double length,
               const std::string& self) {
-  const int domain = static_cast<int>(std::random_device{}() % 200);
+  const test::DomainLease lease;
+  const int domain = lease.domain();
   const std::string rig = fmt::format("glove-driver-{}", ::getpid());
   const auto row = must(glove::find_device(kind));
-  DeviceLine driver_line(row, format), service_line(row, format);
+  DeviceLine driver_line(row, format, lease.port(0)), service_line(row, format, lease.port(1));
   auto floor_line = must(serial::PseudoTerminal::open({}));
   constexpr std::size_t bytes = 100;  // as four sensors' matrices have
 

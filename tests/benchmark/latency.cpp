@@ -23,7 +23,6 @@
 #include <iostream>
 #include <mutex>
 #include <nlohmann/json.hpp>
-#include <random>
 #include <thread>
 
 #include "common/base/paths.hpp"
@@ -32,6 +31,7 @@
 #include "common/service/process.hpp"
 #include "common/service/status.hpp"
 #include "tests/integration/hosts.hpp"
+#include "tests/support/domains/domain_lease.hpp"
 
 namespace prehend {
 namespace {
@@ -46,19 +46,14 @@ Time now() {
 /// Where a process of the run is and how it reaches the others.
 struct Place {
   int domain = 0;
-  std::string rig, network = "laptop";
+  std::string rig, network = "laptop", server;
   std::filesystem::path keys;  // of all roles; empty: not secured
 };
-
-/// Where the discovery server of the run listens, by its domain: other runs have other numbers.
-std::string server_of(const Place& place) {
-  return "127.0.0.1:" + std::to_string(21000 + place.domain);
-}
 
 /// role: whose keys it has.
 dds::Participant join(const Place& place, const char* name, const char* role) {
   dds::Network network{.profile = place.network, .keys = place.keys};
-  if (place.network == "server") network.servers = {server_of(place)};
+  if (place.network == "server") network.servers = {place.server};
   auto made = dds::Participant::create(
       {.name = name, .domain = place.domain, .rig = place.rig, .network = network, .role = role});
   if (!made) {
@@ -128,7 +123,7 @@ struct Stats {
 class Case {
  public:
   Case(const std::string& name, const std::filesystem::path& keys)
-      : place_{static_cast<int>(std::random_device{}() % 200), "", "laptop", {}} {
+      : place_{lease_.domain(), "", "laptop", fmt::format("127.0.0.1:{}", lease_.port()), {}} {
     if (name == "server") place_.network = "server";
     if (name == "secure" || name == "far") place_.keys = keys;
     if (name == "containers" || name == "far") {
@@ -142,7 +137,7 @@ class Case {
     }
     if (name != "server") return;
     server_.emplace(start("", {(program_directory() / "prehend").string(), "discovery-server",
-                               "--listen", server_of(place_)}));
+                               "--listen", place_.server}));
     std::this_thread::sleep_for(2s);  // it listens 1.2 s after its start
   }
   /// `rig` alone: what went before is still told of.
@@ -163,6 +158,7 @@ class Case {
   }
 
  private:
+  const test::DomainLease lease_;
   Place place_;
   std::optional<integration::Hosts> hosts_;
   std::optional<service::Process> server_;
@@ -173,7 +169,7 @@ Stats measure_floor(double rate, std::size_t wanted, const std::string& self, co
   const Place place = at.place(fmt::format("floor-{}-{}", getpid(), rate));
   const auto spawn = [&](const char* role, const char* host) {
     return at.start(host, {self, role, std::to_string(place.domain), place.rig,
-                           std::to_string(rate), place.network, place.keys.string()});
+                           std::to_string(rate), place.network, place.server, place.keys.string()});
   };
   auto participant = join(place, "floor-sink", "viewer");
   auto reader = *participant.reader(dds::robot_command);
@@ -205,7 +201,7 @@ Stats measure_lab(double rate, std::size_t wanted, const Case& at,
     std::vector<std::string> command{(program_directory() / ("prehend-" + name)).string()};
     more.insert(more.end(),
                 {"lab.rig=" + rig, fmt::format("lab.domain={}", place.domain),
-                 "lab.network=" + place.network, "lab.server=[\"" + server_of(place) + "\"]",
+                 "lab.network=" + place.network, "lab.server=[\"" + place.server + "\"]",
                  "lab.keys=" + place.keys.string()});
     for (std::string& argument : more) {
       command.push_back("--set");
@@ -291,8 +287,8 @@ int run(bool json, double seconds, const std::vector<std::string>& cases, const 
 
 int main(int argc, char** argv) {
   using namespace prehend;
-  if (argc == 7 && std::string_view(argv[1]).starts_with("--floor-")) {
-    const Place place{std::atoi(argv[2]), argv[3], argv[5], argv[6]};
+  if (argc == 8 && std::string_view(argv[1]).starts_with("--floor-")) {
+    const Place place{std::atoi(argv[2]), argv[3], argv[5], argv[6], argv[7]};
     return std::string_view(argv[1]) == "--floor-source" ? floor_source(place, std::atof(argv[4]))
                                                          : floor_relay(place);
   }

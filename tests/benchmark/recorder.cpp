@@ -18,7 +18,6 @@
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
-#include <random>
 #include <thread>
 
 #include "common/base/paths.hpp"
@@ -27,6 +26,7 @@
 #include "common/recording/mcap/reader.hpp"
 #include "common/recording/mcap/writer.hpp"
 #include "common/service/process.hpp"
+#include "tests/support/domains/domain_lease.hpp"
 
 namespace prehend {
 namespace {
@@ -139,9 +139,7 @@ struct Plain {
 class Bench {
  public:
   explicit Bench(std::filesystem::path folder)
-      : folder_(std::move(folder)),
-        domain_(static_cast<int>(std::random_device{}() % 200)),
-        rig_(fmt::format("benchmark-{}", ::getpid())) {
+      : folder_(std::move(folder)), rig_(fmt::format("benchmark-{}", ::getpid())) {
     pin_to(our_core);
     std::filesystem::create_directories(folder_);
   }
@@ -318,7 +316,8 @@ class Bench {
   }
 
   std::filesystem::path folder_;
-  int domain_;
+  const test::DomainLease lease_;
+  const int domain_ = lease_.domain();
   std::string rig_;
 };
 

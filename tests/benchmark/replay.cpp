@@ -16,7 +16,6 @@
 #include <iostream>
 #include <mutex>
 #include <nlohmann/json.hpp>
-#include <random>
 #include <thread>
 
 #include "common/base/paths.hpp"
@@ -25,6 +24,7 @@
 #include "common/service/process.hpp"
 #include "services/recorder/service/recording_file.hpp"
 #include "services/recorder/service/tape.hpp"
+#include "tests/support/domains/domain_lease.hpp"
 
 namespace prehend {
 namespace {
@@ -174,7 +174,8 @@ Run measure(const std::filesystem::path& file, int domain,
 }
 
 int run(bool json, double duration_s, const std::string& self) {
-  const int domain = static_cast<int>(std::random_device{}() % 200);
+  const test::DomainLease lease;
+  const int domain = lease.domain();
   const auto folder =
       std::filesystem::temp_directory_path() / fmt::format("prehend-replay-{}", ::getpid());
   std::filesystem::create_directories(folder);

@@ -28,6 +28,7 @@
 #include "common/convert/convert.hpp"
 #include "common/dds/participant.hpp"
 #include "common/service/process.hpp"
+#include "tests/support/domains/domain_lease.hpp"
 
 namespace prehend {
 namespace {
@@ -187,7 +188,8 @@ void report(bool json, double brake, std::vector<double> stops, std::vector<doub
 }
 
 int run(bool json, int rounds, double brake, int flood_rate) {
-  const int domain = 20 + ::getpid() % 180;
+  const test::DomainLease lease;
+  const int domain = lease.domain();
   const std::string rig = fmt::format("stop-{}", ::getpid());
   States states;
   auto participant =

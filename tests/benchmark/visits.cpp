@@ -13,13 +13,13 @@
 #include <filesystem>
 #include <fstream>
 #include <iostream>
-#include <random>
 #include <thread>
 
 #include "common/base/paths.hpp"
 #include "common/dds/participant.hpp"
 #include "common/service/lab.hpp"
 #include "common/service/process.hpp"
+#include "tests/support/domains/domain_lease.hpp"
 
 namespace prehend {
 namespace {
@@ -79,8 +79,9 @@ double resident_mb(pid_t pid) {
 int measure(int visits, int at_once, const std::string& self) {
   const auto folder = service::TemporaryFolder::create(false);
   if (!folder) throw std::runtime_error(folder.error().message());
-  const Place place{static_cast<int>(std::random_device{}() % 200),
-                    fmt::format("visits-{}", getpid()), (folder->path() / "keys").string()};
+  const test::DomainLease lease;
+  const Place place{lease.domain(), fmt::format("visits-{}", getpid()),
+                    (folder->path() / "keys").string()};
   auto keys = service::Process::start({.command = {(program_directory() / "prehend").string(),
                                                    "keys", "init", place.keys, "--rig", "any"},
                                        .log = "/dev/null"});

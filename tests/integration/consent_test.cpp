@@ -28,10 +28,9 @@ class ConsentSources : public SafetyRig {
 };
 
 TEST_F(ConsentSources, TheButtonOfTheGlove) {
-  const std::string address = "127.0.0.1:" + std::to_string(20000 + ::getpid() % 10000);
   start_hand_that_asks({"safety.button=2"});
-  glove_.emplace(start("glove", {"glove.device=landmarks", "glove.port=" + address}));
-  auto sender = glove::DatagramSender::create(address);
+  glove_.emplace(start("glove", {"glove.device=landmarks", "glove.port=" + address()}));
+  auto sender = glove::DatagramSender::create(address());
   ASSERT_TRUE(sender);
   const glove::Landmarks points = glove::landmarks_of(
       model::HumanHand(1), model::HumanHand::posture({0.5, 0.5, 0.5, 0.5, 0.5}));

@@ -160,7 +160,8 @@ TEST_F(Doctor, NamesAWrongRigAndAWrongDomain) {
   EXPECT_FALSE(found.contains("domain"));
   found = ask({"lab.rig=another"});
   EXPECT_NE(found["rig"].find(name_), std::string::npos) << found["rig"];
-  found = ask({"lab.domain=" + std::to_string(domain_ == 200 ? 10 : 201)});
+  const test::DomainLease nobodys;
+  found = ask({"lab.domain=" + std::to_string(nobodys.domain())});
   EXPECT_NE(found["domain"].find(std::to_string(domain_)), std::string::npos) << found["domain"];
 }
 
@@ -172,10 +173,9 @@ TEST_F(Doctor, NamesAnotherVersionsTypes) {
 }
 
 TEST_F(Doctor, NamesADiscoveryServerThatDoesNotAnswer) {
-  const std::string address = "127.0.0.1:" + std::to_string(20000 + ::getpid() % 10000);
-  const Strings sets{"lab.network=server", "lab.server=[\"" + address + "\"]"};
+  const Strings sets{"lab.network=server", "lab.server=[\"" + address() + "\"]"};
   EXPECT_TRUE(ask(sets).contains("discovery server"));
-  auto server = start_program("prehend", with_lab({"discovery-server", "--listen", address}));
+  auto server = start_program("prehend", with_lab({"discovery-server", "--listen", address()}));
   EXPECT_TRUE(eventually(20, [&] { return !ask(sets).contains("discovery server"); }));
 }
 

@@ -7,7 +7,6 @@
 #include <fstream>
 #include <iostream>
 #include <iterator>
-#include <random>
 #include <regex>
 #include <sstream>
 
@@ -303,23 +302,21 @@ $in_glove $bin/prehend status $wan $dial --set lab.listen=198.51.100.1:7422 && e
 
 // Over loopback addresses, so that it needs no network; multicast is not used by this profile.
 TEST_F(Profiles, ADiscoveryServerBringsThemTogetherAndLinkedServersTheirClients) {
-  const int port = 20000 + static_cast<int>(std::random_device{}() % 10000);
-  const auto at = [&](int n) { return fmt::format("127.0.0.1:{}", port + n); };
   const auto serve = [&](int n, Strings more) {
-    Strings arguments{"discovery-server", "--listen", at(n)};
+    Strings arguments{"discovery-server", "--listen", address(n)};
     const Strings lab = lab_arguments();
     arguments.insert(arguments.end(), lab.begin(), lab.end());
     arguments.insert(arguments.end(), more.begin(), more.end());
     return start_program("prehend", arguments);
   };
   const auto client = [&](int n) {
-    return Strings{"lab.network=server", fmt::format("lab.server=[\"{}\"]", at(n))};
+    return Strings{"lab.network=server", fmt::format("lab.server=[\"{}\"]", address(n))};
   };
   auto first = serve(0, {});
   auto simulation = start("simulation", client(0));
   EXPECT_TRUE(sees("simulation", client(0)));
   EXPECT_FALSE(sees("simulation", client(1), "1")) << "there is no second server yet";
-  auto second = serve(1, {"--link", at(0)});
+  auto second = serve(1, {"--link", address(0)});
   EXPECT_TRUE(sees("simulation", client(1)));
   EXPECT_FALSE(sees("simulation", {}, "1")) << "seen without the server";
 
@@ -339,7 +336,8 @@ TEST_F(Profiles, ADiscoveryServerBringsThemTogetherAndLinkedServersTheirClients)
   const Answer info = run("prehend-recording", {"info", file, "--json"}, 10);
   EXPECT_NE(info.output.find("\"robot/state\""), std::string::npos) << info.output << info.log;
 
-  const Answer alone = run("prehend", {"discovery-server", "--listen", at(0), "--link", at(0)}, 10);
+  const Answer alone =
+      run("prehend", {"discovery-server", "--listen", address(0), "--link", address(0)}, 10);
   EXPECT_EQ(alone.exit_code, 3);
 }
 

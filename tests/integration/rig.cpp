@@ -32,9 +32,6 @@ std::int64_t now_ns() {
 }
 
 Rig::Rig(dds::Network network) : network_(std::move(network)) {
-  // Other runs on this machine have other numbers; the partition keeps apart even those that do
-  // not.
-  domain_ = 20 + static_cast<int>((::getpid() * 7 + now_ns() / 1000) % 180);
   name_ = "test-" + std::to_string(::getpid()) + "-" + std::to_string(now_ns());
   folder_ = std::filesystem::temp_directory_path() / ("prehend-" + name_);
   std::filesystem::create_directories(folder_);
@@ -60,6 +57,10 @@ Rig::~Rig() {
 
 std::string Rig::program(const std::string& name) {
   return std::string(PREHEND_PROGRAMS) + "/" + name;
+}
+
+std::string Rig::address(int number) const {
+  return fmt::format("127.0.0.1:{}", lease_.port(number));
 }
 
 Strings Rig::lab_arguments(const Strings& sets) const {

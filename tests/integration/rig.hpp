@@ -11,6 +11,7 @@
 
 #include "common/dds/participant.hpp"
 #include "common/service/process.hpp"
+#include "tests/support/domains/domain_lease.hpp"
 
 namespace prehend::integration {
 
@@ -34,6 +35,8 @@ class Rig : public testing::Test {
 
   /// A program of the build.
   static std::string program(const std::string& name);
+  /// An address of this machine whose port is this lab's, for a server that must be told it.
+  std::string address(int number = 0) const;
   /// --config and --set so that a service joins this lab.
   Strings lab_arguments(const Strings& sets = {}) const;
   /// The arguments, and those by which a program joins this lab.
@@ -72,7 +75,8 @@ class Rig : public testing::Test {
   void join(const std::string& role = {});
 
   dds::Network network_;
-  int domain_;
+  const test::DomainLease lease_;
+  const int domain_ = lease_.domain();
   std::string name_;
   std::filesystem::path folder_;
   std::optional<dds::Participant> participant_;

@@ -242,10 +242,10 @@ TEST_F(RobotOfOneJoint, ServosAreLedAndStopped) {
   EXPECT_EQ(gate_.stopped_by().to_string(), "the robot itself");
 }
 
-/// A controller of ROS 2, in a namespace of its own, in a domain that no lab uses.
+/// A controller of ROS 2, in a namespace and a domain of its own.
 class RobotOfRos : public RobotOfOneJoint {
  protected:
-  RobotOfRos() { ::setenv("ROS_DOMAIN_ID", std::to_string(216 + ::getpid() % 16).c_str(), 1); }
+  RobotOfRos() { ::setenv("ROS_DOMAIN_ID", std::to_string(nodes_.domain()).c_str(), 1); }
   ~RobotOfRos() override { ::unsetenv("ROS_DOMAIN_ID"); }
   std::string controller() const { return "/" + name_ + "/joint_trajectory_controller"; }
   Strings controlled() const {
@@ -262,6 +262,8 @@ class RobotOfRos : public RobotOfOneJoint {
     }));
     return process;
   }
+
+  const test::DomainLease nodes_;
 };
 
 TEST_F(RobotOfRos, AControllerOfRosIsCheckedLedStoppedAndReleased) {

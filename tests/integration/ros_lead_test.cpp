@@ -9,7 +9,7 @@
 namespace prehend::integration {
 namespace {
 
-/// In a domain that no lab uses, on a topic of its own.
+/// In a domain of its own, on a topic of its own.
 template <class Base>
 class WithNode : public Base {
  protected:
@@ -38,7 +38,8 @@ class WithNode : public Base {
     ASSERT_EQ(told.exit_code, 0) << told.log;
   }
 
-  const int nodes_ = 216 + ::getpid() % 16;
+  const test::DomainLease lease_of_nodes_;
+  const int nodes_ = lease_of_nodes_.domain();
   const model::HandModel model_ =
       model::HandModel::load(model::hand_directory(model::lab_hand())).value();
 };

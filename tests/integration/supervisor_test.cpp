@@ -71,11 +71,10 @@ TEST_F(Supervised, EachServiceIsReadyWhenItAnswersAndSaysThatItStops) {
 }
 
 TEST_F(Supervised, SoDoWhoExportsWhoRecordsAndWhoServesDiscovery) {
-  const std::string port = std::to_string(20000 + ::getpid() % 10000);
   for (const auto& [command, sets] : std::vector<std::pair<Strings, Strings>>{
            {{"prehend", "metrics"}, {"metrics.port=0"}},
            {{"prehend-record", "--quiet", "--output", (folder_ / "all.mcap").string()}, {}},
-           {{"prehend", "discovery-server", "--listen", "127.0.0.1:" + port}, {}}}) {
+           {{"prehend", "discovery-server", "--listen", address()}, {}}}) {
     auto process = start_supervised(command, "1000000", sets);
     ASSERT_EQ(next(60), "READY=1") << command[1];
     for (int i = 0; i < 3; ++i) ASSERT_EQ(next(20), "WATCHDOG=1") << command[1];

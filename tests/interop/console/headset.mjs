@@ -13,7 +13,7 @@ import { browse, start } from "./chromium.mjs";
 const [bin, chromium, scratch] = process.argv.slice(2);
 setTimeout(() => { throw new Error("it takes more than two minutes"); }, 120000).unref();
 
-const lab = ["--set", `lab.rig=headset-${process.pid}`, "--set", "glove.device=landmarks", "--set", "glove.port=127.0.0.1:9874"];
+const lab = ["--set", `lab.rig=headset-${process.pid}`, "--set", "glove.device=landmarks", "--set", `glove.port=127.0.0.1:${process.env.LEASED_PORT}`];
 await start(`${bin}/prehend-glove`, lab, "stderr", /./);
 const { line: address } = await start(`${bin}/prehend-console`, [...lab, "--set", "console.port=0"], "stdout", /http:[^\s;]+/);
 const emulator = readFileSync(join(dirname(createRequire(import.meta.url).resolve("iwer")), "../build/iwer.min.js"), "utf8");

@@ -7,6 +7,7 @@ import { browse, start } from "./chromium.mjs";
 const [bin, chromium, scratch, data] = process.argv.slice(2);
 setTimeout(() => { throw new Error("it takes more than five minutes"); }, 300000).unref();
 const rate = 30;  // Hz, of the video and its points
+const address = `127.0.0.1:${process.env.LEASED_PORT}`;  // where it hears the page
 
 const rows = readFileSync(`${data}/human_joint_right.csv`, "utf8").trim().split("\n").slice(1)
   .map((line) => line.split(",").slice(1).map(Number))
@@ -56,7 +57,8 @@ const errorOf = (seen, row) => {
 async function track() {
   const camera = await makeCamera();
   const { line, child } = await start(`${bin}/prehend-console`,
-    ["--set", "console.port=0", "--set", "glove.device=landmarks", "--set", `lab.rig=webcam-${process.pid}`], "stdout", /http:[^\s;]+/);
+    ["--set", "console.port=0", "--set", "glove.device=landmarks", "--set", `glove.port=${address}`,
+      "--set", `lab.rig=webcam-${process.pid}`], "stdout", /http:[^\s;]+/);
   const page = await browse(chromium, `${scratch}/browser`, line, "1280,800",
     ["--use-fake-ui-for-media-stream", "--use-fake-device-for-media-stream", `--use-file-for-fake-video-capture=${camera}`]);
   await page.until("document.getElementById('link').textContent === 'connected'", "it is connected");
@@ -87,7 +89,7 @@ async function track() {
 const open = 285, fist = 270;
 async function grasp() {
   const { line, child } = await start(`${bin}/prehend`, ["demo", "--watch", "--json", "--seed", "3", "--timeout", "150",
-    "--glove", "landmarks:127.0.0.1:9870", "--set", "console.port=0"], "stderr", /http:[^\s;]+/);
+    "--glove", `landmarks:${address}`, "--set", "console.port=0"], "stderr", /http:[^\s;]+/);
   const outcome = new Promise((told) => child.stdout.on("data", (bytes) => {
     const text = String(bytes);
     if (text.startsWith("{")) told(JSON.parse(text));

@@ -9,10 +9,10 @@
 #include <chrono>
 #include <fstream>
 #include <limits>
-#include <random>
 
 #include "common/dds/participant.hpp"
 #include "common/dds/raw.hpp"
+#include "tests/support/domains/domain_lease.hpp"
 
 namespace prehend::dds {
 namespace {
@@ -62,7 +62,8 @@ class Bounds : public testing::Test {
     return least;
   }
 
-  int domain_ = static_cast<int>(std::random_device{}() % 200);
+  const test::DomainLease lease_;
+  const int domain_ = lease_.domain();
   std::string rig_ = "bounds-" + std::to_string(getpid());
 };
 

@@ -15,15 +15,12 @@
 
 #include "common/dds/participant.hpp"
 #include "common/dds/server_watch.hpp"
+#include "tests/support/domains/domain_lease.hpp"
 
 namespace prehend::dds {
 namespace {
 
 using eprosima::fastdds::rtps::UDPv4TransportDescriptor;
-
-int random_network_domain() {
-  return static_cast<int>(std::random_device{}() % 200);
-}
 
 TEST(Network, TheLaptopIsConfinedToLoopback) {
   const auto qos = participant_qos({});
@@ -151,7 +148,8 @@ TEST(Network, EnvironmentAndWorkingDirectoryHaveNoEffect) {
   EXPECT_EQ(influences.size(), 3u);
   for (const Error& influence : influences) EXPECT_FALSE(influence.hint.empty());
 
-  const int domain = random_network_domain();
+  const test::DomainLease lease;
+  const int domain = lease.domain();
   const std::string rig = "rig" + std::to_string(std::random_device{}());
   auto here = Participant::create({.name = "here", .domain = domain, .rig = rig});
   auto there = Participant::create({.name = "there", .domain = domain, .rig = rig});

@@ -6,16 +6,12 @@
 #include <unistd.h>
 
 #include <chrono>
-#include <random>
 
 #include "common/convert/convert.hpp"
+#include "tests/support/domains/domain_lease.hpp"
 
 namespace prehend::dds {
 namespace {
-
-int random_domain() {
-  return static_cast<int>(std::random_device{}() % 200);
-}
 
 Participant join(int domain, const std::string& rig) {
   auto made = Participant::create({.name = "test", .domain = domain, .rig = rig});
@@ -47,7 +43,8 @@ v1::ObjectDetection detection(std::uint32_t track, const std::string& name) {
 }
 
 TEST(Participant, ALateReaderGetsTheLastDetectionAndItsEnd) {
-  const int domain = random_domain();
+  const test::DomainLease lease;
+  const int domain = lease.domain();
   const std::string rig = "rig" + std::to_string(getpid());
   Participant first = join(domain, rig), second = join(domain, rig);
   auto writer = *first.writer(object_detection);
@@ -71,7 +68,8 @@ TEST(Participant, ALateReaderGetsTheLastDetectionAndItsEnd) {
 }
 
 TEST(Participant, RigsDoNotHearEachOther) {
-  const int domain = random_domain();
+  const test::DomainLease lease;
+  const int domain = lease.domain();
   const std::string rig = "rig" + std::to_string(getpid());
   Participant here = join(domain, rig + "a"), also_here = join(domain, rig + "a"),
               elsewhere = join(domain, rig + "b");
@@ -85,7 +83,8 @@ TEST(Participant, RigsDoNotHearEachOther) {
 
 TEST(Participant, MistakesAreErrors) {
   EXPECT_FALSE(Participant::create({.name = "test", .domain = 300}));
-  Participant here = join(random_domain(), "x");
+  const test::DomainLease lease;
+  Participant here = join(lease.domain(), "x");
   EXPECT_FALSE(here.writer(Topic<v1::GloveFramePubSubType>({.name = "no/such/topic"})));
   v1::Pose bad;  // a default quaternion has no norm
   EXPECT_FALSE(convert::from_message(bad));

@@ -10,8 +10,9 @@
 #include <chrono>
 #include <condition_variable>
 #include <map>
-#include <random>
 #include <thread>
+
+#include "tests/support/domains/domain_lease.hpp"
 
 namespace prehend::dds {
 namespace {
@@ -44,7 +45,8 @@ class Collector {
 };
 
 struct Raw : testing::Test {
-  int domain = static_cast<int>(std::random_device{}() % 200);
+  const test::DomainLease lease;
+  const int domain = lease.domain();
   std::string rig = "raw-" + std::to_string(getpid());
 
   Participant join(const std::string& where, DiscoveryEvents* listener = nullptr) {

@@ -2,9 +2,7 @@
 // rotations orthonormal, stamps strictly increasing and close to their arrival; no fault of a line
 // ends it; it comes back by itself. A new row is tested without a word here, and fails without an
 // emulator.
-#include <arpa/inet.h>
 #include <gtest/gtest.h>
-#include <sys/socket.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -23,20 +21,8 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using Eigen::Vector3d;
 using testing::EmulatedDevice;
+using testing::free_address;
 using testing::Listener;
-
-/// A free port of this machine, as long as nobody takes it.
-std::string free_address() {
-  const int probe = ::socket(AF_INET, SOCK_DGRAM, 0);
-  sockaddr_in address{};
-  address.sin_family = AF_INET;
-  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-  socklen_t size = sizeof address;
-  EXPECT_EQ(::bind(probe, reinterpret_cast<const sockaddr*>(&address), size), 0);
-  EXPECT_EQ(::getsockname(probe, reinterpret_cast<sockaddr*>(&address), &size), 0);
-  ::close(probe);
-  return "127.0.0.1:" + std::to_string(ntohs(address.sin_port));
-}
 
 /// A hand that opens and closes twice a second and moves 10 cm to and fro, with five fingertips and
 /// all joints, 100 frames a second.

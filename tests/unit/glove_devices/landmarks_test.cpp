@@ -4,7 +4,6 @@
 #include <unistd.h>
 
 #include "common/base/clock.hpp"
-#include "common/base/random.hpp"
 #include "services/glove/devices/datagrams.hpp"
 #include "services/glove/devices/landmark_line.hpp"
 #include "services/glove/devices/paced.hpp"
@@ -14,6 +13,7 @@ namespace prehend::glove {
 namespace {
 
 using Eigen::Vector3d;
+using testing::free_address;
 using testing::Listener;
 
 /// A hand in the room, bent so much, at x.
@@ -34,12 +34,7 @@ class LandmarksTest : public ::testing::Test {
     options.left = left;
     options.token = token;
     options.scene.X_WH = make_pose({0.3, 0.1, 0.25});
-    // Ports of a range of their own; another program may have taken one.
-    Random random(static_cast<std::uint64_t>(::getpid()));
-    for (int tries = 0; tries < 100; ++tries) {
-      options.port = "127.0.0.1:" + std::to_string(20000 + random.index(10000));
-      if (DatagramReceiver::bind({.address = options.port, .senders = {}, .token = {}})) break;
-    }
+    options.port = free_address();
     auto made = find_device("landmarks")->create(options);
     ASSERT_TRUE(made) << made.error().message();
     device_ = std::move(*made);
@@ -172,16 +167,12 @@ TEST_F(LandmarksTest, WithATokenItHearsOnlyThoseWhoKnowIt) {
 // Loopback is 127.0.0.0/8: an address of it stands for a host that is not in the list.
 TEST(Datagrams, OnlyKnownSendersAreHeard) {
   const auto answer = [](std::vector<std::string> senders) {
-    Random random(static_cast<std::uint64_t>(::getpid()) + 1);
-    for (int tries = 0; tries < 100; ++tries) {
-      const std::string address = "127.0.0.1:" + std::to_string(20000 + random.index(10000));
-      auto receiver = DatagramReceiver::bind({.address = address, .senders = senders, .token = {}});
-      if (!receiver) continue;
-      DatagramSender::create(address)->write("hello");
-      const auto came = receiver->read(seconds(10));
-      return came ? came->bytes + std::string(came->refused) : came.error().message();
-    }
-    return std::string("no port is free");
+    const std::string address = free_address();
+    auto receiver = DatagramReceiver::bind({.address = address, .senders = senders, .token = {}});
+    if (!receiver) return receiver.error().message();
+    DatagramSender::create(address)->write("hello");
+    const auto came = receiver->read(seconds(10));
+    return came ? came->bytes + std::string(came->refused) : came.error().message();
   };
   EXPECT_EQ(answer({}), "hello") << "this machine, unless told otherwise";
   EXPECT_EQ(answer({"127.0.0.1"}), "hello");

@@ -18,6 +18,7 @@
 
 #include "common/recording/types/idl.hpp"
 #include "services/recorder/service/recording_file.hpp"
+#include "tests/support/domains/domain_lease.hpp"
 #include "tests/unit/recording/scratch.hpp"
 
 namespace prehend::recorder {
@@ -143,7 +144,7 @@ class PlayerTest : public ::testing::Test {
 
   dds::Participant join(dds::Discovery* listener) {
     return dds::Participant::create({.name = "player test",
-                                     .domain = 20 + ::getpid() % 180,
+                                     .domain = lease_.domain(),
                                      .rig = rig_,
                                      .listener = listener})
         .value();
@@ -184,6 +185,7 @@ class PlayerTest : public ::testing::Test {
   }
 
   const testing::Scratch scratch_;
+  const test::DomainLease lease_;
   const std::string rig_;
   const recording::types::Library types_ =
       recording::types::load_idl(std::string(PREHEND_SOURCE) + "/idl").value();

@@ -9,6 +9,7 @@
 
 #include "common/service/conductor.hpp"
 #include "common/service/shell.hpp"
+#include "tests/support/domains/domain_lease.hpp"
 
 namespace prehend::service {
 namespace {
@@ -109,8 +110,8 @@ Played play(unsigned seed, int domain, const std::string& rig) {
 }
 
 TEST(Lockstep, AnswersDoNotDependOnArrival) {
-  std::random_device device;
-  const int domain = static_cast<int>(device() % 200);
+  const test::DomainLease lease;
+  const int domain = lease.domain();
   const std::string rig = "lockstep-" + std::to_string(getpid());
   const Played first = play(1, domain, rig + "a");
   ASSERT_EQ(first.answers.size(), 60u);
@@ -122,9 +123,9 @@ TEST(Lockstep, AnswersDoNotDependOnArrival) {
 }
 
 TEST(Lockstep, AMissingServiceIsNamed) {
-  std::random_device device;
+  const test::DomainLease lease;
   auto participant = dds::Participant::create({.name = "test",
-                                               .domain = static_cast<int>(device() % 200),
+                                               .domain = lease.domain(),
                                                .rig = "empty-" + std::to_string(getpid()),
                                                .lockstep = true});
   auto conductor = Conductor::create(*participant, {"nobody"});
