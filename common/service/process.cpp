@@ -48,8 +48,8 @@ bool is_crash(int signal) {
 /// Behind the program's own last words, which say nothing of it.
 void note_crash(const std::filesystem::path& log, int signal) {
   if (!log.empty())
-    std::ofstream(log, std::ios::app) << "crashed: signal " << signal << " (" << ::strsignal(signal)
-                                      << ")\n";
+    std::ofstream(log, std::ios::app)
+        << "crashed: signal " << signal << " (" << ::strsignal(signal) << ")\n";
 }
 
 std::vector<char*> pointers(std::vector<std::string>& texts) {

@@ -35,7 +35,7 @@ int open_shared(const std::filesystem::path& file) {
 /// Locks the byte whose number is the domain. The lock belongs to this opening of the file, not to
 /// the process: two leases of one process differ as well.
 bool take(int opened, int domain, const std::filesystem::path& file) {
-  struct flock one{};
+  struct flock one {};
   one.l_type = F_WRLCK;
   one.l_whence = SEEK_SET;
   one.l_start = domain;

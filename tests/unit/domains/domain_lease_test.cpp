@@ -92,7 +92,8 @@ TEST_F(Domains, WhatAKilledProcessHadIsFree) {
 }
 
 TEST_F(Domains, WhereAllAreTakenItWaitsForTheNextThatIsFree) {
-  auto one = std::make_unique<DomainLease>(file_, 2), other = std::make_unique<DomainLease>(file_, 2);
+  auto one = std::make_unique<DomainLease>(file_, 2),
+       other = std::make_unique<DomainLease>(file_, 2);
   const int free = other->domain();
   std::atomic<bool> given = false;
   auto next = std::async(std::launch::async, [&] {
