@@ -186,7 +186,7 @@ Expected<Participant> Participant::create(const ParticipantOptions& options) {
 Expected<Participant> Participant::join(const ParticipantOptions& options) {
   if (options.domain < 0 || options.domain > 232)
     return fail("domain must lie in 0 to 232", "lab.domain");
-  static const bool first = (talk_over_the_network_within_process(), true);
+  static const bool first = (find_over_the_network_within_process(), true);
   static_cast<void>(first);
   auto state = std::make_unique<State>();
   state->options = options;
