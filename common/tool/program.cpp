@@ -1,5 +1,6 @@
 #include "common/tool/program.hpp"
 
+#include <CLI/CLI.hpp>
 #include <cstdlib>
 #include <iostream>
 #include <string_view>
@@ -75,8 +76,8 @@ std::optional<int> parse(CLI::App& app, int argc, char** argv) {
 }
 
 Program::Program(const std::string& name, const std::string& description)
-    : app_(description, "prehend " + name) {
-  app_.require_subcommand(1);
+    : app_(std::make_unique<CLI::App>(description, "prehend " + name)) {
+  app_->require_subcommand(1);
   log::set_name(name);
 }
 
@@ -84,8 +85,10 @@ void Program::on(CLI::App& command, std::function<int()> run) {
   command.callback([this, run = std::move(run)] { exit_code_ = run(); });
 }
 
+Program::~Program() = default;
+
 int Program::run(int argc, char** argv) {
-  if (const auto ended = parse(app_, argc, argv)) return *ended;
+  if (const auto ended = parse(*app_, argc, argv)) return *ended;
   return exit_code_;
 }
 

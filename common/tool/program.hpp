@@ -1,12 +1,17 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "common/base/error.hpp"
+
+// Whoever only starts a program needs nothing of CLI11, whose headers take seconds to compile.
+namespace CLI {
+class App;
+}
 
 /// What every command of `prehend` shares: arguments, messages, exit codes.
 namespace prehend::tool {
@@ -30,16 +35,17 @@ std::optional<int> parse(CLI::App& app, int argc, char** argv);
 class Program {
  public:
   Program(const std::string& name, const std::string& description);
+  ~Program();
 
   /// Where subcommands are added.
-  CLI::App& app() { return app_; }
+  CLI::App& app() { return *app_; }
   /// What a subcommand does once it is parsed; it returns the exit code.
   void on(CLI::App& command, std::function<int()> run);
   /// Parses and runs; returns the exit code of the process.
   int run(int argc, char** argv);
 
  private:
-  CLI::App app_;
+  std::unique_ptr<CLI::App> app_;
   int exit_code_ = exit_done;
 };
 

@@ -14,6 +14,7 @@
 #include "tests/architecture/drawing.hpp"
 #include "tests/architecture/rules.hpp"
 #include "tests/architecture/small_house.hpp"
+#include "tests/support/paths/paths.hpp"
 
 namespace prehend::architecture {
 
@@ -32,17 +33,17 @@ std::string all_violations(const House& house, const Agreed& agreed) {
 }
 
 TEST(Architecture, RulesHoldInThisTree) {
-  const House house = read_house(PREHEND_SOURCE);
+  const House house = read_house(prehend::test::in_sources(""));
   ASSERT_GT(house.sources.size(), 100u);  // something was read
   ASSERT_GT(house.pages.size(), 10u);
   EXPECT_EQ(all_violations(house, agreed_here), "");
 }
 
 TEST(Architecture, TheDrawingIsOfThisTree) {
-  std::ifstream in(std::filesystem::path(PREHEND_SOURCE) / "ARCHITECTURE.md");
+  std::ifstream in(std::filesystem::path(test::in_sources("ARCHITECTURE.md")));
   const std::string page{std::istreambuf_iterator<char>(in), {}};
   ASSERT_THAT(page, testing::HasSubstr(drawing_begins));
-  EXPECT_EQ(with_drawing(page, drawing(read_house(PREHEND_SOURCE))), page)
+  EXPECT_EQ(with_drawing(page, drawing(read_house(prehend::test::in_sources("")))), page)
       << "draw_architecture --write draws it anew";
 }
 

@@ -21,6 +21,7 @@
 #include "services/recognition/core/rendering/training_views.hpp"
 #include "services/recognition/core/scan/scan.hpp"
 #include "services/recognition/files/picture_file.hpp"
+#include "tests/support/paths/paths.hpp"
 
 namespace {
 
@@ -35,7 +36,7 @@ const model::Catalogue& catalogue() {
     const auto file =
         std::filesystem::temp_directory_path() / fmt::format("ten-{}.toml", ::getpid());
     std::ofstream text(file);
-    text << std::ifstream(PREHEND_SOURCE "/common/models/objects/catalogue.toml").rdbuf()
+    text << std::ifstream(test::in_sources("common/models/objects/catalogue.toml")).rdbuf()
          << "\n[[object]]\nname = \"Tin\"\nshape = \"cylinder\"\nsize = [0.035, 0.035, 0.11]\n"
             "mass = 0.3\nmaterial = \"plastic\"\n[object.appearance]\n"
             "colours = [[0.7, 0.7, 0.2], [0.1, 0.3, 0.3], [0.9, 0.9, 0.9]]\n"

@@ -7,6 +7,7 @@
 #include "tests/fuzz/fuzz.hpp"
 #include "tests/fuzz/mutation.hpp"
 #include "tests/fuzz/type_texts.hpp"
+#include "tests/support/paths/paths.hpp"
 #include "tests/unit/recording/random_message.hpp"
 
 using namespace prehend;
@@ -47,7 +48,7 @@ int main(int argc, char** argv) {
     return type;
   };
   const model::HandModel hand =
-      model::HandModel::load(PREHEND_SOURCE "/common/models/hands/barrett").value();
+      model::HandModel::load(test::in_sources("common/models/hands/barrett")).value();
   fuzz::Fuzzer fuzzer;
   Random seed(1);
   for (std::size_t i = 0; i < cases.size(); ++i) {

@@ -7,13 +7,14 @@
 #include "common/model/task_kinds.hpp"
 #include "tests/fuzz/fuzz.hpp"
 #include "tests/fuzz/mutation.hpp"
+#include "tests/support/paths/paths.hpp"
 
 using namespace prehend;
 
 int main(int argc, char** argv) {
   fuzz::Fuzzer fuzzer;
-  fuzzer.seeds = {fuzz::read_file(PREHEND_SOURCE "/common/models/grasps/taxonomy.toml"),
-                  fuzz::read_file(PREHEND_SOURCE "/common/models/tasks/tasks.toml")};
+  fuzzer.seeds = {fuzz::read_file(test::in_sources("common/models/grasps/taxonomy.toml")),
+                  fuzz::read_file(test::in_sources("common/models/tasks/tasks.toml"))};
   fuzzer.mutate = [](Random& random, std::string text) {
     return fuzz::mutate_text(random, std::move(text), fuzz::mutate_lines);
   };

@@ -5,13 +5,14 @@
 
 #include "common/base/random.hpp"
 #include "tests/fuzz/fuzz.hpp"
+#include "tests/support/paths/paths.hpp"
 
 namespace prehend::fuzz {
 
 std::vector<HandFiles> all_hands() {
   std::vector<std::filesystem::path> folders;
   for (const auto& entry :
-       std::filesystem::directory_iterator(PREHEND_SOURCE "/common/models/hands"))
+       std::filesystem::directory_iterator(test::in_sources("common/models/hands")))
     if (entry.is_directory()) folders.push_back(entry.path());
   std::sort(folders.begin(), folders.end());
   std::vector<HandFiles> hands;

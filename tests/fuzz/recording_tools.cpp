@@ -20,6 +20,7 @@
 #include "tests/fuzz/fuzz.hpp"
 #include "tests/fuzz/mutation.hpp"
 #include "tests/fuzz/type_texts.hpp"
+#include "tests/support/paths/paths.hpp"
 #include "tests/unit/recording/random_message.hpp"
 
 using namespace prehend;
@@ -136,7 +137,7 @@ int main(int argc, char** argv) {
           .string();
   const recording::types::Library contract = fuzz::contract();
   const auto tolerances =
-      recording::ToleranceTable::load(PREHEND_SOURCE "/common/recording/compare/tolerances.toml")
+      recording::ToleranceTable::load(test::in_sources("common/recording/compare/tolerances.toml"))
           .value();
   fuzz::Fuzzer fuzzer;
   // Without CRCs damage gets past the first gate, with them it must be seen there.

@@ -12,6 +12,7 @@
 #include "services/recorder/tools/recording/copy.hpp"
 #include "tests/fuzz/fuzz.hpp"
 #include "tests/fuzz/mutation.hpp"
+#include "tests/support/paths/paths.hpp"
 
 using namespace prehend;
 
@@ -27,7 +28,7 @@ std::string path() {
 std::string plain(const std::string& sample) {
   std::vector<recording::mcap::Reader> sources;
   sources.push_back(
-      recording::mcap::Reader::open(PREHEND_SOURCE "/deploy/samples/" + sample).value());
+      recording::mcap::Reader::open(test::in_sources("deploy/samples/") + sample).value());
   const std::uint64_t end = sources.front().statistics().value().message_end_time;
   recorder::CopyOptions options;
   options.selection.start = end - 2'000'000'000;

@@ -6,11 +6,12 @@
 #include "common/recording/types/value.hpp"
 #include "tests/fuzz/fuzz.hpp"
 #include "tests/fuzz/mutation.hpp"
+#include "tests/support/paths/paths.hpp"
 
 namespace prehend::fuzz {
 
 recording::types::Library contract() {
-  return recording::types::load_idl(std::string(PREHEND_SOURCE) + "/idl").value();
+  return recording::types::load_idl(test::in_sources("idl")).value();
 }
 
 std::string mutate_type_text(Random& random, std::string text,

@@ -13,6 +13,7 @@
 #include "services/recognition/files/picture_file.hpp"
 #include "tests/integration/rig.hpp"
 #include "tests/integration/stream_camera.hpp"
+#include "tests/support/paths/paths.hpp"
 
 namespace prehend::integration {
 namespace {
@@ -37,7 +38,7 @@ constexpr const char* tin =
 class Cameras : public Rig {
  protected:
   Cameras() {
-    std::filesystem::copy_file(PREHEND_SOURCE "/common/models/objects/catalogue.toml",
+    std::filesystem::copy_file(test::in_sources("common/models/objects/catalogue.toml"),
                                folder_ / "known.toml");
     std::filesystem::copy_file(folder_ / "known.toml", folder_ / "world.toml");
     std::ofstream(folder_ / "world.toml", std::ios::app) << tin;
@@ -175,7 +176,7 @@ TEST_F(Cameras, StreamThatGoesIsSaidAndTakenUpAgain) {
 
 TEST_F(Cameras, ObjectLearnedFromTheRunningLabIsRecognised) {
   const std::filesystem::path model = folder_ / "objects.model", known = folder_ / "known.toml";
-  std::filesystem::copy_file(PREHEND_OBJECT_MODELS, model);
+  std::filesystem::copy_file(test::in_share("trained/objects.model"), model);
   StreamCamera camera(20);
   camera.show(table());
   const Strings own{"recognition.model=" + model.string(), "lab.catalogue=" + known.string()};

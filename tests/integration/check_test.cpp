@@ -12,6 +12,7 @@
 #include "common/recording/mcap/writer.hpp"
 #include "common/recording/types/idl.hpp"
 #include "tests/integration/rig.hpp"
+#include "tests/support/paths/paths.hpp"
 
 namespace prehend::integration {
 namespace {
@@ -20,7 +21,7 @@ using nlohmann::json;
 using recorder::Played;
 using recorder::Tape;
 
-const std::string samples = std::string(PREHEND_SOURCE) + "/deploy/samples";
+const std::string samples = test::in_sources("deploy/samples");
 
 std::vector<std::filesystem::path> all_samples() {
   std::vector<std::filesystem::path> files;
@@ -241,13 +242,13 @@ TEST_F(Check, WhatCannotBeFoundOutIsNoVerdict) {
 }
 
 TEST_F(Check, TheReadmeShowsALabHowToAddItsOwn) {
-  const std::string page = text_of(std::string(PREHEND_SOURCE) + "/services/recorder/README.md");
+  const std::string page = text_of(test::in_sources("services/recorder/README.md"));
   const std::string fence = "```sh\n";
   const std::size_t begin = page.find(fence, page.find("## A recording as a test")) + fence.size();
   const std::string example = page.substr(begin, page.find("```", begin) - begin);
   ASSERT_NE(example.find("prehend check mine.mcap"), std::string::npos);
   std::ofstream(file("example.sh"))
-      << "set -e\ncd " << folder_.string() << "\nPATH=" << PREHEND_PROGRAMS
+      << "set -e\ncd " << folder_.string() << "\nPATH=" << test::in_programs("")
       << ":$PATH\nexport PREHEND_LAB_DOMAIN=" << domain_ << "\n"
       << example;
   service::Process::Options options{.command = {"/bin/sh", file("example.sh")},

@@ -9,6 +9,7 @@
 #include "common/dds/raw.hpp"
 #include "services/cli/tools/keys/keystore.hpp"
 #include "tests/integration/rig.hpp"
+#include "tests/support/paths/paths.hpp"
 
 namespace prehend::integration {
 namespace {
@@ -46,7 +47,7 @@ class Doctor : public Rig {
     const std::string file = (folder_ / "script").string();
     std::string lab;
     for (const std::string& word : with_lab({})) (lab += word) += " ";
-    std::ofstream(file) << "bin=" << PREHEND_PROGRAMS << "\nmount -t tmpfs none /dev/shm\n"
+    std::ofstream(file) << "bin=" << test::in_programs("") << "\nmount -t tmpfs none /dev/shm\n"
                         << "doctor=\"$bin/prehend doctor --json --listen 1 " << lab << "\"\n"
                         << script;
     service::Process::Options options;
@@ -135,7 +136,7 @@ TEST_F(Doctor, NamesABrokenProfileAndWhatFollows) {
   service::Process::Options options;
   options.command = {program("prehend")};
   for (const std::string& word :
-       with_lab({"doctor", "--json", "--config", PREHEND_SOURCE "/deploy/lab.toml"}))
+       with_lab({"doctor", "--json", "--config", test::in_sources("deploy/lab.toml")}))
     options.command.push_back(word);
   options.output = folder_ / "doctor.out";
   options.log = folder_ / "doctor.log";
@@ -318,7 +319,7 @@ TEST_F(Doctor, NamesDevicesThatCannotBeOpenedAndProgramsThatAreMissing) {
   for (const std::string& word : with_lab({"doctor", "--json", "--listen", "0.5"}))
     options.command.push_back(word);
   options.output = folder_ / "doctor.out";
-  options.environment = {{"PREHEND_SHARE", std::string(PREHEND_PROGRAMS) + "/../share/prehend"}};
+  options.environment = {{"PREHEND_SHARE", test::in_share("")}};
   auto process = service::Process::start(options);
   ASSERT_TRUE(process);
   const auto exit = process->wait(seconds(30));

@@ -14,6 +14,7 @@ extern "C" {
 #include <cstdlib>
 #include <nlohmann/json.hpp>
 
+#include "tests/support/paths/paths.hpp"
 #include "tests/unit/recording/scratch.hpp"
 
 namespace prehend {
@@ -22,7 +23,7 @@ namespace {
 using Json = nlohmann::json;
 using ::testing::HasSubstr;
 
-const std::string samples = PREHEND_SOURCE "/deploy/samples";
+const std::string samples = test::in_sources("deploy/samples");
 const std::string with_pictures = samples + "/intelligent-grasp.mcap";
 
 struct Answer {
@@ -36,8 +37,8 @@ class Export : public ::testing::Test {
   Answer run(const std::string& text) {
     const auto out = scratch_ / "out", err = scratch_ / "err";
     const std::string command = "cd " + (scratch_ / "").string() +
-                                " && PATH=" PREHEND_PROGRAMS ":$PATH && (" + text + "\n) >" +
-                                out.string() + " 2>" + err.string();
+                                " && PATH=" + test::in_programs("") + ":$PATH && (" + text +
+                                "\n) >" + out.string() + " 2>" + err.string();
     const int status = std::system(command.c_str());
     return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read(out), read(err)};
   }
@@ -179,8 +180,8 @@ TEST_F(Export, WhatCannotBeMeantIsRefused) {
   refused(with_pictures + " --format aloha --hand left", 2, "holds no hand left but hand");
   refused(with_pictures + " --format zarr", 2, "--format");
   refused("nothing.mcap --format aloha", 3, "nothing.mcap: is not there");
-  refused(PREHEND_SOURCE "/README.md --format robomimic", 1, "README.md");
-  refused(PREHEND_SOURCE "/docs/results --format robomimic", 1, "holds no recording");
+  refused(test::in_sources("README.md --format robomimic"), 1, "README.md");
+  refused(test::in_sources("docs/results --format robomimic"), 1, "holds no recording");
   const Answer without = run("prehend recording export " + with_pictures + " --format aloha");
   EXPECT_EQ(without.code, 2);
   EXPECT_THAT(without.complaint, HasSubstr("name it with -o"));

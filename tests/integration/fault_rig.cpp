@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <numeric>
 
+#include "tests/support/paths/paths.hpp"
+
 namespace prehend::integration {
 namespace {
 
@@ -57,7 +59,7 @@ OnHosts::OnHosts() {
     skip_ = *why;
     return;
   }
-  hosts_.emplace(std::string(PREHEND_PROGRAMS) + "/prehend-delay-line");
+  hosts_.emplace(test::in_programs("prehend-delay-line"));
   hosts_->add("operator");
   hosts_->enter("operator");
 }

@@ -12,6 +12,7 @@
 #include <nlohmann/json.hpp>
 
 #include "tests/integration/fault_rig.hpp"
+#include "tests/support/paths/paths.hpp"
 
 namespace prehend::integration {
 namespace {
@@ -231,7 +232,7 @@ void Faults::two_leaders() {
   EXPECT_GT(row.recoveries.back(), 0);
 
   Strings replay = hosts_->on(
-      "eye", {program("prehend-replay"), PREHEND_SOURCE "/deploy/samples/intelligent-grasp.mcap",
+      "eye", {program("prehend-replay"), test::in_sources("deploy/samples/intelligent-grasp.mcap"),
               "--topics", "robot/command", "--loop", "--stamps", "now"});
   for (const std::string& argument : lab_arguments()) replay.push_back(argument);
   auto player = service::Process::start({.command = replay, .log = folder_ / "replay.log"});

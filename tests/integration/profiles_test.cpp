@@ -12,6 +12,7 @@
 
 #include "common/base/paths.hpp"
 #include "tests/integration/rig.hpp"
+#include "tests/support/paths/paths.hpp"
 
 namespace prehend::integration {
 namespace {
@@ -21,7 +22,7 @@ class Profiles : public Rig {
   /// Runs a shell script where there is no interface but those that it makes.
   Answer alone(const std::string& script, double limit_s) {
     const std::string file = (folder_ / "script").string();
-    std::ofstream(file) << "set -eu\nbin=" << PREHEND_PROGRAMS << "\nlab='"
+    std::ofstream(file) << "set -eu\nbin=" << test::in_programs("") << "\nlab='"
                         << joined(lab_arguments()) << "'\n"
                         << script;
     service::Process::Options options;
@@ -82,7 +83,7 @@ TEST_F(Profiles, APartThatFastDdsWouldIgnoreStopsTheProcess) {
     service::Process::Options options;
     options.command = {program("prehend"), "status",
                        "--timeout",        "0.1",
-                       "--config",         PREHEND_SOURCE "/deploy/lab.toml"};
+                       "--config",         test::in_sources("deploy/lab.toml")};
     const Strings lab = lab_arguments({fmt::format("lab.network={}", profile),
                                        "lab.server=[\"127.0.0.1\"]", "lab.insecure=true"});
     options.command.insert(options.command.end(), lab.begin(), lab.end());
@@ -94,7 +95,7 @@ TEST_F(Profiles, APartThatFastDdsWouldIgnoreStopsTheProcess) {
     return Answer{exit ? exit->code : -1, "", text(options.log)};
   };
   const auto try_all = [&](const std::string& profile) {
-    const std::string xml = text(fmt::format(PREHEND_SOURCE "/deploy/dds/{}.xml", profile));
+    const std::string xml = text(fmt::format(test::in_sources("deploy/dds/{}.xml"), profile));
     ASSERT_EQ(run_with(profile, xml).exit_code, 1) << profile;  // fine: nobody is there
     auto broken = misspelt(xml);
     ASSERT_GT(broken.size(), 10u);

@@ -15,6 +15,7 @@
 #include "services/recorder/service/recording_file.hpp"
 #include "tests/integration/rig.hpp"
 #include "tests/integration/terminal.hpp"
+#include "tests/support/paths/paths.hpp"
 
 namespace prehend::integration {
 namespace {
@@ -322,7 +323,7 @@ TEST_F(Replay, ARecordedHandIsANameAndNoPath) {
 }
 
 TEST_F(Replay, WithoutAHandThereIsNoEasing) {
-  const std::string sample = std::string(PREHEND_SOURCE) + "/deploy/samples/direct-grasp.mcap";
+  const std::string sample = test::in_sources("deploy/samples/direct-grasp.mcap");
   const Answer unknown = run("prehend", with_lab({"replay", sample, "--ease-in", "claw"}), 20);
   EXPECT_EQ(unknown.exit_code, 3) << unknown.log;
   EXPECT_NE(unknown.log.find("--ease-in claw"), std::string::npos) << unknown.log;

@@ -7,6 +7,7 @@
 
 #include "common/base/file_text.hpp"
 #include "common/base/time.hpp"
+#include "tests/support/paths/paths.hpp"
 
 namespace prehend::integration {
 namespace {
@@ -56,7 +57,7 @@ Rig::~Rig() {
 }
 
 std::string Rig::program(const std::string& name) {
-  return std::string(PREHEND_PROGRAMS) + "/" + name;
+  return test::in_programs("") + name;
 }
 
 std::string Rig::address(int number) const {

@@ -12,6 +12,7 @@
 #include "common/service/status_publisher.hpp"
 #include "tests/integration/safety_rig.hpp"
 #include "tests/integration/terminal.hpp"
+#include "tests/support/paths/paths.hpp"
 
 namespace prehend::integration {
 namespace {
@@ -414,7 +415,7 @@ class Replayers : public Stop {
   service::Process play(const std::string& topic) {
     return start_program(
         "prehend-replay",
-        with_lab({PREHEND_SOURCE "/deploy/samples/intelligent-grasp.mcap", "--quiet", "--stamps",
+        with_lab({test::in_sources("deploy/samples/intelligent-grasp.mcap"), "--quiet", "--stamps",
                   "now", "--rate", "0.5", "--topics", topic}));
   }
   static std::string name_of(const service::Process& player) {

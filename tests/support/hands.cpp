@@ -7,10 +7,12 @@
 #include <stdexcept>
 #include <utility>
 
+#include "tests/support/paths/paths.hpp"
+
 namespace prehend::test {
 
 namespace {
-const std::filesystem::path folder = PREHEND_SOURCE "/common/models/hands";
+const std::filesystem::path folder = test::in_sources("common/models/hands");
 }
 
 std::vector<std::string> hand_names() {
@@ -24,7 +26,7 @@ std::vector<std::string> hand_names() {
 std::vector<std::string> mappable_hands() {
   std::vector<std::string> names = hand_names();
   std::erase_if(names, [](const std::string& name) {
-    return !std::filesystem::exists(PREHEND_SOURCE "/services/mapping/schemes/" + name + ".toml");
+    return !std::filesystem::exists(test::in_sources("services/mapping/schemes/") + name + ".toml");
   });
   return names;
 }

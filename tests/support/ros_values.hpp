@@ -7,6 +7,7 @@
 
 #include "common/recording/types/idl.hpp"
 #include "common/recording/types/value.hpp"
+#include "tests/support/paths/paths.hpp"
 
 /// What messages for nodes of ROS 2 say, read by their types in idl/ros2. Throws what is wrong.
 namespace prehend::test {
@@ -14,7 +15,7 @@ namespace prehend::test {
 using recording::types::Value;
 
 inline Value ros_value(const std::string& type, const std::vector<std::uint8_t>& bytes) {
-  static const auto types = recording::types::load_idl(PREHEND_SOURCE "/idl/ros2").value();
+  static const auto types = recording::types::load_idl(test::in_sources("idl/ros2")).value();
   const auto* structure = types.find(type);
   if (!structure) throw std::runtime_error("no type " + type);
   auto value = recording::types::decode(*structure, bytes);

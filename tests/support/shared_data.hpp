@@ -3,6 +3,8 @@
 #include <cstdlib>
 #include <filesystem>
 
+#include "tests/support/paths/paths.hpp"
+
 namespace prehend {
 
 /// The folder of real data, which is not part of the sources: PREHEND_SHARED_DATA, otherwise
@@ -10,7 +12,7 @@ namespace prehend {
 /// what it guards is tested on made data besides.
 inline std::filesystem::path shared_data() {
   const char* given = std::getenv("PREHEND_SHARED_DATA");
-  return given ? given : PREHEND_SOURCE "/../shared/data";
+  return given ? given : test::in_sources("../shared/data");
 }
 
 }  // namespace prehend

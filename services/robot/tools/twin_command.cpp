@@ -1,6 +1,7 @@
 // `prehend robot twin`.
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <chrono>
 #include <csignal>
 #include <iostream>

@@ -5,10 +5,11 @@
 #include <string_view>
 
 #include "tests/architecture/drawing.hpp"
+#include "tests/support/paths/paths.hpp"
 
 int main(int argc, char** argv) {
   using namespace prehend::architecture;
-  const std::filesystem::path root = PREHEND_SOURCE;
+  const std::filesystem::path root = prehend::test::in_sources("");
   const std::string drawn = drawing(read_house(root));
   if (argc == 1) {
     std::cout << drawn;

@@ -11,6 +11,7 @@
 #include "common/recording/mcap/writer.hpp"
 #include "common/recording/types/idl.hpp"
 #include "common/recording/types/schema_text.hpp"
+#include "tests/support/paths/paths.hpp"
 #include "tests/unit/recording/random_message.hpp"
 
 using namespace prehend;
@@ -52,7 +53,7 @@ int main(int argc, char** argv) {
   if (argc != 4) return 2;
   const std::string folder = argv[1], encoding = argv[2], compression = argv[3];
   const recording::types::Library contract =
-      recording::types::load_idl(PREHEND_SOURCE "/idl").value();
+      recording::types::load_idl(test::in_sources("idl")).value();
   recording::mcap::WriterOptions options{
       .compression = recording::mcap::compression_named(compression).value(), .chunk_bytes = 5000};
   recording::mcap::Writer writer =

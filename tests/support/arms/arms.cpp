@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "common/base/file_text.hpp"
+#include "tests/support/paths/paths.hpp"
 
 namespace prehend::test {
 namespace {
@@ -129,7 +130,7 @@ const std::vector<ArmFiles>& foreign_arms() {
 std::vector<ArmFiles> all_arms() {
   std::vector<ArmFiles> arms = foreign_arms();
   for (const auto& entry :
-       std::filesystem::directory_iterator(PREHEND_SOURCE "/common/models/arms"))
+       std::filesystem::directory_iterator(test::in_sources("common/models/arms")))
     if (entry.is_directory())
       arms.push_back({entry.path().filename().string(),
                       read_file(entry.path() / "arm.urdf").value(),

@@ -15,6 +15,7 @@
 #include "common/analysis/grip_forces.hpp"
 #include "common/analysis/linear_program.hpp"
 #include "common/analysis/resistance.hpp"
+#include "tests/support/paths/paths.hpp"
 #include "tests/unit/analysis/grasps.hpp"
 
 namespace {
@@ -133,7 +134,7 @@ TEST(GraspMap, PinchHasOneInternalForceAndSoftFingersTwo) {
 }
 
 TEST(GraspMap, JacobianIsTheDerivativeOfTheContactPoints) {
-  const auto hand = model::HandModel::load(PREHEND_SOURCE "/common/models/hands/barrett");
+  const auto hand = model::HandModel::load(test::in_sources("common/models/hands/barrett"));
   ASSERT_TRUE(hand) << hand.error().message();
   const Pose X_BO =
       make_pose(Vector3d(0.01, -0.02, 0.09), Eigen::Quaterniond(0.8, 0.2, -0.4, 0.1).normalized());

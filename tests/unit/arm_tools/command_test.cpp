@@ -10,6 +10,7 @@
 
 #include "common/base/file_text.hpp"
 #include "tests/support/arms/arms.hpp"
+#include "tests/support/paths/paths.hpp"
 
 namespace {
 
@@ -19,7 +20,7 @@ using prehend::test::Answer;
 
 class ArmCommand : public prehend::test::CommandTest {
  protected:
-  ArmCommand() : CommandTest(PREHEND_BIN "/prehend arm") {}
+  ArmCommand() : CommandTest(prehend::test::in_programs("prehend arm")) {}
 };
 
 constexpr const char* nominal =

@@ -8,11 +8,12 @@
 #include "common/model/catalogue.hpp"
 #include "common/model/hand_model.hpp"
 #include "tests/support/hands.hpp"
+#include "tests/support/paths/paths.hpp"
 
 namespace prehend::cli {
 namespace {
 
-const std::filesystem::path models = std::filesystem::path(PREHEND_SOURCE) / "common" / "models";
+const std::filesystem::path models = std::filesystem::path(test::in_sources("common")) / "models";
 
 SettingOptions options(std::uint64_t seed) {
   return {seed, "", models / "hands" / "barrett", models / "objects" / "catalogue.toml"};

@@ -6,6 +6,7 @@
 #include <map>
 
 #include "common/dds/topics.hpp"
+#include "tests/support/paths/paths.hpp"
 
 namespace prehend::console {
 namespace {
@@ -32,7 +33,7 @@ class FilmTest : public testing::Test {
   std::int64_t after(double s) const { return film_->span().begin_ns + to_ns(Time(seconds(s))); }
 
   std::unique_ptr<Film> film_ =
-      Film::open(PREHEND_SOURCE "/deploy/samples/intelligent-grasp.mcap").value();
+      Film::open(test::in_sources("deploy/samples/intelligent-grasp.mcap")).value();
   Time now_ = from_ns(1'000'000'000'000);
 };
 

@@ -14,6 +14,7 @@
 #include "common/recording/layout/older_types.hpp"
 #include "common/recording/mcap/reader.hpp"
 #include "common/recording/types/idl.hpp"
+#include "tests/support/paths/paths.hpp"
 
 namespace prehend::console {
 namespace {
@@ -22,7 +23,7 @@ using nlohmann::json;
 
 const model::HandModel& barrett() {
   static const model::HandModel hand =
-      model::HandModel::load(PREHEND_SOURCE "/common/models/hands/barrett").value();
+      model::HandModel::load(test::in_sources("common/models/hands/barrett")).value();
   return hand;
 }
 
@@ -34,9 +35,9 @@ LabView view() {
 
 /// Calls with every message of the sample recording.
 void play(const std::function<void(const std::string& topic, const Value&)>& each) {
-  const auto types = recording::types::load_idl(PREHEND_SOURCE "/idl").value();
+  const auto types = recording::types::load_idl(test::in_sources("idl")).value();
   auto reader =
-      recording::mcap::Reader::open(PREHEND_SOURCE "/deploy/samples/intelligent-grasp.mcap")
+      recording::mcap::Reader::open(test::in_sources("deploy/samples/intelligent-grasp.mcap"))
           .value();
   auto cursor = reader.messages();
   while (auto next = cursor.next().value()) {

@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "common/dds/topics.hpp"
+#include "tests/support/paths/paths.hpp"
 
 namespace prehend::dds {
 namespace {
@@ -83,7 +84,7 @@ const TopicInfo* topic_of(std::string variable) {
 std::vector<Call> calls_in(const fs::path& path) {
   std::ifstream stream(path);
   const std::string text{std::istreambuf_iterator<char>(stream), {}};
-  const std::string file = fs::relative(path, PREHEND_SOURCE).string();
+  const std::string file = fs::relative(path, test::in_sources("")).string();
   static const std::regex call(R"(\b(publish|subscribe|writer|reader)\(\s*(prehend::)?dds::(\w+))");
   std::vector<Call> calls;
   for (std::sregex_iterator at(text.begin(), text.end(), call), end; at != end; ++at) {
@@ -98,7 +99,7 @@ const std::vector<Call>& all_calls() {
   static const std::vector<Call> calls = [] {
     std::vector<Call> found;
     for (const char* top : {"/services", "/common/robot", "/common/service"})
-      for (const auto& entry : fs::recursive_directory_iterator(std::string(PREHEND_SOURCE) + top))
+      for (const auto& entry : fs::recursive_directory_iterator(test::in_sources("") + top))
         if (entry.path().extension() == ".cpp")
           std::ranges::copy(calls_in(entry.path()), std::back_inserter(found));
     return found;

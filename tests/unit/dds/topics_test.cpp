@@ -13,13 +13,14 @@
 #include <vector>
 
 #include "common/recording/types/idl.hpp"
+#include "tests/support/paths/paths.hpp"
 
 namespace prehend::dds {
 namespace {
 
 const recording::types::Structure* structure_of(const TopicInfo& topic) {
   static const recording::types::Library library =
-      recording::types::load_idl(PREHEND_SOURCE "/idl").value();
+      recording::types::load_idl(test::in_sources("idl")).value();
   return library.find(topic.type_name());
 }
 
@@ -84,7 +85,7 @@ std::string row_of(const TopicInfo& topic) {
 
 /// Rows of the page's first table that are about a topic.
 std::vector<std::string> documented_rows() {
-  std::ifstream file(PREHEND_SOURCE "/idl/README.md");
+  std::ifstream file(test::in_sources("idl/README.md"));
   std::vector<std::string> rows;
   for (std::string line; std::getline(file, line);) {
     if (!rows.empty() && !line.starts_with("|")) break;
@@ -167,7 +168,7 @@ TEST(Topics, EveryServiceTurnsInputsIntoOutputs) {
 
 TEST(Topics, EveryStructIsFinalAndEveryStringKeyIsBounded) {
   int structs = 0;
-  for (const auto& entry : std::filesystem::directory_iterator(PREHEND_SOURCE "/idl")) {
+  for (const auto& entry : std::filesystem::directory_iterator(test::in_sources("idl"))) {
     if (entry.path().extension() != ".idl") continue;
     std::ifstream file(entry.path());
     for (std::string line; std::getline(file, line);) {

@@ -10,6 +10,7 @@
 
 #include "common/base/file_text.hpp"
 #include "tests/support/command_test.hpp"
+#include "tests/support/paths/paths.hpp"
 #include "tests/support/takes/made_takes.hpp"
 
 namespace prehend::demonstration {
@@ -22,7 +23,7 @@ using test::Answer;
 
 class DemonstrationCommand : public test::CommandTest {
  protected:
-  DemonstrationCommand() : CommandTest(PREHEND_BIN "/prehend demonstration") {}
+  DemonstrationCommand() : CommandTest(test::in_programs("prehend demonstration")) {}
 
   /// A folder with one file of takes.
   std::string takes(const std::string& name, const std::string& csv) const {

@@ -15,6 +15,8 @@
 #include <string>
 #include <vector>
 
+#include "tests/support/paths/paths.hpp"
+
 namespace prehend::test {
 namespace {
 
@@ -34,6 +36,7 @@ class Holder {
   explicit Holder(const std::filesystem::path& file, int last) {
     int ends[2];
     if (::pipe2(ends, O_CLOEXEC) != 0) throw std::runtime_error("no pipe");
+    const std::string program = test::in_programs("with_domain");
     process_ = ::fork();
     if (process_ == 0) {
       const DomainLease lease(file, last);
@@ -119,7 +122,7 @@ class Script {
     if (process_ == 0) {
       ::dup2(in[0], 0);
       ::dup2(out[1], 1);
-      ::execl(WITH_DOMAIN, WITH_DOMAIN, "sh", "-c",
+      ::execl(program.c_str(), program.c_str(), "sh", "-c",
               "[ $DOMAIN_LEASED_TO = $$ ] && echo $PREHEND_LAB_DOMAIN; read _", nullptr);
       ::_exit(1);
     }

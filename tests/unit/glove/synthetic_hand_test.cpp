@@ -8,6 +8,7 @@
 
 #include "common/model/placement.hpp"
 #include "services/glove/core/processor.hpp"
+#include "tests/support/paths/paths.hpp"
 
 namespace prehend::glove {
 namespace {
@@ -16,7 +17,7 @@ using Eigen::Vector3d;
 
 model::Catalogue catalogue() {
   const auto loaded =
-      model::Catalogue::load(std::string(PREHEND_SOURCE) + "/common/models/objects/catalogue.toml");
+      model::Catalogue::load(test::in_sources("common/models/objects/catalogue.toml"));
   EXPECT_TRUE(loaded) << (loaded ? "" : loaded.error().message());
   return loaded.value_or(model::Catalogue{});
 }

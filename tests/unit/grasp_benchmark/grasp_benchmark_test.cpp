@@ -10,6 +10,7 @@
 #include <thread>
 
 #include "services/mapping/files/mapping_model_file.hpp"
+#include "tests/support/paths/paths.hpp"
 
 namespace prehend::mapping {
 namespace {
@@ -22,22 +23,22 @@ T loaded(Expected<T> value) {
 
 const model::HandModel& barrett() {
   static const auto hand =
-      loaded(model::HandModel::load(PREHEND_SOURCE "/common/models/hands/barrett"));
+      loaded(model::HandModel::load(test::in_sources("common/models/hands/barrett")));
   return hand;
 }
 
 const std::vector<RobotGrasp>& grasps() {
   static const auto grasps =
-      loaded(load_robot_grasps(PREHEND_TRAINED "/barrett.grasps", barrett()));
+      loaded(load_robot_grasps(test::in_share("trained/barrett.grasps"), barrett()));
   return grasps;
 }
 
 Expected<std::vector<TrialResult>> run(const GraspBenchmarkOptions& options,
                                        const grasping::ForEach& for_each) {
   static const auto model =
-      loaded(load_mapping_model(PREHEND_TRAINED "/barrett.mapping", barrett()));
+      loaded(load_mapping_model(test::in_share("trained/barrett.mapping"), barrett()));
   static const auto catalogue =
-      loaded(model::Catalogue::load(PREHEND_SOURCE "/common/models/objects/catalogue.toml"));
+      loaded(model::Catalogue::load(test::in_sources("common/models/objects/catalogue.toml")));
   return run_grasp_benchmark({barrett(), model, grasps(), catalogue}, options, for_each);
 }
 
@@ -115,7 +116,8 @@ TEST(GraspBenchmark, GivesAllModesTheSameTakesHoweverTheWorkIsDivided) {
 
 TEST(GraspBenchmark, SaysWhenThereIsNothingToRepeat) {
   const std::vector<RobotGrasp> none;
-  const auto model = loaded(load_mapping_model(PREHEND_TRAINED "/barrett.mapping", barrett()));
+  const auto model =
+      loaded(load_mapping_model(test::in_share("trained/barrett.mapping"), barrett()));
   const model::Catalogue catalogue;
   const auto results = run_grasp_benchmark({barrett(), model, none, catalogue}, {}, in_order);
   ASSERT_FALSE(results);

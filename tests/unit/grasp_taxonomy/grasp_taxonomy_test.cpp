@@ -6,12 +6,14 @@
 #include <set>
 
 #include "common/base/file_text.hpp"
+#include "tests/support/paths/paths.hpp"
 
 namespace prehend::model {
 namespace {
 
 const std::string& text() {
-  static const std::string read = *read_file(PREHEND_SOURCE "/common/models/grasps/taxonomy.toml");
+  static const std::string read =
+      *read_file(test::in_sources("common/models/grasps/taxonomy.toml"));
   return read;
 }
 

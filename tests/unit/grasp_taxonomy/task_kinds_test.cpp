@@ -5,12 +5,13 @@
 #include <set>
 
 #include "common/base/file_text.hpp"
+#include "tests/support/paths/paths.hpp"
 
 namespace prehend::model {
 namespace {
 
 const std::string& tasks_text() {
-  static const std::string read = *read_file(PREHEND_SOURCE "/common/models/tasks/tasks.toml");
+  static const std::string read = *read_file(test::in_sources("common/models/tasks/tasks.toml"));
   return read;
 }
 
@@ -21,7 +22,7 @@ const TaskKinds& tasks() {
 
 const GraspTaxonomy& grasps() {
   static const auto made =
-      GraspTaxonomy::load(PREHEND_SOURCE "/common/models/grasps/taxonomy.toml");
+      GraspTaxonomy::load(test::in_sources("common/models/grasps/taxonomy.toml"));
   return *made;
 }
 

@@ -5,6 +5,7 @@
 
 #include "common/grasping/closing.hpp"
 #include "common/model/catalogue.hpp"
+#include "tests/support/paths/paths.hpp"
 
 namespace {
 
@@ -29,7 +30,7 @@ class HandGrasps : public testing::TestWithParam<Trial> {};
 
 TEST_P(HandGrasps, HoldWhatStandsAtTheGraspFrame) {
   const Trial& trial = GetParam();
-  const std::string models = std::string(PREHEND_SOURCE) + "/common/models/";
+  const std::string models = test::in_sources("common/models/");
   const auto hand = model::HandModel::load(models + "hands/" + trial.hand);
   ASSERT_TRUE(hand) << hand.error().message();
   const auto catalogue = model::Catalogue::load(models + "objects/catalogue.toml");

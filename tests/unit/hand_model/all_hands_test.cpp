@@ -17,6 +17,7 @@
 #include "common/base/random.hpp"
 #include "common/model/hand_model.hpp"
 #include "tests/support/hands.hpp"
+#include "tests/support/paths/paths.hpp"
 
 namespace {
 
@@ -30,7 +31,7 @@ using Eigen::VectorXd;
 constexpr double degree = std::numbers::pi / 180;
 constexpr double mm = 1e-3;
 
-const std::filesystem::path folder = std::filesystem::path(PREHEND_SOURCE) / "common/models/hands";
+const std::filesystem::path folder = std::filesystem::path(test::in_sources("common/models/hands"));
 
 // ---- the tables -------------------------------------------------------------------------------
 

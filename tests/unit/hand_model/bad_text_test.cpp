@@ -6,13 +6,14 @@
 
 #include "common/model/hand_model.hpp"
 #include "common/model/xml.hpp"
+#include "tests/support/paths/paths.hpp"
 
 namespace {
 
 using namespace prehend;
 
 std::string text_of(const std::string& file) {
-  std::ifstream stream(PREHEND_SOURCE "/common/models/hands/barrett/" + file);
+  std::ifstream stream(test::in_sources("common/models/hands/barrett/") + file);
   std::ostringstream text;
   text << stream.rdbuf();
   return text.str();

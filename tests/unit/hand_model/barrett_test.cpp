@@ -11,6 +11,7 @@
 
 #include "common/base/random.hpp"
 #include "common/model/hand_model.hpp"
+#include "tests/support/paths/paths.hpp"
 #include "tests/support/shared_data.hpp"
 
 namespace {
@@ -24,7 +25,7 @@ using Eigen::VectorXd;
 constexpr double degree = std::numbers::pi / 180;
 
 std::filesystem::path models() {
-  return std::filesystem::path(PREHEND_SOURCE) / "common/models";
+  return std::filesystem::path(test::in_sources("common/models"));
 }
 
 model::HandModel barrett() {

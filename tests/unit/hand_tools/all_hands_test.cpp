@@ -13,6 +13,7 @@
 
 #include "services/simulation/tools/hand_import/make_hand.hpp"
 #include "tests/support/hands.hpp"
+#include "tests/support/paths/paths.hpp"
 
 namespace {
 
@@ -20,7 +21,7 @@ using namespace prehend;
 using Eigen::Vector3d;
 
 std::filesystem::path folder() {
-  return std::filesystem::path(PREHEND_SOURCE) / "common/models/hands";
+  return std::filesystem::path(test::in_sources("common/models/hands"));
 }
 
 std::string read(const std::filesystem::path& file) {

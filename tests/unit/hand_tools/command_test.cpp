@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "tests/support/paths/paths.hpp"
 #include "tests/unit/hand_tools/made_hands.hpp"
 
 namespace {
@@ -39,7 +40,8 @@ struct Answer {
 
 /// Runs shell text in the source folder, with the programs of this build.
 Answer run(const std::string& text, const path& folder) {
-  const std::string command = "cd " PREHEND_SOURCE " && PATH=" PREHEND_BIN ":$PATH && (" + text +
+  const std::string command = "cd " + prehend::test::in_sources("") +
+                              " && PATH=" + prehend::test::in_programs("") + ":$PATH && (" + text +
                               "\n) >" + (folder / "out").string() + " 2>" +
                               (folder / "err").string();
   const int status = std::system(command.c_str());
@@ -90,7 +92,7 @@ TEST(HandCommand, AddsAForeignGripper) {
 }
 
 TEST(HandCommand, TheExampleOfTheReadmeRuns) {
-  const std::string page = read(PREHEND_SOURCE "/services/simulation/README.md");
+  const std::string page = read(prehend::test::in_sources("services/simulation/README.md"));
   const std::string fence = "```sh\n";
   const std::size_t begin = page.find(fence) + fence.size(), end = page.find("```", begin);
   ASSERT_NE(end, std::string::npos);

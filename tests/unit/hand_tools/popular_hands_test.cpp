@@ -14,6 +14,7 @@
 #include "services/simulation/tools/hand_import/make_hand.hpp"
 #include "services/simulation/tools/hand_import/trial_grasps.hpp"
 #include "services/simulation/tools/planning/planning_task.hpp"
+#include "tests/support/paths/paths.hpp"
 
 namespace {
 
@@ -93,7 +94,7 @@ TEST_P(Popular, Holds) {
 // holds 0.3 of six such things.
 TEST(YourOwnHand, HoldsWhatStandsOnTables) {
   if (!std::getenv("PREHEND_LONG")) GTEST_SKIP() << "PREHEND_LONG=1 tries a hand for a minute";
-  const std::string file = PREHEND_SOURCE "/docs/tutorials/your-own-hand/hand.urdf";
+  const std::string file = test::in_sources("docs/tutorials/your-own-hand/hand.urdf");
   const auto robot = simulation::read_robot(read_file(file).value());
   ASSERT_TRUE(robot) << robot.error().message();
   const auto hand = simulation::make_hand(*robot, "six", simulation::mesh_files(file),

@@ -8,6 +8,7 @@
 #include <iterator>
 
 #include "common/base/random.hpp"
+#include "tests/support/paths/paths.hpp"
 
 namespace prehend::mapping {
 namespace {
@@ -97,7 +98,7 @@ TEST(Arbitration, EveryTransitionIsReachedAndTheWeightFollowsItsPhase) {
 
 // The page shows the table that runs. When this fails, put the text it prints on the page.
 TEST(Arbitration, IsDrawnInTheDocumentationAsItIs) {
-  std::ifstream file(PREHEND_SOURCE "/services/mapping/README.md");
+  std::ifstream file(test::in_sources("services/mapping/README.md"));
   const std::string page{std::istreambuf_iterator<char>(file), {}};
   EXPECT_NE(page.find("```mermaid\n" + drawing() + "```\n"), std::string::npos) << drawing();
 }

@@ -13,6 +13,7 @@
 #include "common/base/file_text.hpp"
 #include "services/simulation/tools/hand_import/make_hand.hpp"
 #include "tests/support/hands.hpp"
+#include "tests/support/paths/paths.hpp"
 #include "tests/support/popular_hands/popular_hands.hpp"
 
 namespace prehend::mapping {
@@ -20,7 +21,7 @@ namespace {
 
 using Eigen::VectorXd;
 
-const std::filesystem::path folder = PREHEND_SOURCE "/common/models/hands";
+const std::filesystem::path folder = test::in_sources("common/models/hands");
 
 /// A hand of the lab whose hand.toml says nothing of human fingers.
 model::HandModel untold(const std::string& name) {
@@ -197,7 +198,7 @@ TEST(DerivedScheme, DoesNotBeginClosed) {
 }
 
 TEST(DerivedScheme, IsUsedOnlyWhereThereIsNoFile) {
-  const auto written = load_or_derive(PREHEND_SOURCE "/services/mapping/schemes/barrett.toml",
+  const auto written = load_or_derive(test::in_sources("services/mapping/schemes/barrett.toml"),
                                       test::hand("barrett"));
   ASSERT_TRUE(written) << written.error().message();
   EXPECT_EQ(written->name, "barrett alternative 2");

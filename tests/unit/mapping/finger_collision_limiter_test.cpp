@@ -9,6 +9,7 @@
 #include "common/grasping/blocking.hpp"
 #include "services/mapping/core/mapping.hpp"
 #include "services/mapping/tools/training/scheme.hpp"
+#include "tests/support/paths/paths.hpp"
 #include "tests/unit/mapping/fixtures.hpp"
 
 namespace prehend::mapping {
@@ -33,7 +34,8 @@ class EveryFinger : public testing::TestWithParam<Case> {
  protected:
   const model::HandModel& hand_ = test::hand(GetParam().hand);
   Scheme scheme_ =
-      Scheme::load(PREHEND_SOURCE "/services/mapping/schemes/" + GetParam().scheme + ".toml", hand_)
+      Scheme::load(test::in_sources("services/mapping/schemes/") + GetParam().scheme + ".toml",
+                   hand_)
           .value();
   FingerCollisionLimiter limiter_{hand_};
 

@@ -10,6 +10,7 @@
 
 #include "common/base/paths.hpp"
 #include "common/model/hand_model.hpp"
+#include "tests/support/paths/paths.hpp"
 
 namespace prehend::mapping {
 namespace {
@@ -70,7 +71,7 @@ TEST_F(Places, ModelsLieWithTheirHand) {
   EXPECT_EQ(ours.model, share_directory() / "trained" / "barrett.mapping");
   EXPECT_EQ(ours.scheme, share_directory() / "schemes" / "barrett.toml");
   // Ours by whatever path.
-  EXPECT_EQ(model_places(PREHEND_SOURCE "/common/models/hands/barrett/").model, ours.model);
+  EXPECT_EQ(model_places(test::in_sources("common/models/hands/barrett/")).model, ours.model);
   const ModelPlaces own = model_places("beside");
   EXPECT_EQ(own.grasps, root_ / "here/beside/hand.grasps");
   EXPECT_EQ(own.model, root_ / "here/beside/hand.mapping");

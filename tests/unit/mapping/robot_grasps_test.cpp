@@ -14,6 +14,7 @@
 
 #include "services/mapping/tools/training/closures.hpp"
 #include "tests/support/hands.hpp"
+#include "tests/support/paths/paths.hpp"
 
 namespace prehend::mapping {
 namespace {
@@ -40,7 +41,7 @@ TEST(RobotGrasps, AreThoseThatClosingMakes) {
   const fs::path folder = fs::temp_directory_path() / ("grasps-" + std::to_string(getpid()));
   fs::create_directories(folder);
   for (const std::string& name : hands_to_close()) {
-    const fs::path source = PREHEND_SOURCE, made = folder / (name + ".grasps");
+    const fs::path source = test::in_sources(""), made = folder / (name + ".grasps");
     const model::HandModel& hand = test::hand(name);
     const auto scheme = Scheme::load(source / "services/mapping/schemes" / (name + ".toml"), hand);
     ASSERT_TRUE(scheme) << scheme.error().message();

@@ -10,12 +10,13 @@
 #include <set>
 
 #include "services/mapping/tools/training/demonstrator.hpp"
+#include "tests/support/paths/paths.hpp"
 #include "tests/unit/mapping/fixtures.hpp"
 
 namespace prehend::mapping {
 namespace {
 
-const std::filesystem::path folder = PREHEND_SOURCE "/services/mapping/schemes";
+const std::filesystem::path folder = test::in_sources("services/mapping/schemes");
 
 std::vector<std::string> all_schemes() {
   std::vector<std::string> names;
@@ -36,7 +37,7 @@ class EveryScheme : public testing::TestWithParam<std::string> {
  protected:
   void SetUp() override {
     auto hand =
-        model::HandModel::load(PREHEND_SOURCE "/common/models/hands/" + hand_of(GetParam()));
+        model::HandModel::load(test::in_sources("common/models/hands/") + hand_of(GetParam()));
     ASSERT_TRUE(hand) << hand.error().message();
     hand_.emplace(std::move(*hand));
     auto scheme = Scheme::load(folder / (GetParam() + ".toml"), *hand_);

@@ -9,6 +9,7 @@
 
 #include "services/mapping/tools/training/demonstrator.hpp"
 #include "services/mapping/tools/training/trainer.hpp"
+#include "tests/support/paths/paths.hpp"
 #include "tests/unit/mapping/fixtures.hpp"
 
 namespace prehend::mapping {
@@ -54,14 +55,13 @@ class Pupil {
 };
 
 Scheme scheme_of(const std::string& name, const model::HandModel& hand) {
-  return *Scheme::load(PREHEND_SOURCE "/services/mapping/schemes/" + name + ".toml", hand);
+  return *Scheme::load(test::in_sources("services/mapping/schemes/") + name + ".toml", hand);
 }
 
 class TeachEveryHand : public testing::TestWithParam<std::string> {};
 
 TEST_P(TeachEveryHand, TakesAllPosturesOfAPersonInLessThanAMinute) {
-  const auto hand =
-      model::HandModel::load(std::string(PREHEND_SOURCE "/common/models/hands/") + GetParam());
+  const auto hand = model::HandModel::load(test::in_sources("common/models/hands/") + GetParam());
   ASSERT_TRUE(hand);
   const Scheme scheme = scheme_of(GetParam(), *hand);
   Teacher teacher(curriculum(*hand, scheme, "pupil", 1, 7, {}), {});

@@ -10,6 +10,7 @@
 
 #include "services/mapping/files/mapping_model_file.hpp"
 #include "services/mapping/tools/training/trainer.hpp"
+#include "tests/support/paths/paths.hpp"
 #include "tests/unit/mapping/fixtures.hpp"
 
 namespace prehend::mapping {
@@ -17,20 +18,20 @@ namespace {
 
 const Scheme& scheme() {
   static const Scheme loaded =
-      *Scheme::load(PREHEND_SOURCE "/services/mapping/schemes/barrett.toml", barrett());
+      *Scheme::load(test::in_sources("services/mapping/schemes/barrett.toml"), barrett());
   return loaded;
 }
 
 const model::Catalogue& catalogue() {
   static const model::Catalogue loaded =
-      *model::Catalogue::load(PREHEND_SOURCE "/common/models/objects/catalogue.toml");
+      *model::Catalogue::load(test::in_sources("common/models/objects/catalogue.toml"));
   return loaded;
 }
 
 /// As the build has closed the hand.
 const std::vector<RobotGrasp>& grasps() {
   static const std::vector<RobotGrasp> closed =
-      *load_robot_grasps(PREHEND_TRAINED "/barrett.grasps", barrett());
+      *load_robot_grasps(test::in_share("trained/barrett.grasps"), barrett());
   return closed;
 }
 
@@ -65,7 +66,8 @@ TEST(RobotGrasps, AreClosedTheSameAgain) {
 }
 
 TEST(RobotGrasps, OfAnotherHandOrDamagedAreRefused) {
-  const auto refused = load_robot_grasps(PREHEND_TRAINED "/barrett.grasps", test::hand("dlr"));
+  const auto refused =
+      load_robot_grasps(test::in_share("trained/barrett.grasps"), test::hand("dlr"));
   ASSERT_FALSE(refused);
   EXPECT_THAT(refused.error().message(),
               testing::HasSubstr("the hand «barrett», not of this «dlr»"));
@@ -101,8 +103,8 @@ TEST(PastContact, IsReachedByAllFingersTogether) {
   for (const std::string& name : test::mappable_hands()) {
     const model::HandModel& hand = test::hand(name);
     const Scheme made =
-        Scheme::load(PREHEND_SOURCE "/services/mapping/schemes/" + name + ".toml", hand).value();
-    const auto closed = load_robot_grasps(PREHEND_TRAINED "/" + name + ".grasps", hand);
+        Scheme::load(test::in_sources("services/mapping/schemes/") + name + ".toml", hand).value();
+    const auto closed = load_robot_grasps(test::in_share("trained/") + name + ".grasps", hand);
     ASSERT_TRUE(closed) << closed.error().message();
     int proportional = 0;
     for (const RobotGrasp& grasp : *closed) {
@@ -213,7 +215,7 @@ TEST(Training, RefusesSetsThatDoNotFit) {
 // The claim of [Thesis, 6.2]: knowing shape and size makes the grasp more exact, on takes not seen
 // before.
 TEST(TrainedModel, IntelligentErrorIsBelowDirectOnOtherPeople) {
-  const auto model = load_mapping_model(PREHEND_TRAINED "/barrett.mapping", barrett());
+  const auto model = load_mapping_model(test::in_share("trained/barrett.mapping"), barrett());
   ASSERT_TRUE(model) << model.error().message();
   const learning::TrainingSet unseen = people(100, 12, 2);
   for (const auto shape : {model::ShapeKind::cylinder, model::ShapeKind::box}) {
@@ -233,11 +235,11 @@ TEST(TrainedModel, IntelligentErrorIsBelowDirectOnOtherPeople) {
 TEST(TrainedModel, IsThereForEveryHand) {
   for (const std::string& name : test::mappable_hands()) {
     const model::HandModel& hand = test::hand(name);
-    const auto model = load_mapping_model(PREHEND_TRAINED "/" + name + ".mapping", hand);
+    const auto model = load_mapping_model(test::in_share("trained/") + name + ".mapping", hand);
     ASSERT_TRUE(model) << model.error().message();
     EXPECT_GE(model->networks().size(), 2u) << name << ": some shape is known";
     const Scheme made =
-        Scheme::load(PREHEND_SOURCE "/services/mapping/schemes/" + name + ".toml", hand).value();
+        Scheme::load(test::in_sources("services/mapping/schemes/") + name + ".toml", hand).value();
     const Eigen::VectorXd open = model->direct(*features(tips({}), 1)).dof;
     EXPECT_TRUE(open.isApprox(open.cwiseMax(made.lower).cwiseMin(made.upper), 1e-12)) << name;
     for (const SchemePosture& closed : made.closed)
@@ -250,7 +252,7 @@ TEST(TrainedModel, IsThereForEveryHand) {
 
 // An open human hand is an open robot hand: within 10 degrees a finger, whatever is there to grasp.
 TEST(TrainedModel, OpensWithTheHand) {
-  const auto model = load_mapping_model(PREHEND_TRAINED "/barrett.mapping", barrett());
+  const auto model = load_mapping_model(test::in_share("trained/barrett.mapping"), barrett());
   ASSERT_TRUE(model);
   const Features open = *features(tips({}), 1);
   EXPECT_LT(model->direct(open).dof.tail<3>().maxCoeff(), 0.175);
@@ -266,7 +268,7 @@ TEST(TrainedModel, OpensWithTheHand) {
 TEST(TrainedModel, TellsGraspTypesOfOtherPeople) {
   for (const std::string name : {"barrett", "dlr", "robonaut"}) {
     const model::HandModel& hand = test::hand(name);
-    const auto model = load_mapping_model(PREHEND_TRAINED "/" + name + ".mapping", hand);
+    const auto model = load_mapping_model(test::in_share("trained/") + name + ".mapping", hand);
     ASSERT_TRUE(model) << model.error().message();
     std::map<GraspType, std::map<GraspType, int>> confusion;  // made, told
     for (unsigned person = 0; person < 40; ++person) {

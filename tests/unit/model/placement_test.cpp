@@ -7,6 +7,7 @@
 
 #include "common/base/random.hpp"
 #include "common/model/catalogue.hpp"
+#include "tests/support/paths/paths.hpp"
 
 namespace prehend::model {
 namespace {
@@ -14,7 +15,7 @@ namespace {
 using Eigen::Vector3d;
 
 TEST(Placement, PropertiesOverAllCatalogueObjects) {
-  const auto catalogue = Catalogue::load(PREHEND_SOURCE "/common/models/objects/catalogue.toml");
+  const auto catalogue = Catalogue::load(test::in_sources("common/models/objects/catalogue.toml"));
   ASSERT_TRUE(catalogue) << catalogue.error().message();
   EXPECT_EQ(catalogue->objects().size(), 9u);
   Random random(3);

@@ -9,11 +9,13 @@
 #include <fstream>
 #include <set>
 
+#include "tests/support/paths/paths.hpp"
+
 namespace prehend::model {
 namespace {
 
 Catalogue catalogue() {
-  auto loaded = Catalogue::load(PREHEND_SOURCE "/common/models/objects/catalogue.toml");
+  auto loaded = Catalogue::load(test::in_sources("common/models/objects/catalogue.toml"));
   EXPECT_TRUE(loaded) << loaded.error().message();
   return *loaded;
 }

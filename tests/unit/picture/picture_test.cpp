@@ -10,6 +10,7 @@
 
 #include "services/simulation/tools/picture/class_picture.hpp"
 #include "services/simulation/tools/picture/grasp_picture.hpp"
+#include "tests/support/paths/paths.hpp"
 
 namespace prehend::simulation {
 namespace {
@@ -72,8 +73,7 @@ TEST(Drawing, WhatIsBehindSomethingClearShowsThrough) {
 }
 
 TEST(GraspPicture, ShowsHandObjectAndContacts) {
-  const auto hand =
-      model::HandModel::load(std::string(PREHEND_SOURCE) + "/common/models/hands/barrett");
+  const auto hand = model::HandModel::load(test::in_sources("common/models/hands/barrett"));
   ASSERT_TRUE(hand);
   const grasping::Body talc{
       "Talc", {ShapeKind::cylinder, {0.024, 0.024, 0.105}}, 0.15, "plastic", {}};
@@ -109,7 +109,7 @@ TEST(GraspPicture, ShowsHandObjectAndContacts) {
 // Of each of Cutkosky's kinds: hand and object are seen, and no two kinds look the same.
 TEST(ClassPicture, EachKindShowsAHandAndWhatItHolds) {
   const auto taxonomy =
-      model::GraspTaxonomy::load(PREHEND_SOURCE "/common/models/grasps/taxonomy.toml");
+      model::GraspTaxonomy::load(test::in_sources("common/models/grasps/taxonomy.toml"));
   ASSERT_TRUE(taxonomy);
   std::set<std::vector<std::uint8_t>> pictures;
   for (const model::GraspClass& kind : taxonomy->classes()) {

@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "tests/support/hands.hpp"
+#include "tests/support/paths/paths.hpp"
 #include "tests/unit/planning/plans.hpp"
 
 namespace prehend::simulation {
@@ -15,7 +16,7 @@ namespace {
 
 const model::GraspTaxonomy& taxonomy() {
   static const auto made =
-      model::GraspTaxonomy::load(PREHEND_SOURCE "/common/models/grasps/taxonomy.toml");
+      model::GraspTaxonomy::load(test::in_sources("common/models/grasps/taxonomy.toml"));
   return *made;
 }
 

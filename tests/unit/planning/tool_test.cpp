@@ -10,6 +10,8 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "tests/support/paths/paths.hpp"
+
 namespace {
 
 using Json = nlohmann::json;
@@ -33,7 +35,7 @@ std::string text_of(const std::filesystem::path& file) {
 
 Answer run(const std::string& arguments) {
   const auto output = scratch("out"), complaint = scratch("err");
-  const std::string command = std::string(PREHEND_GRASP) + " " + arguments + " >" +
+  const std::string command = prehend::test::in_programs("prehend-grasp") + " " + arguments + " >" +
                               output.string() + " 2>" + complaint.string();
   const int status = std::system(command.c_str());
   return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, text_of(output), text_of(complaint)};

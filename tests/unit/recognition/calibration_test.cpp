@@ -16,6 +16,7 @@
 #include "common/base/random.hpp"
 #include "services/recognition/files/picture_file.hpp"
 #include "services/recognition/tools/calibration/board_taker.hpp"
+#include "tests/support/paths/paths.hpp"
 #include "tests/unit/recognition/fixture.hpp"
 
 namespace prehend::recognition {
@@ -214,7 +215,7 @@ TEST(Calibration, CommandWritesTheLabsKeys) {
   std::ofstream(folder / "lab.toml")
       << "[lab]\nrig = \"test\"\n[camera]  # ours\nname = \"left\"\n";
   const auto run = [&](const std::string& arguments) {
-    const std::string command = std::string(PREHEND_CAMERA) + " calibrate --config " +
+    const std::string command = test::in_programs("prehend-camera") + " calibrate --config " +
                                 (folder / "lab.toml").string() + " " + arguments + " >" +
                                 (folder / "out").string() + " 2>" + (folder / "err").string();
     const int status = std::system(command.c_str());

@@ -6,6 +6,7 @@
 #include "services/recognition/core/rendering/strangers.hpp"
 #include "services/recognition/core/rendering/training_views.hpp"
 #include "services/recognition/files/picture_file.hpp"
+#include "tests/support/paths/paths.hpp"
 
 namespace prehend::recognition {
 
@@ -19,7 +20,7 @@ inline CameraModel lab_camera() {
 
 inline const model::Catalogue& catalogue() {
   static const model::Catalogue made =
-      *model::Catalogue::load(PREHEND_SOURCE "/common/models/objects/catalogue.toml");
+      *model::Catalogue::load(test::in_sources("common/models/objects/catalogue.toml"));
   return made;
 }
 

@@ -10,6 +10,7 @@
 #include "services/recognition/core/rendering/renderer.hpp"
 #include "services/recognition/files/catalogue_entry.hpp"
 #include "services/recognition/tools/taking/view_taker.hpp"
+#include "tests/support/paths/paths.hpp"
 
 namespace prehend::recognition {
 namespace {
@@ -48,7 +49,7 @@ class Table : public ::testing::Test {
     return taken;
   }
   model::Catalogue catalogue_ =
-      *model::Catalogue::load(PREHEND_SOURCE "/common/models/objects/catalogue.toml");
+      *model::Catalogue::load(test::in_sources("common/models/objects/catalogue.toml"));
   Renderer renderer_{catalogue_};
   std::uint64_t noise_ = 0;
 };
@@ -103,7 +104,7 @@ TEST_F(Table, WhatIsAddedToACatalogueIsThereThroughALinkToo) {
       std::filesystem::temp_directory_path() / ("objects-add" + std::to_string(getpid()));
   std::filesystem::create_directories(folder);
   const auto real = folder / "real.toml", link = folder / "link.toml";
-  std::filesystem::copy_file(PREHEND_SOURCE "/common/models/objects/catalogue.toml", real);
+  std::filesystem::copy_file(test::in_sources("common/models/objects/catalogue.toml"), real);
   std::filesystem::create_symlink(real, link);
   ViewTaker taker(1);
   show(taker, {}, 12);

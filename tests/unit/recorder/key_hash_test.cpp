@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "common/recording/types/idl.hpp"
+#include "tests/support/paths/paths.hpp"
 #include "tests/unit/recording/random_message.hpp"
 
 namespace prehend::recorder {
@@ -64,7 +65,7 @@ void agrees(const recording::types::Library& contract, const std::string& name) 
 }
 
 TEST(KeyHash, IsTheOneOfFastDdsForEveryKeyedType) {
-  const auto contract = recording::types::load_idl(std::string(PREHEND_SOURCE) + "/idl");
+  const auto contract = recording::types::load_idl(test::in_sources("idl"));
   ASSERT_TRUE(contract) << contract.error().message();
   agrees<v1::GloveFramePubSubType>(*contract, "prehend::v1::GloveFrame");
   agrees<v1::HandPosturePubSubType>(*contract, "prehend::v1::HandPosture");

@@ -19,6 +19,7 @@
 #include "common/recording/types/idl.hpp"
 #include "services/recorder/service/recording_file.hpp"
 #include "tests/support/domains/domain_lease.hpp"
+#include "tests/support/paths/paths.hpp"
 #include "tests/unit/recording/scratch.hpp"
 
 namespace prehend::recorder {
@@ -182,7 +183,7 @@ class PlayerTest : public ::testing::Test {
   const test::DomainLease lease_;
   const std::string rig_;
   const recording::types::Library types_ =
-      recording::types::load_idl(std::string(PREHEND_SOURCE) + "/idl").value();
+      recording::types::load_idl(test::in_sources("idl")).value();
   std::mutex mutex_;
   std::map<std::string, dds::TopicQos> offered_;  // by the player's writers
   dds::Discovery discovery_{[this](const dds::DiscoveredWriter& found) {

@@ -15,6 +15,7 @@
 #include "services/recorder/service/describe.hpp"
 #include "services/recorder/service/recording_file.hpp"
 #include "services/recorder/service/tape.hpp"
+#include "tests/support/paths/paths.hpp"
 #include "tests/unit/recording/scratch.hpp"
 
 namespace prehend::recorder {
@@ -44,8 +45,8 @@ class RecordingCommand : public ::testing::Test {
   Answer run(const std::string& text) {
     const auto out = scratch_ / "out", err = scratch_ / "err";
     const std::string command = "cd " + (scratch_ / "").string() +
-                                " && PATH=" PREHEND_BIN ":$PATH && (" + text + "\n) >" +
-                                out.string() + " 2>" + err.string();
+                                " && PATH=" + test::in_programs("") + ":$PATH && (" + text +
+                                "\n) >" + out.string() + " 2>" + err.string();
     const int status = std::system(command.c_str());
     const auto read = [](const std::filesystem::path& path) {
       const auto bytes = testing::file_bytes(path);
@@ -355,7 +356,7 @@ TEST_F(RecordingCommand, TheExamplesOfTheReadmeRun) {
   make("demo.mcap");
   make("other.mcap");
   make_killed("killed.mcap");
-  const auto page = testing::file_bytes(PREHEND_SOURCE "/services/recorder/README.md");
+  const auto page = testing::file_bytes(test::in_sources("services/recorder/README.md"));
   const std::string text(page.begin(), page.end());
   const std::string fence = "```sh\n";
   const std::size_t begin = text.find(fence, text.find("## Recordings as files")) + fence.size();

@@ -10,6 +10,7 @@
 #include "common/recording/compare/recorded_topic.hpp"
 #include "common/recording/mcap/reader.hpp"
 #include "services/recorder/tools/dataset/message.hpp"
+#include "tests/support/paths/paths.hpp"
 
 namespace prehend::recorder::dataset {
 namespace {
@@ -19,7 +20,7 @@ using Bytes = std::vector<std::uint8_t>;
 /// The first picture of a sample.
 Bytes recorded() {
   auto reader =
-      recording::mcap::Reader::open(PREHEND_SOURCE "/deploy/samples/intelligent-grasp.mcap")
+      recording::mcap::Reader::open(test::in_sources("deploy/samples/intelligent-grasp.mcap"))
           .value();
   recording::RecordedTypes types(reader);
   auto cursor = reader.messages(

@@ -11,6 +11,7 @@
 
 #include "common/dds/topics.hpp"
 #include "common/recording/types/idl.hpp"
+#include "tests/support/paths/paths.hpp"
 #include "tests/unit/recording/random_message.hpp"
 
 namespace prehend::recording {
@@ -24,15 +25,13 @@ using ::testing::IsSupersetOf;
 
 const recording::types::Library& contract() {
   static const recording::types::Library library =
-      recording::types::load_idl(std::string(PREHEND_SOURCE) + "/idl").value();
+      recording::types::load_idl(test::in_sources("idl")).value();
   return library;
 }
 
 const ToleranceTable& defaults() {
   static const ToleranceTable table =
-      ToleranceTable::load(std::string(PREHEND_SOURCE) +
-                           "/common/recording/compare/tolerances.toml")
-          .value();
+      ToleranceTable::load(test::in_sources("common/recording/compare/tolerances.toml")).value();
   return table;
 }
 

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "common/recording/types/idl.hpp"
+#include "tests/support/paths/paths.hpp"
 #include "tests/unit/recording/random_message.hpp"
 
 namespace prehend::recording::types {
@@ -35,7 +36,7 @@ void move(Value& value, std::string_view name) {
 }
 
 TEST(Stamps, AreMovedAndNothingElse) {
-  const Library contract = load_idl(std::string(PREHEND_SOURCE) + "/idl").value();
+  const Library contract = load_idl(test::in_sources("idl")).value();
   Random random(3);
   int stamped = 0;
   for (const auto& [name, type] : contract.structures())
@@ -54,7 +55,7 @@ TEST(Stamps, AreMovedAndNothingElse) {
 }
 
 TEST(Stamps, OfWhatIsCutShortOrOfTheOtherByteOrderAreLeft) {
-  const Library contract = load_idl(std::string(PREHEND_SOURCE) + "/idl").value();
+  const Library contract = load_idl(test::in_sources("idl")).value();
   Random random(3);
   for (const auto& [name, type] : contract.structures()) {
     const Value value = random_value(*type, random);

@@ -14,6 +14,7 @@
 #include "common/recording/types/idl.hpp"
 #include "common/recording/types/schema_text.hpp"
 #include "common/recording/types/value.hpp"
+#include "tests/support/paths/paths.hpp"
 #include "tests/unit/recording/random_message.hpp"
 
 namespace prehend::recording::types {
@@ -24,7 +25,7 @@ using prehend::testing::random_value;
 using ::testing::HasSubstr;
 
 const Library& contract() {
-  static const Library library = load_idl(std::string(PREHEND_SOURCE) + "/idl").value();
+  static const Library library = load_idl(test::in_sources("idl")).value();
   return library;
 }
 

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/support/paths/paths.hpp"
 #include "tests/support/ros_values.hpp"
 
 namespace prehend::ros {
@@ -20,7 +21,8 @@ TEST(RosMessages, ATextIsTheBytesThatNodesWrite) {
 
 // From the table along its parents, each link stands where the kinematics put it.
 TEST(RosMessages, LinksHangTogether) {
-  const auto model = model::HandModel::load(PREHEND_SOURCE "/common/models/hands/barrett").value();
+  const auto model =
+      model::HandModel::load(test::in_sources("common/models/hands/barrett")).value();
   const Eigen::VectorXd joints = model.joint_angles(model.postures().at("open").array() + 0.3);
   const Pose X_WB = make_pose(Eigen::Vector3d(1, 2, 3), Eigen::Quaterniond(0.6, 0.8, 0, 0));
   const auto transforms = transforms_of(model, X_WB, joints, "table", 5);

@@ -18,6 +18,7 @@
 #include "services/glove/devices/device.hpp"
 #include "services/mapping/core/mapping_modes.hpp"
 #include "services/recognition/cameras/camera.hpp"
+#include "tests/support/paths/paths.hpp"
 
 namespace prehend {
 namespace {
@@ -96,7 +97,7 @@ bool names_row(const Search& search, const std::string& path, const std::string&
 /// «file: literal» of each that names a row.
 std::vector<std::string> culprits(const Search& search) {
   std::vector<std::string> found;
-  const std::filesystem::path root = PREHEND_SOURCE;
+  const std::filesystem::path root = test::in_sources("");
   for (const char* part : {"common", "services"})
     for (const auto& entry : std::filesystem::recursive_directory_iterator(root / part)) {
       const std::string extension = entry.path().extension();

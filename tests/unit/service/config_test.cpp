@@ -8,6 +8,8 @@
 #include <filesystem>
 #include <fstream>
 
+#include "tests/support/paths/paths.hpp"
+
 namespace prehend::service {
 namespace {
 
@@ -40,7 +42,7 @@ TEST(Config, LaterSourcesWin) {
 }
 
 TEST(Config, TheShippedFileIsValid) {
-  const auto config = Config::load(PREHEND_SOURCE "/deploy/lab.toml");
+  const auto config = Config::load(test::in_sources("deploy/lab.toml"));
   EXPECT_TRUE(config) << config.error().message();
 }
 

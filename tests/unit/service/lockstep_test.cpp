@@ -10,6 +10,7 @@
 #include "common/service/conductor.hpp"
 #include "common/service/shell.hpp"
 #include "tests/support/domains/domain_lease.hpp"
+#include "tests/support/paths/paths.hpp"
 
 namespace prehend::service {
 namespace {
@@ -28,7 +29,7 @@ Played play(unsigned seed, int domain, const std::string& rig) {
   const std::string domain_setting = "lab.domain=" + std::to_string(domain);
   const char* arguments[] = {"test",
                              "--config",
-                             PREHEND_SOURCE "/deploy/lab.toml",
+                             test::in_sources("deploy/lab.toml"),
                              "--lockstep",
                              "--set",
                              rig_setting.c_str(),

@@ -13,6 +13,8 @@
 #include <numbers>
 #include <string>
 
+#include "tests/support/paths/paths.hpp"
+
 namespace {
 
 namespace fs = std::filesystem;
@@ -25,7 +27,8 @@ struct Result {
 
 /// Runs `prehend-grasp quality` with these arguments; standard error goes where the test's goes.
 Result run(const std::string& arguments, const std::string& before = {}) {
-  const std::string command = before + PREHEND_PROGRAMS "/prehend-grasp quality " + arguments;
+  const std::string command =
+      before + prehend::test::in_programs("prehend-grasp quality ") + arguments;
   Result result;
   std::FILE* pipe = ::popen(command.c_str(), "r");
   if (!pipe) return result;

@@ -8,6 +8,7 @@
 
 #include "common/model/hand_model.hpp"
 #include "tests/support/hands.hpp"
+#include "tests/support/paths/paths.hpp"
 
 namespace {
 
@@ -337,7 +338,7 @@ TEST(Simulation, ASlipperyObjectIsDroppedAndAMissedOneIsNoClosure) {
 
 TEST(Simulation, BuildsTheSceneOrSaysWhatIsMissing) {
   const auto catalogue =
-      model::Catalogue::load(std::string(PREHEND_SOURCE) + "/common/models/objects/catalogue.toml");
+      model::Catalogue::load(test::in_sources("common/models/objects/catalogue.toml"));
   ASSERT_TRUE(catalogue) << catalogue.error().message();
   model::Scene scene;
   for (const auto& object : catalogue->objects())

@@ -12,6 +12,7 @@
 #include "common/base/random.hpp"
 #include "services/mapping/files/mapping_model_file.hpp"
 #include "services/mapping/tools/study/parts.hpp"
+#include "tests/support/paths/paths.hpp"
 #include "tests/support/shared_data.hpp"
 
 namespace prehend::mapping {
@@ -24,10 +25,10 @@ struct Model {
 };
 
 Model load(const std::string& name) {
-  auto hand = model::HandModel::load(PREHEND_SOURCE "/common/models/hands/" + name).value();
+  auto hand = model::HandModel::load(test::in_sources("common/models/hands/") + name).value();
   auto scheme =
-      Scheme::load(PREHEND_SOURCE "/services/mapping/schemes/" + name + ".toml", hand).value();
-  auto mapping = load_mapping_model(PREHEND_TRAINED "/" + name + ".mapping", hand).value();
+      Scheme::load(test::in_sources("services/mapping/schemes/") + name + ".toml", hand).value();
+  auto mapping = load_mapping_model(test::in_share("trained/") + name + ".mapping", hand).value();
   return {std::move(hand), std::move(scheme), std::move(mapping)};
 }
 

@@ -12,6 +12,7 @@
 #include <set>
 #include <sstream>
 
+#include "tests/support/paths/paths.hpp"
 #include "tests/support/shared_data.hpp"
 
 namespace {
@@ -25,7 +26,9 @@ struct Answer {
 
 Answer run(const std::string& arguments) {
   Answer answer;
-  FILE* pipe = popen((std::string(PREHEND_STUDY) + " " + arguments + " 2>/dev/null").c_str(), "r");
+  FILE* pipe = popen(
+      (prehend::test::in_programs("prehend-study") + " " + arguments + " 2>/dev/null").c_str(),
+      "r");
   if (!pipe) return answer;
   char buffer[4096];
   while (const auto count = std::fread(buffer, 1, sizeof buffer, pipe))

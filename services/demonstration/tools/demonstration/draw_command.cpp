@@ -1,6 +1,7 @@
 // `prehend demonstration draw`.
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <iostream>
 #include <memory>

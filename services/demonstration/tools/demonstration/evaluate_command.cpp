@@ -1,6 +1,7 @@
 // `prehend demonstration evaluate`.
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
 #include <iostream>

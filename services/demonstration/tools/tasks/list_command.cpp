@@ -1,6 +1,7 @@
 // `prehend tasks list` and `prehend tasks check`.
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <iostream>
 #include <memory>

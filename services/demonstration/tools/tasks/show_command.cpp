@@ -1,6 +1,7 @@
 // `prehend tasks show` and `prehend tasks edit`.
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>

@@ -1,5 +1,7 @@
 #include "services/recognition/tools/objects/descriptor_choice.hpp"
 
+#include <CLI/CLI.hpp>
+
 namespace prehend::recognition {
 
 void DescriptorChoice::add_to(CLI::App& command) {

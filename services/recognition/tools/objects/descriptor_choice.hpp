@@ -1,11 +1,14 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "services/recognition/files/dataset.hpp"
+
+namespace CLI {
+class App;
+}
 
 namespace prehend::recognition {
 

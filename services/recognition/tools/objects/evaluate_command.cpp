@@ -1,6 +1,7 @@
 // `prehend objects evaluate`.
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <chrono>
 #include <iostream>
 #include <map>

@@ -1,6 +1,7 @@
 // `prehend objects scenes`.
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <fstream>
 #include <iostream>
 #include <memory>

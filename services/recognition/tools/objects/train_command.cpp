@@ -1,6 +1,7 @@
 // `prehend objects render` and `prehend objects train`.
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <chrono>
 #include <iostream>
 #include <memory>

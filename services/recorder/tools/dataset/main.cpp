@@ -1,3 +1,5 @@
+#include <CLI/CLI.hpp>
+
 #include "common/base/log.hpp"
 #include "common/tool/program.hpp"
 #include "services/recorder/tools/dataset/export.hpp"

@@ -1,12 +1,15 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "common/base/error.hpp"
+
+namespace CLI {
+class App;
+}
 
 namespace prehend::recorder {
 

@@ -1,6 +1,7 @@
 // `prehend arm add`: a URDF becomes an arm of the lab.
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <cctype>
 #include <filesystem>
 #include <iostream>

@@ -1,6 +1,7 @@
 // `prehend arm check`: what is missing or suspicious in a URDF, or in an arm of the lab.
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <iostream>
 #include <memory>

@@ -1,6 +1,7 @@
 // `prehend arm reach`: what an arm with a hand can grasp on a table, by the height of its shoulder.
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <array>
 #include <filesystem>
 #include <iostream>

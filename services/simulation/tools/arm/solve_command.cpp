@@ -1,6 +1,7 @@
 // `prehend arm solve`: inverse kinematics, all branches.
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <charconv>
 #include <iostream>
 #include <memory>

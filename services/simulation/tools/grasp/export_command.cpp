@@ -1,6 +1,7 @@
 // `prehend grasp export`: planned grasps as JSON or CSV.
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <iostream>
 #include <map>
 #include <memory>

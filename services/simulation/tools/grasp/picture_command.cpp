@@ -1,4 +1,5 @@
 // `prehend grasp picture`: a planned grasp as a picture, without a display.
+#include <CLI/CLI.hpp>
 #include <memory>
 
 #include "common/base/log.hpp"

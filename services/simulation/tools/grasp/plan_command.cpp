@@ -1,6 +1,7 @@
 // `prehend grasp plan`: finds grasps of an object by closing the hand in simulation.
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <chrono>
 #include <iostream>
 #include <memory>

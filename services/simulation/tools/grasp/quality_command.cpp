@@ -1,6 +1,7 @@
 // `prehend grasp quality`: epsilon, volume and the rest of given contacts.
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <chrono>
 #include <memory>
 #include <nlohmann/json.hpp>

@@ -1,6 +1,7 @@
 // `prehend hand add`: a URDF becomes a hand of the lab, with a report of how well it fits.
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <cctype>
 #include <fstream>
 #include <iostream>

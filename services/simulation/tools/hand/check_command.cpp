@@ -1,6 +1,7 @@
 // `prehend hand check`: what is missing or suspicious in a URDF.
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <iostream>
 #include <memory>
 

@@ -155,7 +155,7 @@ Expected<Server> Server::listen(const Options& options) {
   if (socket.handle() < 0 ||
       ::setsockopt(socket.handle(), SOL_SOCKET, SO_REUSEADDR, &on, sizeof on) != 0 ||
       ::bind(socket.handle(), found->ai_addr, found->ai_addrlen) != 0 ||
-      ::listen(socket.handle(), static_cast<int>(options.max_clients)) != 0)
+      ::listen(socket.handle(), SOMAXCONN) != 0)
     return fail(std::strerror(errno), where, "does another one serve there?");
   sockaddr_storage bound{};
   socklen_t length = sizeof bound;
