@@ -98,7 +98,7 @@ TEST_F(Demo, KilledItTakesTheServicesAlong) {
   ASSERT_TRUE(eventually(30, [&] { return processes_with(rig).size() == 4; }));
   ::kill(process.pid(), SIGKILL);
   ASSERT_TRUE(process.wait(seconds(5)));
-  EXPECT_TRUE(eventually(5, [&] { return processes_with(rig).empty(); }));
+  EXPECT_TRUE(eventually(30, [&] { return processes_with(rig).empty(); }));
 }
 
 TEST_F(Demo, ADeadServiceIsNamedWithItsLastWords) {

@@ -82,7 +82,7 @@ TEST_F(DemonstrationLab, AShownTaskIsUnderstoodToldAndKept) {
   EXPECT_EQ(phases,
             (std::vector{v1::PHASE_REST, v1::PHASE_APPROACH, v1::PHASE_CLOSE, v1::PHASE_HOLD,
                          v1::PHASE_RELEASE, v1::PHASE_RETRACT, v1::PHASE_REST}));
-  EXPECT_TRUE(hear<v1::DemonstratedGrasp>(grasps, 5, [](auto&) { return true; }));
+  EXPECT_TRUE(hear<v1::DemonstratedGrasp>(grasps, 20, [](auto&) { return true; }));
   const auto kept = demonstration::load_record(std::filesystem::path(tasks()) / "TEA.task");
   ASSERT_TRUE(kept) << kept.error().message();
   EXPECT_EQ(kept->shown.size(), 1u);

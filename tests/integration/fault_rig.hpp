@@ -63,9 +63,9 @@ class FaultRig : public OnHosts, public Rig {
   /// Reports of grasps that a late joiner gets and the operator did not.
   std::uint64_t unreported();
   double memory() const;
-  /// A row of the table, with what is before the fault.
+  /// A row of the table, with what is before the fault: also the longest pause of this machine.
   FaultRow begin(const std::string& fault);
-  /// The fault has just ended: a new frame moves the hand within so many s.
+  /// The fault has just ended: a new frame moves the hand within so many s, as promised() has them.
   void expect_recovery(FaultRow& row, double limit_s);
   /// Nothing was lost and nobody ended: the row joins the table.
   void finish(FaultRow row);
@@ -79,6 +79,7 @@ class FaultRig : public OnHosts, public Rig {
   std::map<std::string, v1::ServiceStatus> statuses_;  // last of each name
   std::set<std::uint64_t> reports_;                    // their numbers
   bool orders_ = true;                                 // give any
+  double undisturbed_ = 0;  // s, the longest time without a new frame before the fault
   /// How often the lead over the hand has changed, by the simulation's own count.
   std::uint64_t leads() const;
 
@@ -93,6 +94,11 @@ class FaultRig : public OnHosts, public Rig {
   std::optional<dds::Reader<v1::OperatorReply>> replies_;
   std::optional<dds::Writer<v1::OperatorCommand>> commands_;
 };
+
+/// A time that is promised, s: as it is where it is measured, over many rounds on a machine that
+/// has nothing else to do (PREHEND_LONG). Otherwise five times as long, which no load takes, and
+/// which still is too short to wait for the lease of who is gone, 20 s.
+double promised(double limit_s);
 
 /// Rounds of a fault: few by default, many under PREHEND_LONG.
 int rounds(int usual, int many);

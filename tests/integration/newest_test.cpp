@@ -66,7 +66,8 @@ class Newest : public testing::Test {
     for (auto& end : ends_) end.reset();
   }
 
-  int domain_ = static_cast<int>(now_ns() / 1000 % 200);
+  const test::DomainLease lease_;
+  const int domain_ = lease_.domain();
   std::optional<Hosts> hosts_;
   std::array<std::optional<dds::Participant>, 2> ends_;
   std::vector<std::unique_ptr<Line>> lines_;
@@ -118,7 +119,7 @@ TEST_F(Newest, SampleOfEachInstanceArrivesWhenTheCableIsBack) {
                          [&](const auto& line) { return line->has_all(due); });
     }));
     for (const auto& line : lines_) EXPECT_TRUE(line->has_all(due)) << line->topic.name;
-    EXPECT_LT(row.recoveries.back(), newest_healed);
+    EXPECT_LT(row.recoveries.back(), promised(newest_healed));
   }
   for (const auto& line : lines_)
     if (line->topic.qos.writer_depth == 0) row.lost += line->reader->lost();
@@ -192,7 +193,7 @@ TEST_F(Newest, AnOrderIsHeardWhoseGiverLeavesAtOnce) {
     ASSERT_TRUE(writer->write(order));
     giver.reset();
     std::string heard;
-    EXPECT_TRUE(eventually(1, [&] {
+    EXPECT_TRUE(eventually(15, [&] {
       for (const auto& sample : reader->take())
         if (!sample.info.gone) heard = sample.data.id().to_string();
       return heard == std::to_string(i);
