@@ -71,7 +71,8 @@ function(prehend_fast_build target)
       set(batch 8)
     endif()
     set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE ${batch})
-    # A file does not see its neighbours' names when it is compiled alone.
-    target_compile_options(${target} PRIVATE -Wno-shadow -Wno-subobject-linkage)
+    # A file does not see its neighbours' names when it is compiled alone, so only what shadows a
+    # name of its own function is told here; `develop` tells the rest.
+    target_compile_options(${target} PRIVATE -Wno-shadow -Wshadow=local -Wno-subobject-linkage)
   endif()
 endfunction()
