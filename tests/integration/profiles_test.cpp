@@ -95,7 +95,7 @@ TEST_F(Profiles, APartThatFastDdsWouldIgnoreStopsTheProcess) {
     return Answer{exit ? exit->code : -1, "", text(options.log)};
   };
   const auto try_all = [&](const std::string& profile) {
-    const std::string xml = text(fmt::format(test::in_sources("deploy/dds/{}.xml"), profile));
+    const std::string xml = text(test::in_sources("deploy/dds/" + profile + ".xml"));
     ASSERT_EQ(run_with(profile, xml).exit_code, 1) << profile;  // fine: nobody is there
     auto broken = misspelt(xml);
     ASSERT_GT(broken.size(), 10u);

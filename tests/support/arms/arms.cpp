@@ -169,4 +169,11 @@ arm::Joints random_posture(const model::ArmModel& arm, Random& random) {
   return q;
 }
 
+double turn_distance(const arm::Joints& a, const arm::Joints& b) {
+  double most = 0;
+  for (Eigen::Index i = 0; i < a.size(); ++i)
+    most = std::max(most, std::abs(arm::wrapped(a[i] - b[i])));
+  return most;
+}
+
 }  // namespace prehend::test

@@ -29,4 +29,7 @@ std::vector<std::string> arm_names();
 /// A posture within the limits.
 arm::Joints random_posture(const model::ArmModel& arm, Random& random);
 
+/// By how much the joint turns that turns most from a to b, rad; a whole turn is none.
+double turn_distance(const arm::Joints& a, const arm::Joints& b);
+
 }  // namespace prehend::test

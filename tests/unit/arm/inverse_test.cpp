@@ -18,16 +18,9 @@ bool is_long() {
   return std::getenv("PREHEND_LONG") != nullptr;
 }
 
-double turn_distance(const Joints& a, const Joints& b) {
-  double most = 0;
-  for (Eigen::Index i = 0; i < a.size(); ++i)
-    most = std::max(most, std::abs(arm::wrapped(a[i] - b[i])));
-  return most;
-}
-
 bool holds(const std::vector<Joints>& branches, const Joints& q, double tolerance = 1e-4) {
   for (const Joints& branch : branches)
-    if (turn_distance(branch, q) < tolerance) return true;
+    if (test::turn_distance(branch, q) < tolerance) return true;
   return false;
 }
 
@@ -94,7 +87,7 @@ TEST_P(InverseOf, WholeTurnsStayWithinLimitsAndAtThePose) {
     EXPECT_LT((turns.front() - q).norm(), 1e-9);
     for (const Joints& turned : turns) {
       EXPECT_TRUE(arm::is_within_limits(model, turned));
-      EXPECT_LT(turn_distance(turned, q), 1e-9);
+      EXPECT_LT(test::turn_distance(turned, q), 1e-9);
     }
   }
 }

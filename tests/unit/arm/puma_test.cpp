@@ -35,13 +35,6 @@ double error_of(const model::ArmModel& model, const Joints& q, const Pose& X_AE)
   return (arm::end_pose(model, q).matrix() - X_AE.matrix()).cwiseAbs().maxCoeff();
 }
 
-double turn_distance(const Joints& a, const Joints& b) {
-  double most = 0;
-  for (Eigen::Index i = 0; i < a.size(); ++i)
-    most = std::max(most, std::abs(arm::wrapped(a[i] - b[i])));
-  return most;
-}
-
 TEST(Puma, StandsWhereItIsPublishedToStand) {
   Eigen::Matrix3d ahead;
   ahead << 0, 0, 1, 0, 1, 0, -1, 0, 0;
@@ -121,7 +114,7 @@ TEST(Puma, InverseMeetsForwardAtAllPoses) {
     double own = 10;
     for (const Joints& branch : branches) {
       worst = std::max(worst, error_of(puma(), branch, X_AE));
-      own = std::min(own, turn_distance(branch, q));
+      own = std::min(own, test::turn_distance(branch, q));
     }
     ASSERT_LT(own, 1e-6) << "the posture itself is no branch: " << q.transpose();
   }
@@ -139,7 +132,7 @@ TEST(Puma, SingularWristsKeepJointFour) {
     double own = 10;
     for (const Joints& branch : found) {
       EXPECT_LT(error_of(puma(), branch, X_AE), 1e-7) << q.transpose();
-      own = std::min(own, turn_distance(branch, q));
+      own = std::min(own, test::turn_distance(branch, q));
     }
     EXPECT_LT(own, 1e-5) << q.transpose();
   }

@@ -36,7 +36,6 @@ class Holder {
   explicit Holder(const std::filesystem::path& file, int last) {
     int ends[2];
     if (::pipe2(ends, O_CLOEXEC) != 0) throw std::runtime_error("no pipe");
-    const std::string program = test::in_programs("with_domain");
     process_ = ::fork();
     if (process_ == 0) {
       const DomainLease lease(file, last);
@@ -118,6 +117,7 @@ class Script {
     int in[2], out[2];
     if (::pipe2(in, O_CLOEXEC) != 0 || ::pipe2(out, O_CLOEXEC) != 0)
       throw std::runtime_error("no pipe");
+    const std::string program = in_programs("with_domain");
     process_ = ::fork();
     if (process_ == 0) {
       ::dup2(in[0], 0);

@@ -12,23 +12,19 @@ namespace {
 using Eigen::Vector3d;
 using std::chrono::milliseconds;
 
-const model::HandModel& barrett() {
-  return test::hand("barrett");
-}
-
 /// A gate before a hand that goes where it is told, beginning at the origin's 0.5 m.
 class Attack : public testing::Test {
  protected:
-  explicit Attack(bool deadman = false, Limits limits = limits_of(barrett()))
+  explicit Attack(bool deadman = false, Limits limits = limits_of(test::hand("barrett")))
       : limits_(std::move(limits)),
-        gate_(CommandGate::create(barrett(), {.hand = "hand", .deadman = deadman}, limits_, [this] {
-                return here_;
-              }).value()) {}
+        gate_(CommandGate::create(test::hand("barrett"), {.hand = "hand", .deadman = deadman},
+                                  limits_, [this] { return here_; })
+                  .value()) {}
   /// Sends the hand a metre away, closed, and returns how far the base has gone.
   double leap(std::uint8_t from, int ms) {
-    Command sent = command(barrett(), from, ms, {1, 0, 0.5});
+    Command sent = command(test::hand("barrett"), from, ms, {1, 0, 0.5});
     sent.sequence = ++sequence_;
-    sent.place.dof = barrett().clamp(Eigen::VectorXd::Constant(4, 2));
+    sent.place.dof = test::hand("barrett").clamp(Eigen::VectorXd::Constant(4, 2));
     if (const auto passed = gate_.admit(sent, at(ms))) here_ = passed->place;
     return here_->X_WB.translation().x();
   }
@@ -36,7 +32,7 @@ class Attack : public testing::Test {
   double bound(int ms) const { return limits_.base.speed * (1e-3 * ms + 0.3) + 1e-6; }
 
   Limits limits_;
-  std::optional<Place> here_ = open_at(barrett(), {0, 0, 0.5});
+  std::optional<Place> here_ = open_at(test::hand("barrett"), {0, 0, 0.5});
   CommandGate gate_;
   std::uint64_t sequence_ = 0;
 };
@@ -68,7 +64,7 @@ TEST_F(Attack, WhereNobodyKnowsThePlaceNothingLeaps) {
   here_.reset();
   gate_.stop("anna", "", at(10));
   gate_.release();
-  Command sent = command(barrett(), 1, 1000, {1, 0, 0.5});
+  Command sent = command(test::hand("barrett"), 1, 1000, {1, 0, 0.5});
   const auto passed = gate_.admit(sent, at(1000));
   ASSERT_TRUE(passed);
   EXPECT_LE((passed->place.X_WB.translation() - told->X_WB.translation()).norm(),
@@ -78,7 +74,7 @@ TEST_F(Attack, WhereNobodyKnowsThePlaceNothingLeaps) {
 // The robot may refuse what the gate has let through; the hand has not gone there.
 TEST_F(Attack, WhatTheRobotDidNotObeyIsNoWay) {
   for (int ms = 0; ms < 1000; ms += 20) {
-    Command sent = command(barrett(), 1, ms, {1, 0, 0.5});
+    Command sent = command(test::hand("barrett"), 1, ms, {1, 0, 0.5});
     sent.sequence = ++sequence_;
     const auto passed = gate_.admit(sent, at(ms));
     ASSERT_TRUE(passed);
@@ -90,7 +86,7 @@ TEST_F(Attack, WhatTheRobotDidNotObeyIsNoWay) {
 class SlowAttack : public Attack {
  protected:
   static Limits slow() {
-    Limits limits = limits_of(barrett());
+    Limits limits = limits_of(test::hand("barrett"));
     limits.base.acceleration = 2;
     return limits;
   }
@@ -125,7 +121,7 @@ TEST_F(DeadmanAttack, ConsentThatComesAndGoesGivesNoTime) {
 // Somebody else has spoken in between: what the first one said then is still of then.
 TEST_F(DeadmanAttack, ConsentThatIsPlayedAgainIsNone) {
   const auto stays_refused = [&](int ms) {
-    Command sent = command(barrett(), 1, ms);
+    Command sent = command(test::hand("barrett"), 1, ms);
     sent.sequence = ++sequence_;
     EXPECT_FALSE(gate_.admit(sent, at(ms))) << ms;
   };
@@ -165,7 +161,7 @@ TEST_F(DeadmanAttack, ConsentOfStampsThatOverflowIsNone) {
 
 TEST_F(Attack, ANumberThatWasSeenIsNotObeyedWithANewStamp) {
   leap(1, 0);
-  Command again = command(barrett(), 1, 0);
+  Command again = command(test::hand("barrett"), 1, 0);
   again.sequence = sequence_;
   for (int ms = 1; ms < 250; ms += 10) {
     again.stamp = at(ms);
@@ -178,7 +174,7 @@ TEST_F(Attack, ANumberThatWasSeenIsNotObeyedWithANewStamp) {
 // One who counts cannot say that he does not.
 TEST_F(Attack, AZeroInBetweenIsNotObeyed) {
   leap(1, 0);
-  Command zero = command(barrett(), 1, 10);
+  Command zero = command(test::hand("barrett"), 1, 10);
   zero.sequence = 0;
   EXPECT_FALSE(gate_.admit(zero, at(10)));
   zero.stamp = at(20);
@@ -191,7 +187,7 @@ TEST_F(Attack, StampsThatOverflowAreRefused) {
        {Limits64::min(), Limits64::min() + 1, Limits64::max(), Limits64::max() - 1,
         to_ns(at(0)) + Limits64::min(), std::int64_t{-1}, std::int64_t{0}, std::int64_t{4294967295},
         std::int64_t{4294967296}, -to_ns(at(0))}) {
-    Command sent = command(barrett(), 1, 0);
+    Command sent = command(test::hand("barrett"), 1, 0);
     sent.sequence = ++sequence_;
     sent.stamp = from_ns(ns);
     const auto passed = gate_.admit(sent, at(0));
@@ -204,12 +200,12 @@ TEST_F(Attack, StampsThatOverflowAreRefused) {
 // The limiter by itself: whatever stamps say, and a clock that goes back.
 TEST_F(Attack, StampsThatOverflowGiveTheLimiterNoTime) {
   MotionLimiter limiter(limits_);
-  limiter.start(open_at(barrett(), {0, 0, 0.5}));
+  limiter.start(open_at(test::hand("barrett"), {0, 0, 0.5}));
   double x = 0;
   for (int i = 0; i < 50; ++i) {
     const std::int64_t ns =
         i % 2 ? std::numeric_limits<std::int64_t>::max() : std::numeric_limits<std::int64_t>::min();
-    x = limiter.step(open_at(barrett(), {9, 0, 0.5}), from_ns(ns), at(i % 3 ? i : -i))
+    x = limiter.step(open_at(test::hand("barrett"), {9, 0, 0.5}), from_ns(ns), at(i % 3 ? i : -i))
             .place.X_WB.translation()
             .x();
   }
@@ -219,10 +215,10 @@ TEST_F(Attack, StampsThatOverflowGiveTheLimiterNoTime) {
 // A crowd of writers makes the gate forget nobody whose commands could come a second time.
 TEST_F(Attack, ACrowdDoesNotLetOldCommandsThrough) {
   leap(1, 0);
-  Command old = command(barrett(), 1, 0);
+  Command old = command(test::hand("barrett"), 1, 0);
   old.sequence = sequence_;
   for (std::uint8_t other = 2; other < 60; ++other) {
-    Command sent = command(barrett(), other, 1);
+    Command sent = command(test::hand("barrett"), other, 1);
     EXPECT_FALSE(gate_.admit(sent, at(1)));
   }
   EXPECT_FALSE(gate_.admit(old, at(2))) << "doubled";
@@ -230,7 +226,7 @@ TEST_F(Attack, ACrowdDoesNotLetOldCommandsThrough) {
   EXPECT_EQ(gate_.leader(at(10)), writer(1)) << "nor does it push out who leads";
   // Who is named leads, though the gate is full.
   gate_.take_over(writer(100), at(11));
-  EXPECT_TRUE(gate_.admit(command(barrett(), 100, 11), at(11)));
+  EXPECT_TRUE(gate_.admit(command(test::hand("barrett"), 100, 11), at(11)));
 }
 
 // Who asked for the release knew nothing of the stop that came after it.
@@ -247,7 +243,8 @@ TEST_F(Attack, AReleaseOfBeforeTheStopIsNone) {
 
 TEST_F(Attack, AGateForCommandsOfAnyAgeIsNotMade) {
   for (const Duration age : {Duration::max(), Duration::min(), Duration(std::chrono::hours(1))})
-    EXPECT_FALSE(CommandGate::create(barrett(), {.hand = "hand", .max_age = age}, limits_));
+    EXPECT_FALSE(
+        CommandGate::create(test::hand("barrett"), {.hand = "hand", .max_age = age}, limits_));
 }
 
 }  // namespace

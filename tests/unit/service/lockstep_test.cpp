@@ -26,15 +26,10 @@ struct Played {
 Played play(unsigned seed, int domain, const std::string& rig) {
   Played run;
   const std::string rig_setting = "lab.rig=" + rig;
+  const std::string config = test::in_sources("deploy/lab.toml");
   const std::string domain_setting = "lab.domain=" + std::to_string(domain);
-  const char* arguments[] = {"test",
-                             "--config",
-                             test::in_sources("deploy/lab.toml"),
-                             "--lockstep",
-                             "--set",
-                             rig_setting.c_str(),
-                             "--set",
-                             domain_setting.c_str()};
+  const char* arguments[] = {"test",  "--config",          config.c_str(), "--lockstep",
+                             "--set", rig_setting.c_str(), "--set",        domain_setting.c_str()};
   auto created = Shell::create(8, const_cast<char**>(arguments), {"summing", "sums"});
   EXPECT_TRUE(created);
   if (!created) return run;
