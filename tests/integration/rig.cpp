@@ -57,7 +57,7 @@ Rig::~Rig() {
 }
 
 std::string Rig::program(const std::string& name) {
-  return test::in_programs("") + name;
+  return test::in_programs(name);
 }
 
 std::string Rig::address(int number) const {
