@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "common/dds/user_data.hpp"
+
 namespace prehend::dds {
 
 namespace {
@@ -39,7 +41,7 @@ std::string word(const auto& bytes) {
 
 /// Other implementations are told by the number of their maker (DDSI-RTPS 2.3, 9.3.2).
 std::string middleware_of(const auto& vendor, const std::string& announced) {
-  if (announced.starts_with("Fast DDS ")) return announced;
+  if (!announced.empty()) return announced;
   if (vendor[0] != 1) return {};
   switch (vendor[1]) {
     case 0x01:
@@ -115,10 +117,13 @@ void DiscoveryEvents::on_participant_discovery(DomainParticipant*,
   told.news = news_of(found.status, Found::DISCOVERED_PARTICIPANT, Found::CHANGED_QOS_PARTICIPANT);
   told.guid = info.m_guid;
   told.name = info.m_participantName.to_string();
-  told.middleware = middleware_of(info.m_VendorId, word(info.m_userData.data_vec()));
+  const UserData announced = read_user_data(word(info.m_userData.data_vec()));
+  told.middleware = middleware_of(info.m_VendorId, announced.middleware);
+  told.role = announced.role;
   for (const rtps::Property& property : info.identity_token_.properties()) {
     told.secured = true;
     if (property.name() == "dds.ca.sn") told.authority = property.value();
+    if (property.name() == "dds.cert.sn") told.certificate = property.value();
   }
   on_participant(told);
 }
@@ -150,10 +155,11 @@ void DiscoveryEvents::on_participant_discovery(DomainParticipant*,
   told.news = news_of(status, Status::DISCOVERED_PARTICIPANT, Status::CHANGED_QOS_PARTICIPANT);
   told.guid = info.guid;
   told.name = info.participant_name.to_string();
-  std::string announced = word(info.user_data.data_vec());
-  if (const auto& of = info.product_version; announced.empty() && of.major > 0)
-    announced = fmt::format("Fast DDS {}.{}.{}", of.major, of.minor, of.patch);
-  told.middleware = middleware_of(info.vendor_id, announced);
+  UserData announced = read_user_data(word(info.user_data.data_vec()));
+  if (const auto& of = info.product_version; announced.middleware.empty() && of.major > 0)
+    announced.middleware = fmt::format("Fast DDS {}.{}.{}", of.major, of.minor, of.patch);
+  told.middleware = middleware_of(info.vendor_id, announced.middleware);
+  told.role = announced.role;
   on_participant(told);
 }
 

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <fastdds/dds/domain/DomainParticipantListener.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -21,9 +22,11 @@ struct FoundParticipant {
   News news{};
   rtps::GUID_t guid;
   std::string name;
-  std::string middleware;  // what it speaks with, as «Fast DDS 3.1.2»; empty: it does not tell
-  bool secured = false;    // it has keys; Fast DDS 3 does not show it, nor what follows
-  std::string authority;   // of its keys
+  std::string middleware;    // what it speaks with, as «Fast DDS 3.1.2»; empty: it does not tell
+  std::optional<Role> role;  // as it announces it
+  bool secured = false;      // it has keys; Fast DDS 3 does not show it, nor what follows
+  std::string authority;     // of its keys
+  std::string certificate;   // whose they are
 };
 
 /// A writer or reader of a peer.
@@ -66,8 +69,5 @@ class DiscoveryEvents : public fdds::DomainParticipantListener {
                                 bool& ignored) final;
 #endif
 };
-
-/// What this process speaks with, as it announces it in the user data of its participant.
-inline constexpr std::string_view own_middleware = "Fast DDS " PREHEND_FAST_DDS_RELEASE;
 
 }  // namespace prehend::dds

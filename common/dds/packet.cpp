@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "common/dds/rtps_parts.hpp"
+#include "common/dds/user_data.hpp"
 
 namespace prehend::dds {
 namespace {
@@ -36,8 +37,10 @@ void read_word(Announcement& said, std::uint16_t parameter, const Numbers& value
   if (parameter == entity_name) {
     said.name = text_at(value, at);
   } else if (parameter == user_data) {
-    if (std::string text = text_at(value, at, 40); text.starts_with("Fast DDS "))
-      said.middleware = std::move(text);
+    if (UserData told = read_user_data(text_at(value, at, 40)); !told.middleware.empty()) {
+      said.middleware = std::move(told.middleware);
+      said.role = told.role;
+    }
   } else if (parameter == product_version && value.bytes.size() >= 4) {
     if (said.middleware.empty())
       for (std::size_t i = 0; i < 3; ++i)
@@ -52,6 +55,7 @@ void read_word(Announcement& said, std::uint16_t parameter, const Numbers& value
       const std::string property = text_at(value, at);
       std::string content = text_at(value, at);
       if (property == "dds.ca.sn") said.authority = std::move(content);
+      if (property == "dds.cert.sn") said.certificate = std::move(content);
     }
   }
 }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "common/base/time.hpp"
+#include "common/dds/role.hpp"
 
 namespace prehend::dds {
 
@@ -25,8 +26,9 @@ struct Announcement {
   bool leaves = false;
   // What it says of itself, printable and cut to a length.
   std::string name, middleware;
-  bool secured = false;   // it has keys
-  std::string authority;  // of these
+  std::optional<Role> role;
+  bool secured = false;                // it has keys
+  std::string authority, certificate;  // of these, as DDS Security names them
 };
 
 /// An RTPS message, as far as it tells who speaks.

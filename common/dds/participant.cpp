@@ -19,6 +19,7 @@
 #include "common/dds/serialized_transport.hpp"
 #include "common/dds/server_watch.hpp"
 #include "common/dds/topics.hpp"
+#include "common/dds/user_data.hpp"
 #include "common/dds/within_process.hpp"
 
 namespace prehend::dds {
@@ -201,7 +202,8 @@ Expected<Participant> Participant::join(const ParticipantOptions& options) {
   auto qos = participant_qos(network, {options.listener != nullptr, options.serves});
   if (!qos) return tl::unexpected(qos.error());
   qos->name(options.name);
-  qos->user_data().setValue({own_middleware.begin(), own_middleware.end()});
+  const std::string announced = user_data(options.role.empty() ? options.name : options.role);
+  qos->user_data().setValue({announced.begin(), announced.end()});
   if (state->keys) {
     secure(*qos, *state->keys);
     if (PREHEND_FAST_DDS == 2 && !handshakes_pause_for_removals())
@@ -271,6 +273,10 @@ std::map<std::string, std::uint64_t> Participant::refused() const {
 
 std::map<GuidPrefix, Peers::Presented> Participant::present() const {
   return state_->peers->present();
+}
+
+std::optional<Role> Participant::role_of(const GuidPrefix& whose) const {
+  return state_->peers->role_of(whose);
 }
 
 GuidPrefix Participant::identity() const {

@@ -30,7 +30,8 @@ struct ParticipantOptions {
   int domain = 0;    // 0..232
   std::string rig;   // partition: samples stay within a rig
   Network network;   // how it reaches the others
-  std::string role;  // whose keys it takes from a folder with many; empty: that of its name
+  /// What it announces itself as, and whose keys it takes from a folder with many; empty: its name.
+  std::string role;
   /// All topics reliable and complete, without deadlines: for recordings in lockstep.
   bool lockstep = false;
   /// Told of discovery in the whole domain, in its thread; must outlive the participant.
@@ -146,6 +147,10 @@ class Participant {
   std::map<std::string, std::uint64_t> refused() const;
   /// Peers that are here, by SampleInfo::participant. Safe from every thread.
   std::map<GuidPrefix, Peers::Presented> present() const;
+  /// What the writer of a sample is: in a secured lab by its certificate, otherwise as it announces
+  /// itself, which it does before it writes. Nothing: it is not known, or has no role of ours. Safe
+  /// from every thread.
+  std::optional<Role> role_of(const GuidPrefix& whose) const;
   /// As others see it in SampleInfo::participant.
   GuidPrefix identity() const;
 

@@ -32,6 +32,18 @@ std::map<GuidPrefix, Peers::Presented> Peers::present() const {
   return all;
 }
 
+std::optional<Role> Peers::role_of(const GuidPrefix& whose) const {
+  Guid guid;
+  std::ranges::copy(whose, guid.guidPrefix.value);
+  guid.entityId = rtps::c_EntityId_RTPSParticipant;
+  const std::scoped_lock lock(mutex_);
+  const auto found = peers_.find(guid);
+  if (found == peers_.end()) return std::nullopt;
+  const Peer& peer = found->second;
+  // Over TCP nobody is told of the certificates of Fast DDS 3.
+  return peer.certificate.empty() ? peer.role : role_of_certificate(peer.certificate);
+}
+
 std::map<std::string, std::uint64_t> Peers::refused() const {
   const std::scoped_lock lock(mutex_);
   return refused_;
@@ -71,7 +83,8 @@ void Peers::hear(const Announcement& said) {
   const std::scoped_lock lock(mutex_);
   const auto known = peers_.find(guid);
   if (!said.leaves && known == peers_.end()) {
-    meet({News::found, guid, said.name, said.middleware, said.secured, said.authority});
+    meet({News::found, guid, said.name, said.middleware, said.role, said.secured, said.authority,
+          said.certificate});
   } else if (said.leaves && known != peers_.end() && !known->second.decided) {
     // Of the others Fast DDS knows whether it is true.
     peers_.erase(known);
@@ -92,6 +105,7 @@ void Peers::on_participant(const FoundParticipant& found) {
     } else {  // heard of, or judged, before
       known->second.name = found.name;
       known->second.middleware = found.middleware;
+      known->second.role = found.role;
     }
   }
   if (next_) next_->on_participant(found);
@@ -102,7 +116,8 @@ void Peers::on_endpoint(const FoundEndpoint& found) {
 }
 
 void Peers::meet(const FoundParticipant& found) {
-  Peer peer{found.name, found.authority, found.middleware, found.secured};
+  Peer peer{found.name,        found.authority, found.middleware,
+            found.certificate, found.role,      found.secured};
   if (peer.secured && !authority_) note(peer.name + ", which is secured while this process is not");
   // Not without bound.
   if (peers_.size() >= max_peers) return;
@@ -121,7 +136,7 @@ void Peers::on_judged(const Guid& guid, bool let_in) {
   const std::scoped_lock lock(mutex_);
   const auto found = peers_.find(guid);
   if (found == peers_.end()) {
-    Peer peer{"somebody", {}, {}, true, true};
+    Peer peer{"somebody", {}, {}, {}, {}, true, true};
     if (!let_in)
       refuse(peer);
     else if (peers_.size() < max_peers)

@@ -28,6 +28,9 @@ class Peers : public DiscoveryEvents {
     std::string name, middleware;
   };
   std::map<GuidPrefix, Presented> present() const;
+  /// In a secured lab that of its certificate, otherwise what it announces; nothing: it is not
+  /// known, or has none.
+  std::optional<Role> role_of(const GuidPrefix& whose) const;
   /// With the reason, and how often; at most 32 different ones.
   std::map<std::string, std::uint64_t> refused() const;
 
@@ -51,7 +54,8 @@ class Peers : public DiscoveryEvents {
  private:
   using Clock = std::chrono::steady_clock;
   struct Peer {
-    std::string name, authority, middleware;
+    std::string name, authority, middleware, certificate;
+    std::optional<Role> role;  // as it announces it
     bool secured = false;
     bool decided = false;
     Clock::time_point met = Clock::now();

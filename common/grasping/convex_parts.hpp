@@ -20,7 +20,6 @@ struct ConvexParts {
   std::vector<std::vector<Eigen::Vector3d>> parts;  // corners of each, m
   double concavity = 0;  // volume of the mesh's hull over that of the mesh, less 1: 0 when convex
   double excess = 0;     // the same of the parts
-  bool is_hull() const { return parts.size() == 1; }
 };
 
 /// Cuts the box about the mesh by planes along the axes, always where that takes most off what the

@@ -74,10 +74,13 @@ bool extend(X509* certificate, X509* issuer, int id, const char* value) {
 
 using Asking = Owned<X509_REQ, X509_REQ_free>;
 
-bool put_name(X509_NAME* to, std::string_view name) {
-  return X509_NAME_add_entry_by_txt(to, "CN", MBSTRING_UTF8,
-                                    reinterpret_cast<const unsigned char*>(name.data()),
-                                    static_cast<int>(name.size()), -1, 0) == 1;
+bool put_name(X509_NAME* to, std::string_view name, std::string_view unit = {}) {
+  const auto put = [&](const char* attribute, std::string_view text) {
+    return X509_NAME_add_entry_by_txt(to, attribute, MBSTRING_UTF8,
+                                      reinterpret_cast<const unsigned char*>(text.data()),
+                                      static_cast<int>(text.size()), -1, 0) == 1;
+  };
+  return put("CN", name) && (unit.empty() || put("OU", unit));
 }
 
 Expected<std::string> text_of_key(EVP_PKEY* key) {
@@ -101,8 +104,8 @@ Expected<Asking> asking_of(std::string_view text) {
 }
 
 /// The certificate of a key. issuer: nothing, and the certificate vouches for itself.
-Expected<std::string> certify(std::string_view name, EVP_PKEY* key, const Validity& valid,
-                              X509* issuer, EVP_PKEY* issuer_key) {
+Expected<std::string> certify(std::string_view name, std::string_view unit, EVP_PKEY* key,
+                              const Validity& valid, X509* issuer, EVP_PKEY* issuer_key) {
   const Certificate certificate(X509_new());
   const Integer serial = new_serial();
   if (!certificate || !serial) return failed("a certificate cannot be made");
@@ -111,7 +114,7 @@ Expected<std::string> certify(std::string_view name, EVP_PKEY* key, const Validi
               X509_set_pubkey(raw, key) == 1 &&
               ASN1_TIME_set(X509_getm_notBefore(raw), seconds_of(valid.from)) &&
               ASN1_TIME_set(X509_getm_notAfter(raw), seconds_of(valid.until)) &&
-              put_name(X509_get_subject_name(raw), name);
+              put_name(X509_get_subject_name(raw), name, unit);
   X509* by = issuer ? issuer : raw;
   good =
       good && X509_set_issuer_name(raw, X509_get_subject_name(by)) == 1 &&
@@ -126,11 +129,11 @@ Expected<std::string> certify(std::string_view name, EVP_PKEY* key, const Validi
   return text_of(text);
 }
 
-Expected<Identity> make(std::string_view name, const Validity& valid, X509* issuer,
-                        EVP_PKEY* issuer_key) {
+Expected<Identity> make(std::string_view name, std::string_view unit, const Validity& valid,
+                        X509* issuer, EVP_PKEY* issuer_key) {
   const Key key(EVP_EC_gen("P-256"));
   if (!key) return failed("a key cannot be made");
-  auto certificate = certify(name, key.get(), valid, issuer, issuer_key);
+  auto certificate = certify(name, unit, key.get(), valid, issuer, issuer_key);
   if (!certificate) return tl::unexpected(certificate.error());
   auto text = text_of_key(key.get());
   if (!text) return tl::unexpected(text.error());
@@ -153,15 +156,16 @@ Expected<Store> store_of(std::string_view authority, X509_CRL* list) {
 }  // namespace
 
 Expected<Identity> make_authority(std::string_view name, const Validity& valid) {
-  return make(name, valid, nullptr, nullptr);
+  return make(name, {}, valid, nullptr, nullptr);
 }
 
-Expected<Identity> issue(const Identity& authority, std::string_view name, const Validity& valid) {
+Expected<Identity> issue(const Identity& authority, std::string_view name, std::string_view unit,
+                         const Validity& valid) {
   const auto issuer = certificate_of(authority.certificate);
   if (!issuer) return tl::unexpected(issuer.error());
   const auto key = key_of(authority.key);
   if (!key) return tl::unexpected(key.error());
-  return make(name, valid, issuer->get(), key->get());
+  return make(name, unit, valid, issuer->get(), key->get());
 }
 
 Expected<Request> request(std::string_view name) {
@@ -190,7 +194,7 @@ Expected<std::string> name_in(std::string_view text) {
   return std::string(name.data(), static_cast<std::size_t>(length));
 }
 
-Expected<std::string> grant(const Identity& authority, std::string_view text,
+Expected<std::string> grant(const Identity& authority, std::string_view text, std::string_view unit,
                             const Validity& valid) {
   const auto name = name_in(text);
   if (!name) return tl::unexpected(name.error());
@@ -199,7 +203,8 @@ Expected<std::string> grant(const Identity& authority, std::string_view text,
   if (!issuer) return tl::unexpected(issuer.error());
   const auto key = key_of(authority.key);
   if (!key) return tl::unexpected(key.error());
-  return certify(*name, X509_REQ_get0_pubkey(asking->get()), valid, issuer->get(), key->get());
+  return certify(*name, unit, X509_REQ_get0_pubkey(asking->get()), valid, issuer->get(),
+                 key->get());
 }
 
 Expected<std::string> revocation_list(const Identity& authority, const std::vector<Revoked>& gone,

@@ -37,8 +37,9 @@ inline constexpr std::chrono::days dated_back{1};
 
 /// An authority that vouches for itself.
 Expected<Identity> make_authority(std::string_view name, const Validity& valid);
-/// An identity that the authority vouches for.
-Expected<Identity> issue(const Identity& authority, std::string_view name, const Validity& valid);
+/// An identity that the authority vouches for. unit: of its subject (OU); empty: it has none.
+Expected<Identity> issue(const Identity& authority, std::string_view name, std::string_view unit,
+                         const Validity& valid);
 /// A private key that never leaves its machine, and what asks an authority elsewhere for its
 /// certificate (PKCS #10).
 struct Request {
@@ -49,7 +50,7 @@ Expected<Request> request(std::string_view name);
 Expected<std::string> name_in(std::string_view request);
 /// The certificate that is asked for.
 Expected<std::string> grant(const Identity& authority, std::string_view request,
-                            const Validity& valid);
+                            std::string_view unit, const Validity& valid);
 
 /// The list of what the authority no longer vouches for.
 Expected<std::string> revocation_list(const Identity& authority, const std::vector<Revoked>& gone,

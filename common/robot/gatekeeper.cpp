@@ -279,7 +279,7 @@ void Gatekeeper::on_order(const v1::OperatorCommand& order, const dds::SampleInf
   const std::string owner = owner_of(order, info);
   if (const auto known = orders_.find(order.id().to_string(), owner))
     return replies_.publish(*known);
-  const auto executed = execute(order, by, now);
+  const auto executed = execute(order, by, shell_.role_of(info), now);
   v1::OperatorReply reply;
   reply.id(order.id());
   reply.stamp_ns(to_ns(now));
@@ -303,11 +303,11 @@ void Gatekeeper::on_order(const v1::OperatorCommand& order, const dds::SampleInf
 
 /// A stop is obeyed from whom and whenever it comes.
 Expected<std::string> Gatekeeper::execute(const v1::OperatorCommand& order, const std::string& by,
-                                          Time now) {
+                                          std::optional<dds::Role> role, Time now) {
   const std::string argument = order.argument().to_string();
   if (order.action() == v1::ACTION_STOP) return stop(by, argument, now);
   if (!shell_.lockstep())
-    if (const auto meant = service::meant_now(order, by, now); !meant)
+    if (const auto meant = service::meant_now(order, by, role, now); !meant)
       return tl::unexpected(meant.error());
   return order.action() == v1::ACTION_RELEASE
              ? release(by, argument, from_ns(order.stamp_ns()), now)
@@ -380,21 +380,21 @@ Expected<std::string> Gatekeeper::take_over(const std::string& by, const std::st
 
 void Gatekeeper::on_consent(const v1::OperatorConsent& consent, const dds::SampleInfo& info) {
   if (consent.hand().to_string() == state_.hand().to_string())
-    this->consent(consent.held(), from_ns(consent.stamp_ns()), info);
+    this->consent(consent.held(), from_ns(consent.stamp_ns()), info, dds::operator_consent);
 }
 
 void Gatekeeper::on_button(const v1::GloveButton& button, const dds::SampleInfo& info) {
   if (button.glove().to_string() != glove_) return;
-  // A recording may be played before it is known as one; a glove is heard again.
-  if (!shell_.lockstep() && !shell_.writer_of(info).starts_with("glove@")) return;
   const auto& held = button.held();
   consent(std::find(held.begin(), held.end(), button_) != held.end(), from_ns(button.stamp_ns()),
-          info);
+          info, dds::glove_button);
 }
 
-void Gatekeeper::consent(bool held, Time stamp, const dds::SampleInfo& info) {
+void Gatekeeper::consent(bool held, Time stamp, const dds::SampleInfo& info,
+                         const dds::TopicInfo& topic) {
   // What somebody consented to then is not consent now.
-  if (!shell_.lockstep() && shell_.writer_of(info).starts_with("replayer@")) return;
+  if (!shell_.lockstep() && !service::means(shell_.role_of(info), topic))
+    return shell_.status().drop("consent of nobody who may give it");
   const Time now = shell_.now();
   gate_.consent(info.participant, held, stamp, now);
   watch_consent(now);

@@ -75,7 +75,8 @@ class Gatekeeper {
   void count(std::string_view reason);
 
   void on_order(const v1::OperatorCommand& order, const dds::SampleInfo& info);
-  Expected<std::string> execute(const v1::OperatorCommand& order, const std::string& by, Time now);
+  Expected<std::string> execute(const v1::OperatorCommand& order, const std::string& by,
+                                std::optional<dds::Role> role, Time now);
   std::string stop(const std::string& by, const std::string& reason, Time now);
   /// given: when the operator did.
   Expected<std::string> release(const std::string& by, const std::string& reason, Time given,
@@ -85,7 +86,7 @@ class Gatekeeper {
   void on_consent(const v1::OperatorConsent& consent, const dds::SampleInfo& info);
   void on_button(const v1::GloveButton& button, const dds::SampleInfo& info);
   /// Consent of somebody, unless it is only played.
-  void consent(bool held, Time stamp, const dds::SampleInfo& info);
+  void consent(bool held, Time stamp, const dds::SampleInfo& info, const dds::TopicInfo& topic);
   void watch_consent(Time now);
   void watch_lead(Time now);
   Expected<void> open_audit(const std::string& name);

@@ -8,6 +8,7 @@
 
 #include "common/base/error.hpp"
 #include "common/base/time.hpp"
+#include "common/dds/topics.hpp"
 #include "idl/Operation.h"
 
 namespace prehend::service {
@@ -16,9 +17,13 @@ namespace prehend::service {
 /// its name, writer.
 std::string given_by(const v1::OperatorCommand& order, const std::string& writer);
 
-/// What moves a robot, or lets it move, must be meant now, and by somebody: a recording that is
-/// played must not do so.
-Expected<void> meant_now(const v1::OperatorCommand& order, const std::string& by, Time now);
+/// Does a writer of this role mean what it says on the topic? Nobody does who is not known, whose
+/// role may not write there, or who plays a recording.
+bool means(std::optional<dds::Role> role, const dds::TopicInfo& topic);
+
+/// What moves a robot, or lets it move, must be meant now, and by somebody. by: for the message.
+Expected<void> meant_now(const v1::OperatorCommand& order, const std::string& by,
+                         std::optional<dds::Role> role, Time now);
 
 /// Replies to the last orders: one that comes again is answered as before and not executed again.
 /// Whoever gives an order may so repeat it until it is answered. `whose` tells orders of one id

@@ -17,7 +17,6 @@ class Rejoin {
   bool is_due(Time now, bool busy) const {
     return from_ && now >= *from_ && (!busy || now >= *from_ + max_wait);
   }
-  bool is_asked() const { return from_.has_value(); }
 
   static constexpr Duration max_delay = std::chrono::seconds(3);
   static constexpr Duration max_wait = std::chrono::seconds(60);

@@ -273,6 +273,9 @@ std::string Shell::writer_of(const dds::SampleInfo& info) const {
   std::string service = state_->clock_sync ? state_->clock_sync->service_of(info) : std::string();
   return service.empty() ? fmt::format("{:02x}", fmt::join(info.participant, ".")) : service;
 }
+std::optional<dds::Role> Shell::role_of(const dds::SampleInfo& info) const {
+  return state_->participant->role_of(info.participant);
+}
 dds::Participant& Shell::participant() {
   return *state_->participant;
 }

@@ -32,7 +32,7 @@ class Shell {
   struct Options {
     std::string name;         // of the service: glove, mapping, ...
     std::string description;  // first line of --help
-    std::string role = {};    // whose keys it takes; empty: that of its name
+    std::string role = {};    // what it is, and whose keys it takes; empty: its name
     /// It may be started anew in its place at any time, with the same arguments.
     bool restarts = true;
   };
@@ -55,6 +55,8 @@ class Shell {
   /// Who wrote a sample, as its status calls it; else, and always in lockstep, the identity of its
   /// participant.
   std::string writer_of(const dds::SampleInfo& info) const;
+  /// What the writer of a sample is (dds::Participant::role_of).
+  std::optional<dds::Role> role_of(const dds::SampleInfo& info) const;
 
   /// A function that publishes a sample on the topic, and one that disposes an instance by its key.
   /// A topic that cannot be joined makes run() fail, as it does for subscribe().

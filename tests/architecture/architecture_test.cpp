@@ -11,6 +11,7 @@
 #include <ostream>
 #include <set>
 
+#include "tests/architecture/decisions.hpp"
 #include "tests/architecture/drawing.hpp"
 #include "tests/architecture/rules.hpp"
 #include "tests/architecture/small_house.hpp"
@@ -45,6 +46,30 @@ TEST(Architecture, TheDrawingIsOfThisTree) {
   ASSERT_THAT(page, testing::HasSubstr(drawing_begins));
   EXPECT_EQ(with_drawing(page, drawing(read_house(prehend::test::in_sources("")))), page)
       << "draw_architecture --write draws it anew";
+}
+
+TEST(Architecture, TheIndexOfDecisionsIsOfThisTree) {
+  std::ifstream in(std::filesystem::path(test::in_sources(decisions_page)));
+  const std::string page{std::istreambuf_iterator<char>(in), {}};
+  EXPECT_EQ(decisions(read_house(test::in_sources(""))), page)
+      << "draw_architecture --write makes it anew";
+}
+
+TEST(Architecture, TheIndexOfDecisionsSaysWhatHolds) {
+  House house;
+  const auto add = [&](const std::string& name, std::vector<std::string> lines) {
+    house.pages.push_back({"docs/decisions/" + name, std::move(lines), {}, {}});
+  };
+  add("0001-one.md", {"# 0001: It stands", "", "**Decision.** So."});
+  add("0002-two.md", {"# 0002 It fell", "", "**Overtaken:** by", "0001.", "", "more"});
+  add("0003-three.md", {"# 0003: It leans", "**Changed:** since 2026."});
+  add("README.md", {"# Decisions"});
+  const std::string page = decisions(house);
+  EXPECT_THAT(page, testing::HasSubstr("| [0001](0001-one.md) It stands | yes |\n"));
+  EXPECT_THAT(page, testing::HasSubstr("| [0002](0002-two.md) It fell | **no**: by 0001. |\n"));
+  EXPECT_THAT(page,
+              testing::HasSubstr("| [0003](0003-three.md) It leans | in part: since 2026. |\n"));
+  EXPECT_THAT(page, testing::Not(testing::HasSubstr("README")));
 }
 
 TEST(Architecture, ADrawingSaysWhatIncludesWhat) {

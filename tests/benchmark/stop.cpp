@@ -193,7 +193,7 @@ int run(bool json, int rounds, double brake, int flood_rate) {
   const std::string rig = fmt::format("stop-{}", ::getpid());
   States states;
   auto participant =
-      need(dds::Participant::create({.name = "benchmark", .domain = domain, .rig = rig}));
+      need(dds::Participant::create({.name = "operator", .domain = domain, .rig = rig}));
   auto commands = need(participant.writer(dds::robot_command));
   auto orders = need(participant.writer(dds::operator_command));
   (void)need(participant.reader(dds::robot_state, &states));

@@ -20,7 +20,7 @@ int main(int argc, char** argv) {
   const Time now = from_ns(1'800'000'000'000'000'000);
   const keys::Validity valid{now, now + std::chrono::days(10)};
   const keys::Identity authority = *keys::make_authority("lab", valid);
-  const keys::Identity glove = *keys::issue(authority, "glove", valid);
+  const keys::Identity glove = *keys::issue(authority, "glove", {}, valid);
   const std::string serial = keys::facts(glove.certificate)->serial;
   const std::string list = *keys::revocation_list(authority, {{serial, now}}, valid);
   dds::Permissions permissions = dds::min_permissions(dds::Role::glove);

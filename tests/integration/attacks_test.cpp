@@ -95,6 +95,54 @@ TEST_F(Attacks, AReleaseThatWasGivenBeforeTheStopDoesNotEndIt) {
   EXPECT_TRUE(wait(20, [&] { return !gate_.stopped(); }));
 }
 
+// Guards against who is known by no name yet: a replayer plays what was recorded as soon as it has
+// come, before its status or beacon is heard, and so does who never tells of itself.
+TEST_F(Attacks, WhatIsPlayedOrSaidByNobodyKnownReleasesNothingAndIsNoConsent) {
+  start_hand({"safety.deadman=true"});
+  ASSERT_TRUE(give(made("stop", v1::ACTION_STOP)));
+  ASSERT_TRUE(wait(20, [&] { return gate_.stopped(); }));
+  const auto consent = [&](bool held) {
+    v1::OperatorConsent message;
+    message.hand("hand");
+    message.stamp_ns(now_ns());
+    message.held(held);
+    return message;
+  };
+  for (const char* role : {"replayer", "nobody", "glove"}) {
+    auto other = dds::Participant::create(
+        {.name = "other", .domain = domain_, .rig = name_, .network = network_, .role = role});
+    ASSERT_TRUE(other);
+    auto orders = other->writer(dds::operator_command);
+    auto consents = other->writer(dds::operator_consent);
+    ASSERT_TRUE(orders && consents);
+    meet(*orders);
+    meet(*consents);
+    const std::uint64_t before = dropped("consent of nobody who may give it");
+    EXPECT_TRUE(wait(20, [&] {
+      consents->write(consent(true));
+      EXPECT_FALSE(gate_.consent()) << role;
+      return dropped("consent of nobody who may give it") > before;
+    })) << role;
+    const auto reply = give(made(std::string("of a ") + role, v1::ACTION_RELEASE), *orders);
+    ASSERT_TRUE(reply) << role;
+    EXPECT_FALSE(reply->done()) << role;
+    EXPECT_NE(reply->message().to_string().find("is not obeyed"), std::string::npos)
+        << reply->message().to_string();
+  }
+  listen();
+  EXPECT_TRUE(gate_.stopped());
+  // Who is known needs no name either.
+  auto consents = writer(dds::operator_consent);
+  meet(consents);
+  EXPECT_TRUE(wait(20, [&] {
+    consents.write(consent(true));
+    return gate_.consent();
+  }));
+  const auto released = give(made("of an operator", v1::ACTION_RELEASE));
+  ASSERT_TRUE(released);
+  EXPECT_TRUE(released->done()) << released->message().to_string();
+}
+
 // An order is known by its id, so that it may be repeated; a stop must not be taken for another
 // one.
 TEST_F(Attacks, AnIdThatWasUsedDoesNotSwallowAStop) {

@@ -41,8 +41,11 @@ Rig::Rig(dds::Network network) : network_(std::move(network)) {
 
 void Rig::join(const std::string& role) {
   participant_.reset();
-  auto made = dds::Participant::create(
-      {.name = "test", .domain = domain_, .rig = name_, .network = network_, .role = role});
+  auto made = dds::Participant::create({.name = "test",
+                                        .domain = domain_,
+                                        .rig = name_,
+                                        .network = network_,
+                                        .role = role.empty() ? "operator" : role});
   if (!made) throw std::runtime_error(made.error().message());
   participant_.emplace(std::move(*made));
 }

@@ -71,7 +71,7 @@ class Rig : public testing::Test {
     }));
   }
 
-  /// The test takes part anew, on network_ as it is then. role: whose keys it takes.
+  /// The test takes part anew, on network_ as it is then. role: empty: it may give orders.
   void join(const std::string& role = {});
 
   dds::Network network_;

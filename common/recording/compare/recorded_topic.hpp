@@ -9,7 +9,7 @@
 namespace prehend::recording {
 
 /// What a channel of a recording is about. Channels of our recorder say so in their metadata (see
-/// prehend/recording_layout/layout.hpp), others by topic and schema.
+/// common/recording/layout/layout.hpp), others by topic and schema.
 struct RecordedTopic {
   std::string name;
   std::string type;  // of DDS, or the schema's name

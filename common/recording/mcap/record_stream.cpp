@@ -44,12 +44,6 @@ Expected<std::optional<RecordStream::Head>> RecordStream::head() {
   return head;
 }
 
-Expected<std::optional<RecordStream::Head>> RecordStream::next_head() {
-  auto result = head();
-  if (result && *result) position_ = (*result)->end;
-  return result;
-}
-
 Expected<std::optional<RawRecord>> RecordStream::next() {
   const auto found = head();
   if (!found) return tl::unexpected(found.error());

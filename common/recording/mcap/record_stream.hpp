@@ -21,18 +21,16 @@ class RecordStream {
   /// part. A record that does not end inside the part is a failure that names its offset, and so is
   /// every further call.
   Expected<std::optional<RawRecord>> next();
-  /// The same without reading the content, which is left empty; `end` says where it ends.
-  struct Head {
-    std::uint8_t opcode = 0;
-    std::uint64_t offset = 0;
-    std::uint64_t end = 0;
-  };
-  Expected<std::optional<Head>> next_head();
 
   /// Where the next record starts: behind the last whole one.
   std::uint64_t position() const { return position_; }
 
  private:
+  struct Head {
+    std::uint8_t opcode = 0;
+    std::uint64_t offset = 0;
+    std::uint64_t end = 0;  // of its content
+  };
   /// Puts these bytes of the file into the buffer; they end inside the part.
   Expected<View> bytes(std::uint64_t offset, std::uint64_t count);
   Expected<std::optional<Head>> head();

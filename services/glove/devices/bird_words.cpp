@@ -69,14 +69,6 @@ std::string status_in_words(std::uint16_t status) {
   return fmt::format("{}", fmt::join(words, ", "));
 }
 
-std::string unit_in_words(std::uint8_t unit) {
-  if ((unit & accessible) == 0) return "not there";
-  std::string words = (unit & running) != 0 ? "running" : "not running";
-  words += (unit & has_receiver) != 0 ? ", with receiver" : ", without receiver";
-  if ((unit & extended_range) != 0) words += ", extended range";
-  return words;
-}
-
 std::string revision_in_words(std::string_view bytes) {
   if (bytes.size() != 2) return "unknown";
   return fmt::format("{}.{:02}", static_cast<std::uint8_t>(bytes[0]),

@@ -14,9 +14,6 @@ std::string_view error_in_words(std::uint8_t code);
 /// initialised, running, position_angles, point".
 std::string status_in_words(std::uint16_t status);
 
-/// Of a unit's byte of the system status (parameter 36): "running, with receiver".
-std::string unit_in_words(std::uint8_t unit);
-
 /// Two bytes, as "3.60".
 std::string revision_in_words(std::string_view bytes);
 

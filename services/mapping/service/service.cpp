@@ -189,7 +189,7 @@ class Service::Topics {
     const std::string by = service::given_by(order, shell_.writer_of(info));
     const Time now = shell_.now();
     if (!shell_.lockstep())
-      if (const auto meant = service::meant_now(order, by, now); !meant)
+      if (const auto meant = service::meant_now(order, by, shell_.role_of(info), now); !meant)
         return tl::unexpected(meant.error());
     const auto chosen = heard_.named(
         order.argument().to_string(), gloves_.followed(), now,

@@ -34,7 +34,7 @@ struct Heading {
   std::function<std::optional<Description>(const std::string& type)> describe;
 };
 
-/// An MCAP file that is being written, in the layout of prehend/recording_layout. Keeps a reference
+/// An MCAP file that is being written, in the layout of common/recording/layout. Keeps a reference
 /// to the heading.
 class RecordingFile {
  public:

@@ -155,7 +155,8 @@ Expected<std::string> Service::place(const v1::OperatorCommand& order,
                                      const dds::SampleInfo& info) {
   const std::string by = service::given_by(order, shell_.writer_of(info));
   if (!shell_.lockstep())
-    if (const auto meant = service::meant_now(order, by, shell_.now()); !meant)
+    if (const auto meant = service::meant_now(order, by, shell_.role_of(info), shell_.now());
+        !meant)
       return tl::unexpected(meant.error());
   const std::string name = order.argument().to_string();
   const model::CatalogueObject* object = catalogue_.find(name);

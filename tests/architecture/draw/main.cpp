@@ -1,16 +1,19 @@
-// draw_architecture: prints the drawing of the house; with --write puts it into ARCHITECTURE.md.
+// draw_architecture: prints the drawing of the house; with --write puts it into ARCHITECTURE.md,
+// and makes the index of the decisions.
 #include <fstream>
 #include <iostream>
 #include <iterator>
 #include <string_view>
 
+#include "tests/architecture/decisions.hpp"
 #include "tests/architecture/drawing.hpp"
 #include "tests/support/paths/paths.hpp"
 
 int main(int argc, char** argv) {
   using namespace prehend::architecture;
   const std::filesystem::path root = prehend::test::in_sources("");
-  const std::string drawn = drawing(read_house(root));
+  const House house = read_house(root);
+  const std::string drawn = drawing(house);
   if (argc == 1) {
     std::cout << drawn;
     return 0;
@@ -23,5 +26,7 @@ int main(int argc, char** argv) {
   const std::string page{std::istreambuf_iterator<char>(in), {}};
   std::ofstream out(root / "ARCHITECTURE.md");
   out << with_drawing(page, drawn) << std::flush;
-  return out ? 0 : 3;
+  std::ofstream index(root / decisions_page);
+  index << decisions(house) << std::flush;
+  return out && index ? 0 : 3;
 }

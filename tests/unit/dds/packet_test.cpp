@@ -142,13 +142,16 @@ TEST(Packet, AnAnnouncementTellsWhoSpeaksWithWhatKeysAndWhatMiddleware) {
     EXPECT_EQ(said.name, "theglove");
     EXPECT_TRUE(said.secured);
     EXPECT_EQ(said.authority, "/CN=lab");
+    EXPECT_EQ(said.certificate, "/CN=somebody");
     EXPECT_EQ(said.middleware, "Fast DDS 3.1.2");
   }
   Message open(mapping);
-  open.announcement(mapping, {}, std::chrono::seconds(20),
-                    {{0x002c, open.text("Fast DDS 2.9.1")}, {0x0062, open.text("mapping")}});
+  open.announcement(
+      mapping, {}, std::chrono::seconds(20),
+      {{0x002c, open.text("Fast DDS 2.9.1; mapping")}, {0x0062, open.text("mapping")}});
   const Announcement said = read(open)->announcements.front();
   EXPECT_EQ(said.middleware, "Fast DDS 2.9.1");
+  EXPECT_EQ(said.role, Role::mapping);
   EXPECT_FALSE(said.secured);
 }
 

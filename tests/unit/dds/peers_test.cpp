@@ -44,7 +44,7 @@ TEST(Peers, WhoIsLetInAfterItWasHeardOfIsDecided) {
   Peers peers(nullptr, "CN=lab", guard);
   peers.hear(announcement(1, "mapping", own, "/CN=lab"));
   peers.on_judged(guid(1), true);
-  peers.on_participant({News::found, guid(1), "mapping", own, false, ""});
+  peers.on_participant({News::found, guid(1), "mapping", own});
   EXPECT_FALSE(peers.wait_until_decided(guid(9)));
   EXPECT_THAT(peers.refused(), IsEmpty());
   EXPECT_THAT(peers.present(),
@@ -57,7 +57,8 @@ TEST(Peers, WhoIsLetInBeforeItIsKnownIsDecided) {
   PacketGuard guard(false, true);
   Peers peers(nullptr, "CN=lab", guard);
   peers.on_judged(guid(1), true);
-  peers.on_participant({News::found, guid(1), "mapping", own, true, "/CN=lab"});
+  peers.on_participant(
+      {News::found, guid(1), "mapping", own, Role::mapping, true, "/CN=lab", "/CN=mapping"});
   EXPECT_FALSE(peers.wait_until_decided(guid(9)));
   EXPECT_THAT(peers.refused(), IsEmpty());
 }
@@ -128,6 +129,48 @@ TEST(Peers, AFarewellThatIsOnlyHeardEndsNobodyWhoWasLetIn) {
   EXPECT_EQ(peers.present().size(), 1u);
   peers.on_participant({News::gone, guid(1), "", "", false, ""});
   EXPECT_THAT(peers.present(), IsEmpty());
+}
+
+TEST(Peers, RoleIsAnnouncedOrIsThatOfTheCertificate) {
+  PacketGuard guard(false, true);
+  Peers peers(nullptr, std::nullopt, guard);
+  const auto role = [](Peers& of, std::uint8_t n) {
+    return of.role_of(announcement(n, "", "", "").participant);
+  };
+  EXPECT_EQ(role(peers, 1), std::nullopt) << "nobody knows it";
+  peers.on_participant({News::found, guid(1), "operator", own, Role::replayer});
+  EXPECT_EQ(role(peers, 1), Role::replayer);
+  peers.on_participant({News::found, guid(2), "operator", own, std::nullopt});
+  EXPECT_EQ(role(peers, 2), std::nullopt) << "a name is no role";
+  peers.on_participant({News::gone, guid(1)});
+  EXPECT_EQ(role(peers, 1), std::nullopt);
+
+  Peers secured(nullptr, "CN=lab", guard);
+  // Of a release that tells at once, and of one that is heard of before.
+  secured.on_participant(
+      {News::found, guid(3), "a", own, Role::operator_, true, "/CN=lab", "/CN=replayer-2"});
+  Announcement said = announcement(4, "b", own, "/CN=lab");
+  said.role = Role::operator_;
+  said.certificate = "/CN=laptop/OU=viewer";
+  secured.hear(said);
+  secured.on_judged(guid(4), true);
+  secured.on_participant({News::found, guid(4), "b", own, Role::operator_});
+  EXPECT_EQ(role(secured, 3), Role::replayer);
+  EXPECT_EQ(role(secured, 4), Role::viewer);
+  // Over TCP nobody hears of the certificate; who has none of this lab is not let in.
+  secured.on_judged(guid(5), true);
+  secured.on_participant({News::found, guid(5), "c", own, Role::console});
+  EXPECT_EQ(role(secured, 5), Role::console);
+}
+
+TEST(RoleOfCertificate, IsItsUnitOrElseItsName) {
+  EXPECT_EQ(role_of_certificate("/CN=glove"), Role::glove);
+  EXPECT_EQ(role_of_certificate("CN=glove-left"), Role::glove);
+  EXPECT_EQ(role_of_certificate("/CN=laptop/OU=operator"), Role::operator_);
+  EXPECT_EQ(role_of_certificate("OU=viewer,CN=glove"), Role::viewer);
+  for (const char* none :
+       {"", "/", "glove", "/CN=", "/CN=gloves", "/CN=laptop", "/OU=x/CN=glove", "/XCN=glove"})
+    EXPECT_EQ(role_of_certificate(none), std::nullopt) << none;
 }
 
 }  // namespace

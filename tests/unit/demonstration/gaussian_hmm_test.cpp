@@ -77,7 +77,7 @@ Sequence drawn(const HmmParameters& hmm, Eigen::Index length, Random& random) {
   return made;
 }
 
-TEST(GaussianHmm, ForwardIsTheSumOverAllPathsAndViterbiTheLargest) {
+TEST(GaussianHmm, ForwardIsTheSumOverAllPaths) {
   Random random(1);
   for (int round = 0; round < 40; ++round) {
     const auto states = static_cast<Eigen::Index>(1 + random.index(3));
@@ -86,22 +86,10 @@ TEST(GaussianHmm, ForwardIsTheSumOverAllPathsAndViterbiTheLargest) {
     ASSERT_TRUE(model) << model.error().message();
     const Sequence sequence =
         random_sequence(2, static_cast<Eigen::Index>(1 + random.index(5)), random);
-    double sum = 0, most = 0;
-    for (const double p : all_paths(hmm, sequence)) {
-      sum += p;
-      most = std::max(most, p);
-    }
-    // Both are the same sums in another order: only rounding differs.
+    double sum = 0;
+    for (const double p : all_paths(hmm, sequence)) sum += p;
+    // The same sum in another order: only rounding differs.
     EXPECT_NEAR(model->log_likelihood(sequence), std::log(sum), 1e-9);
-    const auto path = model->viterbi(sequence);
-    EXPECT_NEAR(path.log_likelihood, std::log(most), 1e-9);
-    EXPECT_LE(path.log_likelihood, model->log_likelihood(sequence) + 1e-12);
-    double along = hmm.initial[path.states[0]];
-    for (std::size_t t = 0; t < path.states.size(); ++t) {
-      if (t > 0) along *= hmm.transition(path.states[t - 1], path.states[t]);
-      along *= density(hmm, path.states[t], sequence.col(static_cast<Eigen::Index>(t)));
-    }
-    EXPECT_NEAR(std::log(along), path.log_likelihood, 1e-9) << "the path is not the one it tells";
   }
 }
 

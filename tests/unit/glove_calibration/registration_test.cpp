@@ -84,12 +84,6 @@ TEST(Registration, RefusesWhatDeterminesNothing) {
 TEST(Registration, IsWrittenIntoTheConfiguration) {
   const std::string line = x_wt_line(make_pose(Vector3d(0, 0.45, 0.3)));
   EXPECT_EQ(line, "X_WT = [0.00000, 0.45000, 0.30000, 1.000000, 0.000000, 0.000000, 0.000000]");
-  EXPECT_EQ(with_x_wt("# lab\n[lab]\nrig = \"x\"\n\n[tracker]\nX_WT = [1]\n\n[glove]\n", line),
-            "# lab\n[lab]\nrig = \"x\"\n\n[tracker]\n" + line + "\n\n[glove]\n");
-  EXPECT_EQ(with_x_wt("[tracker]\n[glove]\nX_WT = 1\n", line),
-            "[tracker]\n" + line + "\n[glove]\nX_WT = 1\n");
-  EXPECT_EQ(with_x_wt("[glove]\n", line), "[glove]\n\n[tracker]\n" + line + "\n");
-  EXPECT_EQ(with_x_wt("", line), "\n[tracker]\n" + line + "\n");
 }
 
 // From frames to the pose: a hand goes from corner to corner and rests at each.

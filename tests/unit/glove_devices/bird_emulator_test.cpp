@@ -98,8 +98,6 @@ TEST(BirdWords, ReadTheStatusOfARealTracker) {
   EXPECT_EQ(status_in_words(0xD108), "master, initialised, running, position_angles, point");
   EXPECT_EQ(status_in_words(0x0020), "not initialised, not running, asleep, point");
   EXPECT_EQ(revision_in_words("\x03\x3C"), "3.60");
-  EXPECT_EQ(unit_in_words(0xE0), "running, with receiver");
-  EXPECT_EQ(unit_in_words(0x00), "not there");
 }
 
 TEST(BirdEmulator, SurvivesRandomCommands) {

@@ -15,7 +15,7 @@ const Validity long_time{now - days(1), now + days(3650)};
 
 struct Lab {
   Identity authority = *make_authority("Prehend lab test", long_time);
-  Identity glove = *issue(authority, "glove", {now - days(1), now + days(30)});
+  Identity glove = *issue(authority, "glove", {}, {now - days(1), now + days(30)});
   std::string nobody_gone = *revocation_list(authority, {}, long_time);
 };
 
@@ -27,7 +27,8 @@ TEST(Certificate, TellsItsFacts) {
   EXPECT_EQ(known->issuer, "CN=Prehend lab test");
   EXPECT_EQ(known->valid.from, now - days(1));
   EXPECT_EQ(known->valid.until, now + days(30));
-  EXPECT_NE(known->serial, facts(issue(lab.authority, "glove", long_time)->certificate)->serial);
+  EXPECT_NE(known->serial,
+            facts(issue(lab.authority, "glove", {}, long_time)->certificate)->serial);
 }
 
 TEST(Certificate, IsGoodBeforeItsAuthorityForItsTime) {
@@ -53,7 +54,7 @@ TEST(Certificate, IsGrantedToAKeyThatTheAuthorityNeverSees) {
   ASSERT_TRUE(asked) << asked.error().message();
   EXPECT_EQ(asked->text.find("PRIVATE"), std::string::npos);
   EXPECT_EQ(name_in(asked->text), "glove-left");
-  const auto granted = grant(lab.authority, asked->text, {now - days(1), now + days(30)});
+  const auto granted = grant(lab.authority, asked->text, {}, {now - days(1), now + days(30)});
   ASSERT_TRUE(granted) << granted.error().message();
   EXPECT_EQ(facts(*granted)->subject, "CN=glove-left");
   EXPECT_TRUE(check({*granted, asked->key}, lab.authority.certificate, lab.nobody_gone, now));
@@ -66,9 +67,9 @@ TEST(Certificate, IsNotGrantedToWhoDoesNotHoldTheKey) {
   // Another name in the same request: its signature no longer holds.
   const std::size_t middle = asked.size() / 2;
   for (std::size_t i = middle; i < middle + 8; ++i) asked[i] = asked[i] == 'A' ? 'B' : 'A';
-  EXPECT_FALSE(grant(lab.authority, asked, long_time));
-  EXPECT_FALSE(grant(lab.authority, "", long_time));
-  EXPECT_FALSE(grant(lab.authority, lab.glove.certificate, long_time));
+  EXPECT_FALSE(grant(lab.authority, asked, {}, long_time));
+  EXPECT_FALSE(grant(lab.authority, "", {}, long_time));
+  EXPECT_FALSE(grant(lab.authority, lab.glove.certificate, {}, long_time));
 }
 
 TEST(Certificate, AListTellsWhenItWasSigned) {
@@ -79,7 +80,7 @@ TEST(Certificate, AListTellsWhenItWasSigned) {
 
 TEST(Certificate, RevokedIsNoLongerGood) {
   const Lab lab;
-  const Identity mapping = *issue(lab.authority, "mapping", long_time);
+  const Identity mapping = *issue(lab.authority, "mapping", {}, long_time);
   const std::vector<Revoked> gone{{facts(lab.glove.certificate)->serial, now - hours(1)}};
   const auto list = revocation_list(lab.authority, gone, long_time);
   ASSERT_TRUE(list) << list.error().message();

@@ -77,7 +77,7 @@ int show(const Keystore& store, bool json) {
 
 /// The role that is asked for, or the one in the key's name.
 Expected<dds::Role> choose_role(const std::string& name, const std::string& wanted) {
-  if (const auto role = role_of(wanted.empty() ? name : wanted)) return *role;
+  if (const auto role = dds::role_named(wanted.empty() ? name : wanted)) return *role;
   std::string all;
   for (const auto& [role, word] : dds::role_names) (all += all.empty() ? "" : ", ") += word;
   return fail("says no role", wanted.empty() ? name : "--role " + wanted,

@@ -129,11 +129,14 @@ Expected<fs::path> install_keys(const fs::path& store, Bundle bundle, Time now) 
   return folder;
 }
 
-std::optional<dds::Role> role_of(std::string_view name) {
-  for (const auto& [role, word] : dds::role_names)
-    if (name == word || (name.starts_with(word) && name[word.size()] == '-')) return role;
-  return std::nullopt;
+namespace {
+
+/// What a certificate says beside the name, for the role to be known by it.
+std::string_view unit_of(std::string_view name, dds::Role role) {
+  return dds::role_named(name) == role ? std::string_view() : dds::name_of(role);
 }
+
+}  // namespace
 
 Expected<Keystore> Keystore::init(const fs::path& folder, Duration validity, Time now,
                                   const dds::Scope& scope) {
@@ -201,7 +204,7 @@ Expected<void> Keystore::add(const std::string& name, dds::Role role, Duration v
   const auto authority = identity();
   if (!authority) return tl::unexpected(authority.error());
   const keys::Validity valid{now - keys::dated_back, now + validity};
-  const auto identity = keys::issue(*authority, name, valid);
+  const auto identity = keys::issue(*authority, name, unit_of(name, role), valid);
   if (!identity) return tl::unexpected(identity.error());
   auto bundle = bundle_of(name, identity->certificate, role, valid, scope);
   if (!bundle) return tl::unexpected(bundle.error());
@@ -247,12 +250,12 @@ Expected<Bundle> Keystore::sign(const std::string& request, std::optional<dds::R
   const auto name = keys::name_in(request);
   if (!name) return tl::unexpected(name.error());
   if (!good_name(*name)) return fail("asks for a name that is none for a key", *name);
-  if (!role) role = role_of(*name);
+  if (!role) role = dds::role_named(*name);
   if (!role) return fail("says no role", *name, "give --role");
   const auto authority = identity();
   if (!authority) return tl::unexpected(authority.error());
   const keys::Validity valid{now - keys::dated_back, now + validity};
-  const auto certificate = keys::grant(*authority, request, valid);
+  const auto certificate = keys::grant(*authority, request, unit_of(*name, *role), valid);
   if (!certificate) return tl::unexpected(certificate.error());
   auto bundle = bundle_of(*name, *certificate, *role, valid, scope);
   if (!bundle) return bundle;
@@ -340,7 +343,7 @@ Expected<std::vector<Keystore::Entry>> Keystore::entries(Time now) const {
           for (const auto& [role, word] : dds::role_names) {
             const dds::Permissions due = dds::min_permissions(role);
             if (due.writes == entry.permissions.writes && due.reads == entry.permissions.reads &&
-                (!entry.role || role_of(name) == role))
+                (!entry.role || dds::role_named(name) == role))
               entry.role = role;
           }
         }

@@ -82,7 +82,4 @@ Expected<std::string> request_key(const std::filesystem::path& store, const std:
 Expected<std::filesystem::path> install_keys(const std::filesystem::path& store, Bundle bundle,
                                              Time now);
 
-/// "glove" and "glove-left" are gloves.
-std::optional<dds::Role> role_of(std::string_view name);
-
 }  // namespace prehend::cli

@@ -150,29 +150,6 @@ double GaussianHmm::log_likelihood(const Sequence& sequence) const {
   return log;
 }
 
-GaussianHmm::Path GaussianHmm::viterbi(const Sequence& sequence) const {
-  if (sequence.cols() == 0) return {};
-  const Eigen::MatrixXd emissions = log_emissions(sequence);
-  Eigen::MatrixXi from(states(), sequence.cols());
-  Eigen::VectorXd best = log_initial_ + emissions.col(0);
-  for (Eigen::Index t = 1; t < sequence.cols(); ++t) {
-    Eigen::VectorXd next(states());
-    for (int to = 0; to < states(); ++to) {
-      Eigen::Index before = 0;
-      next[to] = (best + log_transition_.col(to)).maxCoeff(&before) + emissions(to, t);
-      from(to, t) = static_cast<int>(before);
-    }
-    best = std::move(next);
-  }
-  Path path;
-  Eigen::Index last = 0;
-  path.log_likelihood = best.maxCoeff(&last);
-  path.states.resize(static_cast<std::size_t>(sequence.cols()), static_cast<int>(last));
-  for (std::size_t t = path.states.size() - 1; t > 0; --t)
-    path.states[t - 1] = from(path.states[t], static_cast<Eigen::Index>(t));
-  return path;
-}
-
 namespace {
 
 /// Forward and backward probabilities of one sequence; adds what they say to `counts` and returns

@@ -38,13 +38,6 @@ class GaussianHmm {
   /// log P(observations), over all paths.
   double log_likelihood(const Sequence& sequence) const;
 
-  struct Path {
-    std::vector<int> states;
-    double log_likelihood = 0;  // of the observations along this path
-  };
-  /// The likeliest path.
-  Path viterbi(const Sequence& sequence) const;
-
   /// log p(x | state), a row a state, a column an observation.
   Eigen::MatrixXd log_emissions(const Sequence& sequence) const;
 

@@ -19,8 +19,4 @@ std::string_view to_string(Phase phase) {
   return names.name(phase);
 }
 
-std::optional<Phase> phase_from_string(std::string_view name) {
-  return names.value(name);
-}
-
 }  // namespace prehend::demonstration

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <array>
-#include <optional>
 #include <string_view>
 
 namespace prehend::demonstration {
@@ -21,6 +20,5 @@ inline constexpr std::array phases{Phase::rest, Phase::approach, Phase::close,
 inline constexpr std::size_t phase_count = phases.size();
 
 std::string_view to_string(Phase phase);
-std::optional<Phase> phase_from_string(std::string_view name);
 
 }  // namespace prehend::demonstration

@@ -75,8 +75,4 @@ std::string x_wt_line(const Pose& X_WT) {
                      p.y(), p.z(), q.w(), q.x(), q.y(), q.z());
 }
 
-std::string with_x_wt(std::string_view lab_toml, const std::string& line) {
-  return with_line(lab_toml, "tracker", "X_WT", line);
-}
-
 }  // namespace prehend::glove

@@ -26,8 +26,4 @@ Expected<Registration> register_tracker(const std::vector<Eigen::Vector3d>& p_W,
 /// The seven numbers of tracker.X_WT as lab.toml has them.
 std::string x_wt_line(const Pose& X_WT);
 
-/// A lab.toml's text with this line in its table [tracker], instead of the one there or new; the
-/// rest stays as it is.
-std::string with_x_wt(std::string_view lab_toml, const std::string& line);
-
 }  // namespace prehend::glove

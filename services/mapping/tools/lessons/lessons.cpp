@@ -105,8 +105,8 @@ class Lessons::Topics {
     if (info.gone || order.action() != v1::ACTION_TEACH || order.target().to_string() != "teacher")
       return;
     if (const auto known = orders_.find(order.id().to_string())) return replies_.publish(*known);
-    const auto meant =
-        service::meant_now(order, service::given_by(order, shell_.writer_of(info)), shell_.now());
+    const auto meant = service::meant_now(order, service::given_by(order, shell_.writer_of(info)),
+                                          shell_.role_of(info), shell_.now());
     const auto executed = meant.and_then([&] { return obey(order.argument().to_string()); });
     v1::OperatorReply reply;
     reply.id(order.id());

@@ -38,7 +38,7 @@ using AnatomyJudge = std::function<double(const Anatomy&, double needed)>;
 
 /// Fingers are the chains that end in a leaf; of several leaves that the same DoFs move, those that
 /// reach almost as far as the farthest. A tip is the end of the last link along its bone. A DoF
-/// closes if its joints turn about about the same axis as the last joint of a finger (else it is
+/// closes if its joints turn about nearly the same axis as the last joint of a finger (else it is
 /// abduction), towards the side on which the tips come nearer to the palm, or slides tips towards
 /// each other. robot: as repair() made it.
 Expected<Anatomy> find_anatomy(const Robot& robot, const SearchEffort& effort = {},
