@@ -95,6 +95,13 @@ inline constexpr std::array common_edges{
     Edge{"common/service", "common/dds"},
     Edge{"common/service", "common/tool"},
     Edge{"common/service", "idl"},
+    Edge{"common/stage", "common/arm"},
+    Edge{"common/stage", "common/base"},
+    Edge{"common/stage", "common/dds"},
+    Edge{"common/stage", "common/model"},
+    Edge{"common/stage", "common/service"},
+    Edge{"common/stage", "common/tool"},
+    Edge{"common/stage", "idl"},
     Edge{"common/statistics", "common/base"},
     Edge{"common/tool", "common/base"},
 };

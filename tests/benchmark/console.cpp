@@ -26,7 +26,8 @@
 
 #include "common/base/paths.hpp"
 #include "common/dds/participant.hpp"
-#include "common/service/lab.hpp"
+#include "common/stage/lab.hpp"
+#include "common/stage/temporary_folder.hpp"
 #include "tests/integration/web_client.hpp"
 #include "tests/support/domains/domain_lease.hpp"
 
@@ -66,7 +67,7 @@ class Console {
  public:
   Console(const Place& place, const std::filesystem::path& folder) {
     const auto output = folder / "address";
-    auto made = service::Process::start(
+    auto made = stage::Process::start(
         {.command = {(program_directory() / "prehend-console").string(), "--set", "console.port=0",
                      "--set", "lab.rig=" + place.rig, "--set",
                      fmt::format("lab.domain={}", place.domain)},
@@ -80,7 +81,7 @@ class Console {
       if (std::getline(said, address_) && !said.eof())
         port_ = std::stoi(address_.substr(address_.rfind(':') + 1));
     }
-    if (port_ == 0) give_up(service::last_lines(folder / "console.log", 5));
+    if (port_ == 0) give_up(stage::last_lines(folder / "console.log", 5));
   }
   int port() const { return port_; }
   const std::string& address() const { return address_; }
@@ -101,7 +102,7 @@ class Console {
   }
 
  private:
-  std::optional<service::Process> process_;
+  std::optional<stage::Process> process_;
   int port_ = 0;
   std::string address_;
 };
@@ -332,10 +333,10 @@ ordered_json come_and_go(const Console& console, double seconds) {
 /// Median of the world's own p50 of «glove to accepted», with ten clients and without, in turns.
 ordered_json in_a_lab(double seconds, int turns, const std::filesystem::path& folder) {
   const Place place;
-  service::Lab lab((share_directory() / "lab.toml").string(),
-                   {"lab.rig=" + place.rig, fmt::format("lab.domain={}", place.domain),
-                    "safety.state=" + (folder / "state").string()},
-                   folder);
+  stage::Lab lab((share_directory() / "lab.toml").string(),
+                 {"lab.rig=" + place.rig, fmt::format("lab.domain={}", place.domain),
+                  "safety.state=" + (folder / "state").string()},
+                 folder);
   const Console console(place, folder);
   auto joined = dds::Participant::create(
       {.name = "watcher", .domain = place.domain, .rig = place.rig, .network = {}});
@@ -391,7 +392,7 @@ int main(int argc, char** argv) {
     if (argument == "--hold" && i + 1 < argc) hold = std::atof(argv[++i]);
   }
   if (seconds <= 0) seconds = lab ? 35 : 8;
-  const auto folder = service::TemporaryFolder::create(false);
+  const auto folder = stage::TemporaryFolder::create(false);
   if (!folder) give_up(folder.error().message());
   if (lab) {
     std::cout << in_a_lab(seconds, std::max(turns, 2), folder->path()).dump() << "\n";

@@ -27,8 +27,8 @@
 
 #include "common/base/paths.hpp"
 #include "common/dds/participant.hpp"
-#include "common/service/lab.hpp"
-#include "common/service/process.hpp"
+#include "common/stage/process.hpp"
+#include "common/stage/temporary_folder.hpp"
 #include "tests/integration/hosts.hpp"
 #include "tests/support/domains/domain_lease.hpp"
 
@@ -144,9 +144,9 @@ class Crowd {
 
   void add(const Hosts& hosts, const std::string& host, const Role& role) {
     const auto file = folder_ / std::to_string(count_++);
-    auto made = service::Process::start({.command = hosts.on(host, role.command(self_)),
-                                         .log = folder_ / "participants.log",
-                                         .output = file});
+    auto made = stage::Process::start({.command = hosts.on(host, role.command(self_)),
+                                       .log = folder_ / "participants.log",
+                                       .output = file});
     if (!made) throw std::runtime_error(made.error().message());
     members_.push_back({std::move(*made), file, {}, {}});
   }
@@ -186,7 +186,7 @@ class Crowd {
 
  private:
   struct Member {
-    service::Process process;
+    stage::Process process;
     std::filesystem::path file;
     std::int64_t began = 0, met = 0;
   };
@@ -230,11 +230,11 @@ std::optional<Row> measure(const std::string& network, int n, const std::filesys
   const test::DomainLease lease;
   Role role{
       lease.domain(), fmt::format("discovery-{}", getpid()), {.profile = network}, "viewer", n};
-  std::optional<service::Process> server;
+  std::optional<stage::Process> server;
   if (network == "server") {
     hosts.add("server");
     role.network.servers = {hosts.address("server") + ":11811"};
-    auto made = service::Process::start(
+    auto made = stage::Process::start(
         {.command = hosts.on("server", {(program_directory() / "prehend").string(),
                                         "discovery-server", "--listen", "0.0.0.0:11811"}),
          .log = folder / "server.log"});
@@ -340,15 +340,15 @@ int table(bool json, const std::vector<int>& counts, const std::vector<std::stri
 
 int sites(int rounds, const std::filesystem::path& folder, const std::string& self) {
   const auto keys = folder / "keys";
-  auto made = service::Process::start({.command = {(program_directory() / "prehend").string(),
-                                                   "keys", "init", keys.string(), "--rig", "any"},
-                                       .log = "/dev/null"});
+  auto made = stage::Process::start({.command = {(program_directory() / "prehend").string(), "keys",
+                                                 "init", keys.string(), "--rig", "any"},
+                                     .log = "/dev/null"});
   if (!made || !made->wait(30s)) throw std::runtime_error("prehend keys does not work");
   Hosts hosts;
   hosts.add("robot");
   hosts.add("glove");
   for (const auto& [host, other] : {std::pair("robot", "glove"), std::pair("glove", "robot")}) {
-    auto drop = service::Process::start(
+    auto drop = stage::Process::start(
         {.command = hosts.on(host, {"iptables", "-A", "INPUT", "-p", "udp", "-s",
                                     hosts.address(other), "-j", "DROP"})});
     if (!drop || drop->wait(10s)->code != 0) throw std::runtime_error("iptables does not work");
@@ -408,7 +408,7 @@ int main(int argc, char** argv) {
   if (networks.empty()) networks = {"lan", "server"};
   try {
     if (const auto why = Hosts::unavailable()) throw std::runtime_error(*why);
-    const auto folder = service::TemporaryFolder::create(false);
+    const auto folder = stage::TemporaryFolder::create(false);
     if (!folder) throw std::runtime_error(folder.error().message());
     const std::string self = std::filesystem::read_symlink("/proc/self/exe").string();
     return rounds > 0 ? sites(rounds, folder->path(), self)

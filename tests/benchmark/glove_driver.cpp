@@ -24,7 +24,7 @@
 #include "common/base/paths.hpp"
 #include "common/dds/participant.hpp"
 #include "common/serial/pseudo_terminal.hpp"
-#include "common/service/process.hpp"
+#include "common/stage/process.hpp"
 #include "services/glove/devices/device.hpp"
 #include "tests/support/domains/domain_lease.hpp"
 
@@ -185,7 +185,7 @@ Stats measure(const std::string& kind, const std::string& format, double length,
   auto reader = must(participant.reader(dds::hand_posture));
   const auto log = std::filesystem::temp_directory_path() / rig;
   const auto spawn = [&](std::vector<std::string> command) {
-    return must(service::Process::start({.command = std::move(command), .log = log}));
+    return must(stage::Process::start({.command = std::move(command), .log = log}));
   };
   auto driver_process = spawn({self, "--driver", kind, driver_line.where(), format});
   auto floor_process = spawn(
@@ -244,7 +244,7 @@ Stats measure(const std::string& kind, const std::string& format, double length,
   stats.service_us = median(services);
   stats.samples = services.size();
   if (services.empty() || driver_line.sent() == 0) {
-    std::cerr << "no postures: " << service::last_lines(log, 5) << "\n";
+    std::cerr << "no postures: " << stage::last_lines(log, 5) << "\n";
     std::exit(3);
   }
   for (auto* process : {&service_process, &floor_process, &driver_process}) process->stop(1s);

@@ -27,9 +27,9 @@
 
 #include "common/base/paths.hpp"
 #include "common/dds/participant.hpp"
-#include "common/service/lab.hpp"
-#include "common/service/process.hpp"
 #include "common/service/status.hpp"
+#include "common/stage/process.hpp"
+#include "common/stage/temporary_folder.hpp"
 #include "tests/integration/hosts.hpp"
 #include "tests/support/domains/domain_lease.hpp"
 
@@ -146,10 +146,10 @@ class Case {
     own.rig = rig;
     return own;
   }
-  service::Process start(const std::string& host, std::vector<std::string> command,
-                         const std::filesystem::path& log = "/dev/null") const {
+  stage::Process start(const std::string& host, std::vector<std::string> command,
+                       const std::filesystem::path& log = "/dev/null") const {
     if (hosts_ && !host.empty()) command = hosts_->on(host, std::move(command));
-    auto made = service::Process::start({.command = std::move(command), .log = log});
+    auto made = stage::Process::start({.command = std::move(command), .log = log});
     if (!made) {
       std::cerr << made.error().message() << "\n";
       std::exit(3);
@@ -161,7 +161,7 @@ class Case {
   const test::DomainLease lease_;
   Place place_;
   std::optional<integration::Hosts> hosts_;
-  std::optional<service::Process> server_;
+  std::optional<stage::Process> server_;
 };
 
 /// The floor's last process is this one: latencies of `wanted` commands.
@@ -232,7 +232,7 @@ Stats measure_lab(double rate, std::size_t wanted, const Case& at,
     }
     for (auto* process : {&simulation, &mapping, &glove})
       if (process->exit()) {
-        std::cerr << "a service ended: " << service::last_lines(process->log(), 5) << "\n";
+        std::cerr << "a service ended: " << stage::last_lines(process->log(), 5) << "\n";
         std::exit(3);
       }
   }
@@ -240,15 +240,15 @@ Stats measure_lab(double rate, std::size_t wanted, const Case& at,
 }
 
 int run(bool json, double seconds, const std::vector<std::string>& cases, const std::string& self) {
-  const auto folder = service::TemporaryFolder::create(false);
+  const auto folder = stage::TemporaryFolder::create(false);
   if (!folder) {
     std::cerr << folder.error().message() << "\n";
     return 3;
   }
   const std::filesystem::path keys = folder->path() / "keys";
-  auto made = service::Process::start({.command = {(program_directory() / "prehend").string(),
-                                                   "keys", "init", keys.string(), "--rig", "any"},
-                                       .log = "/dev/null"});
+  auto made = stage::Process::start({.command = {(program_directory() / "prehend").string(), "keys",
+                                                 "init", keys.string(), "--rig", "any"},
+                                     .log = "/dev/null"});
   if (!made || !made->wait(30s)) {
     std::cerr << "prehend keys does not work\n";
     return 3;

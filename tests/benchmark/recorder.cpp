@@ -25,7 +25,7 @@
 #include "common/dds/raw.hpp"
 #include "common/recording/mcap/reader.hpp"
 #include "common/recording/mcap/writer.hpp"
-#include "common/service/process.hpp"
+#include "common/stage/process.hpp"
 #include "tests/support/domains/domain_lease.hpp"
 
 namespace prehend {
@@ -166,7 +166,7 @@ class Bench {
     run.peak_mb = peak_memory_mb(recorder.pid());
     recorder.signal(SIGTERM);
     const auto exit = recorder.wait(20s);
-    if (!exit || exit->code != 0) give_up(service::last_lines(folder_ / "log", 5));
+    if (!exit || exit->code != 0) give_up(stage::last_lines(folder_ / "log", 5));
     run.processor_s = processor_time(RUSAGE_CHILDREN) - processor_before;
     run.load = run.processor_s / run.seconds;
     count_what_was_recorded(run);
@@ -248,7 +248,7 @@ class Bench {
 
  private:
   /// On its own core.
-  service::Process start_recorder(std::string_view topic, const std::vector<std::string>& more) {
+  stage::Process start_recorder(std::string_view topic, const std::vector<std::string>& more) {
     std::vector<std::string> command{(program_directory() / "prehend-record").string(),
                                      "--output",
                                      (folder_ / "run.mcap").string(),
@@ -262,7 +262,7 @@ class Bench {
     command.insert(command.end(), more.begin(), more.end());
     std::filesystem::remove(folder_ / "answer");
     pin_to(recorders_core);
-    auto recorder = must(service::Process::start(
+    auto recorder = must(stage::Process::start(
         {.command = command, .log = folder_ / "log", .output = folder_ / "answer"}));
     pin_to(our_core);
     return recorder;
@@ -306,10 +306,10 @@ class Bench {
     for (int i = 0; i < 21; ++i) {
       prepare();
       const auto start = Clock::now();
-      auto process = must(service::Process::start({.command = command, .log = folder_ / "log"}));
+      auto process = must(stage::Process::start({.command = command, .log = folder_ / "log"}));
       const auto exit = process.wait(20s);
       times.push_back(1e3 * seconds_since(start));
-      if (!exit || exit->code != 0) give_up(service::last_lines(folder_ / "log", 5));
+      if (!exit || exit->code != 0) give_up(stage::last_lines(folder_ / "log", 5));
     }
     std::ranges::sort(times);
     return times[times.size() / 2];

@@ -21,7 +21,7 @@
 #include "common/base/paths.hpp"
 #include "common/base/random.hpp"
 #include "common/dds/raw.hpp"
-#include "common/service/process.hpp"
+#include "common/stage/process.hpp"
 #include "services/recorder/service/recording_file.hpp"
 #include "services/recorder/service/tape.hpp"
 #include "tests/support/domains/domain_lease.hpp"
@@ -148,11 +148,11 @@ Run measure(const std::filesystem::path& file, int domain,
                                             }));
   const Time start = system_now() + seconds(start_delay_s);
   const auto output = file.parent_path() / (place.rig + ".out");
-  auto process = need(service::Process::start(
+  auto process = need(stage::Process::start(
       {.command = command(place, start), .log = file.string() + ".log", .output = output}));
   const auto exit = process.wait(seconds(600));
   if (!exit || exit->code != 0) {
-    std::cerr << service::last_lines(file.string() + ".log", 5) << "\n";
+    std::cerr << stage::last_lines(file.string() + ".log", 5) << "\n";
     std::exit(3);
   }
   std::ifstream said(output);

@@ -27,7 +27,7 @@
 #include "common/base/paths.hpp"
 #include "common/convert/convert.hpp"
 #include "common/dds/participant.hpp"
-#include "common/service/process.hpp"
+#include "common/stage/process.hpp"
 #include "tests/support/domains/domain_lease.hpp"
 
 namespace prehend {
@@ -197,7 +197,7 @@ int run(bool json, int rounds, double brake, int flood_rate) {
   auto commands = need(participant.writer(dds::robot_command));
   auto orders = need(participant.writer(dds::operator_command));
   (void)need(participant.reader(dds::robot_state, &states));
-  auto simulation = need(service::Process::start(
+  auto simulation = need(stage::Process::start(
       {.command = {(program_directory() / "prehend-simulation").string(), "--set", "lab.rig=" + rig,
                    "--set", fmt::format("lab.domain={}", domain), "--set",
                    "simulation.state_rate=500", "--set",

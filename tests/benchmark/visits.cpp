@@ -17,8 +17,8 @@
 
 #include "common/base/paths.hpp"
 #include "common/dds/participant.hpp"
-#include "common/service/lab.hpp"
-#include "common/service/process.hpp"
+#include "common/stage/process.hpp"
+#include "common/stage/temporary_folder.hpp"
 #include "tests/support/domains/domain_lease.hpp"
 
 namespace prehend {
@@ -77,16 +77,16 @@ double resident_mb(pid_t pid) {
 }
 
 int measure(int visits, int at_once, const std::string& self) {
-  const auto folder = service::TemporaryFolder::create(false);
+  const auto folder = stage::TemporaryFolder::create(false);
   if (!folder) throw std::runtime_error(folder.error().message());
   const test::DomainLease lease;
   const Place place{lease.domain(), fmt::format("visits-{}", getpid()),
                     (folder->path() / "keys").string()};
-  auto keys = service::Process::start({.command = {(program_directory() / "prehend").string(),
-                                                   "keys", "init", place.keys, "--rig", "any"},
-                                       .log = "/dev/null"});
+  auto keys = stage::Process::start({.command = {(program_directory() / "prehend").string(), "keys",
+                                                 "init", place.keys, "--rig", "any"},
+                                     .log = "/dev/null"});
   if (!keys || !keys->wait(30s)) throw std::runtime_error("prehend keys does not work");
-  auto resident = service::Process::start(
+  auto resident = stage::Process::start(
       {.command = {self, "--resident", std::to_string(place.domain), place.rig, place.keys}});
   if (!resident) throw std::runtime_error(resident.error().message());
   if (!visit(place)) throw std::runtime_error("the resident is not heard");

@@ -53,7 +53,7 @@ class Cameras : public Rig {
       scene.objects.push_back({name, recognition::standing_pose(world_.find(name)->shape, at)});
     return renderer_->render_still(scene, camera);
   }
-  service::Process start_recognition(const StreamCamera& camera, Strings sets = {}) {
+  stage::Process start_recognition(const StreamCamera& camera, Strings sets = {}) {
     sets.insert(sets.end(), {"recognition.source=video", "recognition.path=" + camera.address(),
                              "recognition.rate=20"});
     return start("recognition", sets);

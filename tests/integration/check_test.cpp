@@ -251,12 +251,12 @@ TEST_F(Check, TheReadmeShowsALabHowToAddItsOwn) {
       << "set -e\ncd " << folder_.string() << "\nPATH=" << test::in_programs("")
       << ":$PATH\nexport PREHEND_LAB_DOMAIN=" << domain_ << "\n"
       << example;
-  service::Process::Options options{.command = {"/bin/sh", file("example.sh")},
-                                    .log = file("example.log")};
-  auto process = service::Process::start(options);
+  stage::Process::Options options{.command = {"/bin/sh", file("example.sh")},
+                                  .log = file("example.log")};
+  auto process = stage::Process::start(options);
   ASSERT_TRUE(process);
   const auto exit = process->wait(seconds(150));
-  ASSERT_TRUE(exit && exit->code == 0) << service::last_lines(options.log, 20);
+  ASSERT_TRUE(exit && exit->code == 0) << stage::last_lines(options.log, 20);
   const std::string said = text_of(options.log);
   // The last check, behind the update, finds nothing.
   const std::size_t verdict = said.rfind("same: ");

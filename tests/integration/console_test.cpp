@@ -27,14 +27,14 @@ using nlohmann::json;
 class Console : public Rig {
  protected:
   void start_console(const Strings& sets = {}) {
-    service::Process::Options options;
+    stage::Process::Options options;
     options.command = {program("prehend-console")};
     Strings all{"console.port=0"};
     all.insert(all.end(), sets.begin(), sets.end());
     for (const std::string& argument : lab_arguments(all)) options.command.push_back(argument);
     options.log = folder_ / "console.log";
     options.output = folder_ / "console.out";
-    auto process = service::Process::start(options);
+    auto process = stage::Process::start(options);
     if (!process) throw std::runtime_error(process.error().message());
     console_.emplace(std::move(*process));
     ASSERT_TRUE(eventually(30, [&] {
@@ -108,7 +108,7 @@ class Console : public Rig {
     return heard;
   }
 
-  std::optional<service::Process> console_;
+  std::optional<stage::Process> console_;
   int port_ = 0;
 };
 

@@ -61,7 +61,7 @@ TEST_F(Demo, WithoutAHandItEndsWithAReason) {
 }
 
 TEST_F(Demo, LeavesNoProcessBehind) {
-  service::Process process =
+  stage::Process process =
       start_program("prehend", {"demo", "--json", "--domain", std::to_string(domain_)});
   const std::string rig = "lab.rig=demo-" + std::to_string(process.pid()) + "-";
   // All five that it starts, the tracker known by its folder apart.
@@ -75,7 +75,7 @@ TEST_F(Demo, LeavesNoProcessBehind) {
 
 // The page has buttons for teaching: somebody is there whom they speak to, and goes with the rest.
 TEST_F(Demo, WithAPageThereIsATeacher) {
-  service::Process process =
+  stage::Process process =
       start_program("prehend", {"demo", "--watch", "--domain", std::to_string(domain_), "--set",
                                 "console.port=0", "--set", "teacher.folder=" + folder_.string()});
   const std::string rig = "lab.rig=demo-" + std::to_string(process.pid()) + "-";
@@ -92,7 +92,7 @@ TEST_F(Demo, WithAPageThereIsATeacher) {
 }
 
 TEST_F(Demo, KilledItTakesTheServicesAlong) {
-  service::Process process =
+  stage::Process process =
       start_program("prehend", {"demo", "--json", "--domain", std::to_string(domain_)});
   const std::string rig = "lab.rig=demo-" + std::to_string(process.pid()) + "-";
   ASSERT_TRUE(eventually(30, [&] { return processes_with(rig).size() == 4; }));

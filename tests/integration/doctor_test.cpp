@@ -50,12 +50,12 @@ class Doctor : public Rig {
     std::ofstream(file) << "bin=" << test::in_programs("") << "\nmount -t tmpfs none /dev/shm\n"
                         << "doctor=\"$bin/prehend doctor --json --listen 1 " << lab << "\"\n"
                         << script;
-    service::Process::Options options;
+    stage::Process::Options options;
     options.command = {"unshare", "-n", "-m", "-i", "sh", file};
     const std::string name = "script-" + std::to_string(++scripts_);
     options.log = folder_ / (name + ".log");
     options.output = folder_ / (name + ".out");
-    auto process = service::Process::start(options);
+    auto process = stage::Process::start(options);
     if (!process) throw std::runtime_error(process.error().message());
     const auto exit = process->wait(seconds(60));
     process->stop(seconds(5));
@@ -133,7 +133,7 @@ TEST_F(Doctor, NamesWhatInTheEnvironmentWouldChangeDds) {
 TEST_F(Doctor, NamesABrokenProfileAndWhatFollows) {
   fs::create_directories(folder_ / "share" / "dds");
   std::ofstream(folder_ / "share" / "dds" / "laptop.xml") << "<dds/>";
-  service::Process::Options options;
+  stage::Process::Options options;
   options.command = {program("prehend")};
   for (const std::string& word :
        with_lab({"doctor", "--json", "--config", test::in_sources("deploy/lab.toml")}))
@@ -141,7 +141,7 @@ TEST_F(Doctor, NamesABrokenProfileAndWhatFollows) {
   options.output = folder_ / "doctor.out";
   options.log = folder_ / "doctor.log";
   options.environment = {{"PREHEND_SHARE", (folder_ / "share").string()}};
-  auto process = service::Process::start(options);
+  auto process = stage::Process::start(options);
   ASSERT_TRUE(process);
   const auto exit = process->wait(seconds(30));
   std::ifstream stream(options.output);
@@ -202,7 +202,7 @@ TEST_F(Doctor, NamesAServiceWhoseHostHasAnotherTime) {
   const std::string faketime = "/usr/lib/x86_64-linux-gnu/faketime/libfaketimeMT.so.1";
   if (!may_make_namespaces()) GTEST_SKIP() << "namespaces need root and ip";
   if (!fs::exists(faketime)) GTEST_SKIP() << "libfaketime is not installed";
-  service::Process::Options options;
+  stage::Process::Options options;
   options.command = {"unshare",
                      "--uts",
                      "sh",
@@ -214,7 +214,7 @@ TEST_F(Doctor, NamesAServiceWhoseHostHasAnotherTime) {
   options.environment = {
       {"LD_PRELOAD", faketime}, {"FAKETIME", "-3600s"}, {"FAKETIME_DONT_FAKE_MONOTONIC", "1"}};
   options.log = folder_ / "simulation.log";
-  auto simulation = service::Process::start(options);
+  auto simulation = stage::Process::start(options);
   ASSERT_TRUE(simulation);
   std::map<std::string, std::string> found;
   ASSERT_TRUE(eventually(20, [&] { return (found = ask()).contains("clocks"); }));
@@ -314,13 +314,13 @@ TEST_F(Doctor, NamesDevicesThatCannotBeOpenedAndProgramsThatAreMissing) {
   EXPECT_TRUE(ask({"glove.port=/dev/prehend-no-such-port"}).contains("devices"));
   fs::create_directories(folder_ / "bin");
   fs::copy(program("prehend"), folder_ / "bin" / "prehend");
-  service::Process::Options options;
+  stage::Process::Options options;
   options.command = {(folder_ / "bin" / "prehend").string()};
   for (const std::string& word : with_lab({"doctor", "--json", "--listen", "0.5"}))
     options.command.push_back(word);
   options.output = folder_ / "doctor.out";
   options.environment = {{"PREHEND_SHARE", test::in_share("")}};
-  auto process = service::Process::start(options);
+  auto process = stage::Process::start(options);
   ASSERT_TRUE(process);
   const auto exit = process->wait(seconds(30));
   std::ifstream stream(options.output);

@@ -89,14 +89,14 @@ std::string FaultRig::host_of(const std::string& service) const {
   return service == "glove" ? "hand" : service == "recognition" ? "eye" : "robot";
 }
 
-service::Process FaultRig::launch(const std::string& service, const Strings& prefix,
-                                  const Strings& sets, const std::string& log) {
+stage::Process FaultRig::launch(const std::string& service, const Strings& prefix,
+                                const Strings& sets, const std::string& log) {
   Strings command = prefix;
   command.push_back(program("prehend-" + service));
   Strings all = sets_;
   all.insert(all.end(), sets.begin(), sets.end());
   for (std::string& argument : lab_arguments(all)) command.push_back(std::move(argument));
-  auto made = service::Process::start(
+  auto made = stage::Process::start(
       {.command = hosts_->on(host_of(service), command),
        .log = log.starts_with('/') ? std::filesystem::path(log)
                                    : folder_ / ((log.empty() ? service : log) + ".log")});
@@ -246,7 +246,7 @@ void FaultRig::finish(FaultRow row) {
 
 void FaultRig::expect_alive() {
   for (auto& [name, process] : processes_)
-    EXPECT_FALSE(process.exit()) << name << " ended: " << service::last_lines(process.log(), 5);
+    EXPECT_FALSE(process.exit()) << name << " ended: " << stage::last_lines(process.log(), 5);
 }
 
 }  // namespace prehend::integration

@@ -45,8 +45,8 @@ class FaultRig : public OnHosts, public Rig {
   void start_lab();
   virtual std::string host_of(const std::string& service) const;
   /// prefix: before the command; log: a name, or a path; the service's name where it is empty.
-  service::Process launch(const std::string& service, const Strings& prefix = {},
-                          const Strings& sets = {}, const std::string& log = {});
+  stage::Process launch(const std::string& service, const Strings& prefix = {},
+                        const Strings& sets = {}, const std::string& log = {});
   /// Lets the lab run, giving orders and reading, until the condition holds; false: not in time.
   bool operate(
       double limit_s, const std::function<bool()>& condition = [] { return false; });
@@ -73,7 +73,7 @@ class FaultRig : public OnHosts, public Rig {
   void expect_alive();
 
   Strings sets_;
-  std::map<std::string, service::Process> processes_;
+  std::map<std::string, stage::Process> processes_;
   std::int64_t moved_by_ = 0;                          // origin of the last state of the hand
   Stillness stillness_;                                // of the hand, since it was last begun anew
   std::map<std::string, v1::ServiceStatus> statuses_;  // last of each name

@@ -55,10 +55,10 @@ class Faults : public FaultRig {
     arguments.insert(arguments.begin(), program("prehend"));
     for (const std::string& argument : lab_arguments()) arguments.push_back(argument);
     const auto output = folder_ / ("out-" + std::to_string(++count));
-    auto process = service::Process::start(
+    auto process = stage::Process::start(
         {.command = hosts_->on(host, arguments), .log = folder_ / "command.log", .output = output});
     if (!process) throw std::runtime_error(process.error().message());
-    std::optional<service::Process::Exit> exit;
+    std::optional<stage::Process::Exit> exit;
     operate(20, [&] { return (exit = process->exit()).has_value(); });
     std::ifstream stream(output);
     return {exit ? exit->code : -1, {std::istreambuf_iterator<char>(stream), {}}, ""};
@@ -235,7 +235,7 @@ void Faults::two_leaders() {
       "eye", {program("prehend-replay"), test::in_sources("deploy/samples/intelligent-grasp.mcap"),
               "--topics", "robot/command", "--loop", "--stamps", "now"});
   for (const std::string& argument : lab_arguments()) replay.push_back(argument);
-  auto player = service::Process::start({.command = replay, .log = folder_ / "replay.log"});
+  auto player = stage::Process::start({.command = replay, .log = folder_ / "replay.log"});
   ASSERT_TRUE(player);
   ASSERT_TRUE(operate(15, [&] { return statuses_.contains("replayer"); }));
   operate(1.5);
@@ -263,14 +263,14 @@ void Faults::full_disk() {
                          program("prehend-record"), "-o", (disk / "lab.mcap").string(),
                          "--compression", "none", "--keep-free", "0", "--duration", "20"});
   for (const std::string& argument : lab_arguments()) record.push_back(argument);
-  auto recorder = service::Process::start({.command = record, .log = folder_ / "record.log"});
+  auto recorder = stage::Process::start({.command = record, .log = folder_ / "record.log"});
   ASSERT_TRUE(recorder);
-  std::optional<service::Process::Exit> exit;
+  std::optional<stage::Process::Exit> exit;
   operate(30, [&] { return (exit = recorder->exit()).has_value(); });
   ASSERT_TRUE(exit) << "the recorder hangs";
   EXPECT_EQ(exit->signal, 0) << "it must not crash";
   EXPECT_NE(exit->code, 0) << "a recording with a hole is no success";
-  const std::string said = service::last_lines(folder_ / "record.log", 20);
+  const std::string said = stage::last_lines(folder_ / "record.log", 20);
   EXPECT_NE(said.find("space"), std::string::npos) << said;
   row.rounds = 1;
   expect_recovery(row, healed);

@@ -153,7 +153,7 @@ void Flood::flood(const std::string& fault) {
       if (!exit) continue;
       dead.push_back(name);
       std::cout << name << " ended by signal " << exit->signal << ", code " << exit->code
-                << ", after packet " << i << ": " << service::last_lines(process.log(), 1)
+                << ", after packet " << i << ": " << stage::last_lines(process.log(), 1)
                 << std::endl;
     }
     if (dead.empty()) continue;

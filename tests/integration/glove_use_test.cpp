@@ -132,9 +132,9 @@ TEST_F(GloveUse, AUserIsCalibratedAndTheServiceKnowsTheHand) {
   constexpr double scale = 1.12;
   const std::string file = (folder_ / "users" / "anna.toml").string(),
                     recording = (folder_ / "session.mcap").string();
-  service::Process recorder =
+  stage::Process recorder =
       start_program("prehend-record", with_lab({"glove/frame", "--quiet", "-o", recording}));
-  service::Process tool =
+  stage::Process tool =
       start_program("prehend-glove-tool",
                     with_lab({"calibrate", "--user", "anna", "--out", file, "--limit", "60"}));
   meet(writer_, 2);  // the recorder hears the person from the beginning
@@ -207,7 +207,7 @@ TEST_F(GloveUse, AJointAngleGloveIsCalibratedThroughItsDriver) {
     EXPECT_TRUE(glove::emulate(emulation, hand, [&] { return stop.stop_requested(); }));
   });
   ASSERT_TRUE(eventually(20, [&] { return std::filesystem::exists(port); }));
-  service::Process tool =
+  stage::Process tool =
       start_program("prehend-glove-tool",
                     with_lab({"calibrate", "--user", "anna", "--out", file, "--limit", "60",
                               "--set", "glove.device=joint_glove", "--set", "glove.port=" + port}));

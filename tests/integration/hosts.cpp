@@ -18,8 +18,8 @@ namespace {
 
 using Command = std::vector<std::string>;
 
-service::Process start(Command command, const std::filesystem::path& log = "/dev/null") {
-  auto made = service::Process::start({.command = std::move(command), .log = log});
+stage::Process start(Command command, const std::filesystem::path& log = "/dev/null") {
+  auto made = stage::Process::start({.command = std::move(command), .log = log});
   if (!made) throw std::runtime_error(made.error().message());
   return std::move(*made);
 }
@@ -36,7 +36,7 @@ std::string space(pid_t pid) {
 }
 
 /// A process that only keeps a space alive.
-service::Process keep_space() {
+stage::Process keep_space() {
   auto keeper = start({"unshare", "--net", "--uts", "sleep", "infinity"});
   for (int i = 0; i < 1000; ++i) {
     const std::string made = space(keeper.pid());
@@ -46,7 +46,7 @@ service::Process keep_space() {
   throw std::runtime_error("no network space can be made");
 }
 
-Command inside(const service::Process& keeper, Command command) {
+Command inside(const stage::Process& keeper, Command command) {
   Command whole{"nsenter", fmt::format("--net=/proc/{}/ns/net", keeper.pid()),
                 fmt::format("--uts=/proc/{}/ns/uts", keeper.pid())};
   whole.insert(whole.end(), command.begin(), command.end());
@@ -59,13 +59,13 @@ std::optional<std::string> Hosts::unavailable() {
   if (::geteuid() != 0) return "making hosts of network spaces needs root";
   for (const char* tool : {"/usr/bin/unshare", "/usr/bin/nsenter"})
     if (::access(tool, X_OK) != 0) return std::string(tool) + " is missing";
-  const auto works = service::Process::start(
+  const auto works = stage::Process::start(
       {.command = {"unshare", "--net", "--uts", "sh", "-c",
                    "ip link add br0 type bridge && iptables -A INPUT -m statistic --mode random "
                    "--probability 0.5 -j DROP && test -c /dev/net/tun"},
        .log = "/dev/null"});
   if (!works) return works.error().message();
-  auto process = std::move(const_cast<service::Process&>(*works));
+  auto process = std::move(const_cast<stage::Process&>(*works));
   const auto exit = process.wait(seconds(10));
   if (!exit || exit->code != 0)
     return "network spaces, bridges, iptables or /dev/net/tun do not work here";

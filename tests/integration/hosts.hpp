@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "common/service/process.hpp"
+#include "common/stage/process.hpp"
 
 namespace prehend::integration {
 
@@ -57,15 +57,15 @@ class Hosts {
   struct Host {
     std::string name;
     int number;
-    service::Process keeper;
-    std::optional<service::Process> delay_line;
+    stage::Process keeper;
+    std::optional<stage::Process> delay_line;
   };
   const Host& host(const std::string& name) const;
   std::vector<std::string> bridge(std::vector<std::string> command) const;
 
   std::string way_;
   std::vector<std::unique_ptr<Host>> hosts_;
-  std::optional<service::Process> bridge_;
+  std::optional<stage::Process> bridge_;
   int home_ = -1;  // this thread's space before enter()
 };
 

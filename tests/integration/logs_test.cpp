@@ -87,11 +87,11 @@ TEST_F(Logs, EveryCommandComplainsInJson) {
 }
 
 TEST_F(Logs, TheEnvironmentChoosesForAll) {
-  service::Process::Options options;
+  stage::Process::Options options;
   options.command = {program("prehend"), "no-such-command"};
   options.log = folder_ / "chosen.log";
   options.environment = {{"PREHEND_LOG", "json"}};
-  auto process = service::Process::start(options);
+  auto process = stage::Process::start(options);
   ASSERT_TRUE(process);
   ASSERT_TRUE(process->wait(seconds(30)));
   EXPECT_EQ(objects(read_file(options.log).value()).size(), 1u);

@@ -14,14 +14,14 @@ using tests::MetricsPage;
 
 class Metrics : public Rig {
  protected:
-  service::Process start_exporter() {
-    service::Process::Options options;
+  stage::Process start_exporter() {
+    stage::Process::Options options;
     options.command = {program("prehend"), "metrics"};
     for (const std::string& argument : lab_arguments({"metrics.port=0"}))
       options.command.push_back(argument);
     options.log = folder_ / "metrics.log";
     options.output = folder_ / "metrics.out";
-    auto process = service::Process::start(options);
+    auto process = stage::Process::start(options);
     if (!process) throw std::runtime_error(process.error().message());
     EXPECT_TRUE(eventually(30, [&] {
       std::ifstream said(options.output);

@@ -25,11 +25,11 @@ class Profiles : public Rig {
     std::ofstream(file) << "set -eu\nbin=" << test::in_programs("") << "\nlab='"
                         << joined(lab_arguments()) << "'\n"
                         << script;
-    service::Process::Options options;
+    stage::Process::Options options;
     options.command = {"unshare", "-n", "-m", "sh", file};
     options.log = folder_ / "script.log";
     options.output = folder_ / "script.out";
-    auto process = service::Process::start(options);
+    auto process = stage::Process::start(options);
     if (!process) throw std::runtime_error(process.error().message());
     const auto exit = process->wait(seconds(limit_s));
     process->stop(seconds(5));
@@ -80,7 +80,7 @@ TEST_F(Profiles, APartThatFastDdsWouldIgnoreStopsTheProcess) {
     std::filesystem::create_directories(share / "dds");
     const auto file = share / "dds" / fmt::format("{}.xml", profile);
     std::ofstream(file) << xml;
-    service::Process::Options options;
+    stage::Process::Options options;
     options.command = {program("prehend"), "status",
                        "--timeout",        "0.1",
                        "--config",         test::in_sources("deploy/lab.toml")};
@@ -89,7 +89,7 @@ TEST_F(Profiles, APartThatFastDdsWouldIgnoreStopsTheProcess) {
     options.command.insert(options.command.end(), lab.begin(), lab.end());
     options.log = folder_ / fmt::format("{}.log", profile);
     options.environment = {{"PREHEND_SHARE", share.string()}};
-    auto process = service::Process::start(options);
+    auto process = stage::Process::start(options);
     if (!process) throw std::runtime_error(process.error().message());
     const auto exit = process->wait(seconds(20));
     return Answer{exit ? exit->code : -1, "", text(options.log)};

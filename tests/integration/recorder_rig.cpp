@@ -2,7 +2,7 @@
 
 namespace prehend::integration {
 
-service::Process RecorderRig::record(const std::string& name, Strings more) {
+stage::Process RecorderRig::record(const std::string& name, Strings more) {
   Strings arguments = lab_arguments();
   arguments.insert(arguments.end(), {"--output", file(name), "--quiet"});
   arguments.insert(arguments.end(), more.begin(), more.end());
@@ -11,7 +11,7 @@ service::Process RecorderRig::record(const std::string& name, Strings more) {
   return process;
 }
 
-service::Process RecorderRig::replay(const std::string& name, Strings more) {
+stage::Process RecorderRig::replay(const std::string& name, Strings more) {
   Strings arguments = lab_arguments();
   arguments.insert(arguments.end(), {file(name), "--quiet"});
   arguments.insert(arguments.end(), more.begin(), more.end());
@@ -25,7 +25,7 @@ void RecorderRig::wait_for(const std::string& service) {
   }));
 }
 
-int RecorderRig::end(service::Process& process, int signal) {
+int RecorderRig::end(stage::Process& process, int signal) {
   process.signal(signal);
   const auto exit = process.wait(seconds(20));
   return exit ? exit->code : -1;

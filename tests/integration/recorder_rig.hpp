@@ -17,12 +17,12 @@ class RecorderRig : public Rig {
   std::string file(const std::string& name) { return (folder_ / name).string(); }
 
   /// Starts to record into a file and returns when the recorder is at work.
-  service::Process record(const std::string& name, Strings more = {});
-  service::Process replay(const std::string& name, Strings more = {});
+  stage::Process record(const std::string& name, Strings more = {});
+  stage::Process replay(const std::string& name, Strings more = {});
   /// Until the service says that it is there.
   void wait_for(const std::string& service);
   /// Ends it as a service manager does and returns its exit code; -1: it did not end.
-  static int end(service::Process& process, int signal = SIGTERM);
+  static int end(stage::Process& process, int signal = SIGTERM);
 
   /// Sends an order and returns the reply.
   v1::OperatorReply order(const std::string& target, const std::string& argument);

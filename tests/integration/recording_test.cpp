@@ -119,7 +119,7 @@ TEST_F(Recording, OnAFullDiskItEndsCleanlyAndSaysSo) {
       return process.exit().has_value();
     }));
     EXPECT_EQ(process.exit()->code, 3);
-    const std::string said = service::last_lines(folder_ / "prehend-record.log", 10);
+    const std::string said = stage::last_lines(folder_ / "prehend-record.log", 10);
     EXPECT_NE(said.find("No space left"), std::string::npos) << said;
     const auto kept = content((disk / "full.mcap").string(), "camera/image");
     EXPECT_GT(kept.size(), 5u);
@@ -239,7 +239,7 @@ TEST_F(Recording, EndsBeforeTheDiskIsFull) {
   const auto exit = process.wait(seconds(20));
   ASSERT_TRUE(exit);
   EXPECT_EQ(exit->code, 3);
-  const std::string said = service::last_lines(folder_ / "prehend-record.log", 10);
+  const std::string said = stage::last_lines(folder_ / "prehend-record.log", 10);
   EXPECT_NE(said.find("are free on the disk"), std::string::npos) << said;
   EXPECT_NE(said.find("--keep-free"), std::string::npos) << said;
   EXPECT_TRUE(info(file("guarded.mcap"))["closed"]);
@@ -443,7 +443,7 @@ TEST_F(Recording, InstancesOfWritersOfAnotherMakeAreKeptApart) {
   auto process = record("cyclone.mcap", {"object/detection", "camera/image"});
   auto peer = start_program("cyclone_writer", {std::to_string(domain_), name_});
   ASSERT_TRUE(eventually(20, [&] {
-    return service::last_lines(folder_ / "cyclone_writer.log", 1).find("written") !=
+    return stage::last_lines(folder_ / "cyclone_writer.log", 1).find("written") !=
            std::string::npos;
   }));
   ASSERT_EQ(end(process), 0);

@@ -61,7 +61,7 @@ class Recovery : public Rig {
 
   Strings sets_;
   std::vector<v2::HandCommand> told_;
-  std::map<std::string, service::Process> processes_;
+  std::map<std::string, stage::Process> processes_;
   dds::Reader<v2::HandCommand> commands_ = reader(dds::robot_command);
   dds::Reader<v1::HandState> states_ = reader(dds::robot_state);
   dds::Reader<v1::ObjectDetection> detections_ = reader(dds::object_detection);

@@ -55,7 +55,7 @@ Rig::~Rig() {
     for (const auto& entry : std::filesystem::directory_iterator(folder_))
       if (entry.path().extension() == ".log")
         std::cout << "--- " << entry.path().filename().string() << "\n"
-                  << service::last_lines(entry.path(), 15) << "\n";
+                  << stage::last_lines(entry.path(), 15) << "\n";
   std::filesystem::remove_all(folder_);
 }
 
@@ -88,29 +88,29 @@ Strings Rig::with_lab(Strings arguments) const {
   return arguments;
 }
 
-service::Process Rig::start_program(const std::string& name, const Strings& arguments) {
-  service::Process::Options options;
+stage::Process Rig::start_program(const std::string& name, const Strings& arguments) {
+  stage::Process::Options options;
   options.command = {program(name)};
   options.command.insert(options.command.end(), arguments.begin(), arguments.end());
   options.log = folder_ / (name + ".log");
-  auto process = service::Process::start(options);
+  auto process = stage::Process::start(options);
   if (!process) throw std::runtime_error(process.error().message());
   return std::move(*process);
 }
 
-service::Process Rig::start(const std::string& name, const Strings& sets) {
+stage::Process Rig::start(const std::string& name, const Strings& sets) {
   return start_program("prehend-" + name, lab_arguments(sets));
 }
 
 Answer Rig::run(const std::string& name, const Strings& arguments, double limit_s) {
   static std::atomic<int> count = 0;
   const std::string stem = "run-" + std::to_string(++count);
-  service::Process::Options options;
+  stage::Process::Options options;
   options.command = {program(name)};
   options.command.insert(options.command.end(), arguments.begin(), arguments.end());
   options.log = folder_ / (stem + ".log");
   options.output = folder_ / (stem + ".out");
-  auto process = service::Process::start(options);
+  auto process = stage::Process::start(options);
   if (!process) throw std::runtime_error(process.error().message());
   const auto exit = process->wait(seconds(limit_s));
   process->stop(seconds(5));

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "common/dds/participant.hpp"
-#include "common/service/process.hpp"
+#include "common/stage/process.hpp"
 #include "tests/support/domains/domain_lease.hpp"
 
 namespace prehend::integration {
@@ -42,8 +42,8 @@ class Rig : public testing::Test {
   /// The arguments, and those by which a program joins this lab.
   Strings with_lab(Strings arguments) const;
   /// Starts prehend-NAME in this lab; its words go into a log that the test prints when it fails.
-  service::Process start(const std::string& name, const Strings& sets = {});
-  service::Process start_program(const std::string& name, const Strings& arguments);
+  stage::Process start(const std::string& name, const Strings& sets = {});
+  stage::Process start_program(const std::string& name, const Strings& arguments);
   /// Runs a program to its end.
   Answer run(const std::string& name, const Strings& arguments, double limit_s);
   /// Draws a scene and returns its file.

@@ -17,7 +17,7 @@ using nlohmann::json;
 class Robot : public Rig {
  protected:
   std::string port() const { return (folder_ / "robot_port").string(); }
-  service::Process emulate(Strings arguments = {}) {
+  stage::Process emulate(Strings arguments = {}) {
     arguments.insert(arguments.begin(), {"emulate", "--link", port()});
     auto process = start_program("prehend-robot-tool", arguments);
     EXPECT_TRUE(eventually(20, [&] { return std::filesystem::exists(port()); }));
@@ -106,7 +106,7 @@ class Robot : public Rig {
   std::string model_ = "barrett";
   int heard_ = 0, orders_count_ = 0;
   std::uint64_t sequence_ = 0;
-  std::optional<service::Process> emulator_, service_;
+  std::optional<stage::Process> emulator_, service_;
 };
 
 TEST_F(Robot, IsCheckedHomedLedStoppedAndReleased) {
@@ -252,13 +252,13 @@ class RobotOfRos : public RobotOfOneJoint {
     return {"robot.device=ros2_control", "mapping.hand=" + model_, "robot.port=" + controller(),
             "safety.deadman=false"};
   }
-  service::Process control(Strings faults = {}) {
+  stage::Process control(Strings faults = {}) {
     Strings arguments{"emulate", "--device", "ros2_control", "--hand", model_};
     arguments.insert(arguments.end(), faults.begin(), faults.end());
     arguments.insert(arguments.end(), {"--set", "robot.port=" + controller()});
     auto process = start_program("prehend-robot-tool", with_lab(arguments));
     EXPECT_TRUE(eventually(20, [&] {
-      return service::last_lines(process.log(), 5).find("/joint_trajectory,") != std::string::npos;
+      return stage::last_lines(process.log(), 5).find("/joint_trajectory,") != std::string::npos;
     }));
     return process;
   }
@@ -302,18 +302,18 @@ TEST_F(Robot, ATwinGoesWithTheRobotButForAJointThatIsStuck) {
   serve();
   ASSERT_TRUE(wait(30, [&] { return heard_ > 0; })) << status_.message();
   meet(commands_, 2);
-  service::Process::Options options;
+  stage::Process::Options options;
   options.command = {program("prehend-robot-tool")};
   for (const std::string& word : with_lab({"twin", "--json", "--seconds", "3", "--within", "0.15"}))
     options.command.push_back(word);
   options.log = folder_ / "twin.log";
   options.output = folder_ / "twin.json";
-  auto twin = service::Process::start(options).value();
-  std::optional<service::Process::Exit> exit;
+  auto twin = stage::Process::start(options).value();
+  std::optional<stage::Process::Exit> exit;
   // Not so far that the robot itself notices.
   ASSERT_TRUE(lead(0.35, 60, [&] { return (exit = twin.exit()).has_value(); }));
   const std::string said = read_file(folder_ / "twin.json").value_or("");
-  ASSERT_EQ(exit->code, 1) << said << service::last_lines(folder_ / "twin.log", 3);
+  ASSERT_EQ(exit->code, 1) << said << stage::last_lines(folder_ / "twin.log", 3);
   const json document = json::parse(said);
   EXPECT_GT(document["compared"], 50);
   for (const json& dof : document["dofs"])
@@ -384,7 +384,7 @@ TEST_F(Robot, WrongUseIsOneLine) {
     const auto ended = process.wait(seconds(20));
     ASSERT_TRUE(ended) << words;
     EXPECT_EQ(ended->code, 2) << words;
-    EXPECT_NE(service::last_lines(process.log(), 3).find(words), std::string::npos) << words;
+    EXPECT_NE(stage::last_lines(process.log(), 3).find(words), std::string::npos) << words;
   };
   refused({}, "is no port");
   refused(settings({"robot.device=nothing"}), "there is no driver");

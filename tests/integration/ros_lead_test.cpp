@@ -21,7 +21,7 @@ class WithNode : public Base {
     std::replace(made.begin(), made.end(), '-', '_');
     return made;
   }
-  service::Process lead() { return this->start("ros-lead", {"ros.trajectories=" + topic()}); }
+  stage::Process lead() { return this->start("ros-lead", {"ros.trajectories=" + topic()}); }
   /// What a node is to tell: the DoFs at these values after so many seconds.
   Strings trajectory(double seconds, const std::vector<double>& dof,
                      const std::string& misnamed = {}) const {

@@ -15,15 +15,15 @@ namespace {
 
 class Ros : public Rig {
  protected:
-  service::Process start_with(const std::string& name, const Strings& arguments,
-                              const std::map<std::string, std::string>& environment) {
-    service::Process::Options options;
+  stage::Process start_with(const std::string& name, const Strings& arguments,
+                            const std::map<std::string, std::string>& environment) {
+    stage::Process::Options options;
     options.command = {program(name)};
     options.command.insert(options.command.end(), arguments.begin(), arguments.end());
     options.log = folder_ / (name + ".log");
     options.output = folder_ / (name + ".out");
     options.environment = environment;
-    auto made = service::Process::start(options);
+    auto made = stage::Process::start(options);
     if (!made) throw std::runtime_error(made.error().message());
     return std::move(*made);
   }
@@ -100,7 +100,7 @@ TEST_F(Ros, NodesHearTheHandWithoutABridge) {
   v1::ObjectState object;
   object.body("Talc");
   object.X_WO(convert::to_message(make_pose(Eigen::Vector3d(1, 2, 3))));
-  std::optional<service::Process::Exit> end;
+  std::optional<stage::Process::Exit> end;
   ASSERT_TRUE(eventually(40, [&] {
     states.write(state);
     objects.write(object);

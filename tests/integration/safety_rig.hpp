@@ -51,7 +51,7 @@ class SafetyRig : public Rig {
   /// of a DoF, rad/s.
   double base_speed_ = 0, dof_speed_ = 0;
   std::string scene_;
-  std::optional<service::Process> simulation_, mapping_, glove_;
+  std::optional<stage::Process> simulation_, mapping_, glove_;
 };
 
 }  // namespace prehend::integration

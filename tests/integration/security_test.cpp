@@ -354,7 +354,7 @@ TEST_F(Security, ThoseWhoComeAndGoLockNobodyUp) {
   EXPECT_EQ(stuck, 0);
   EXPECT_EQ(status_with(store_.folder(), wait).exit_code, 0);
   EXPECT_FALSE(simulation.exit());
-  const std::string log = service::last_lines(folder_ / "prehend-simulation.log", 1000);
+  const std::string log = stage::last_lines(folder_ / "prehend-simulation.log", 1000);
   EXPECT_EQ(log.find("locked itself up"), std::string::npos) << log;
 }
 
@@ -461,7 +461,7 @@ TEST_F(Security, AChangedListDoesNotTakeTheHandFromAnybody) {
         .has_value();
   };
   const auto says = [&](const std::string& service, const std::string& words) {
-    return service::last_lines(folder_ / ("prehend-" + service + ".log"), 50).find(words) !=
+    return stage::last_lines(folder_ / ("prehend-" + service + ".log"), 50).find(words) !=
            std::string::npos;
   };
   ASSERT_TRUE(obeys(100));
@@ -489,14 +489,14 @@ TEST_F(Security, ARevokedKeyNoLongerOpensWhatItDid) {
       run("prehend", {"keys", "revoke", "viewer-eve", "--store", store_.folder().string()}, 10);
   ASSERT_EQ(revoke.exit_code, 0) << revoke.log;
   ASSERT_TRUE(eventually(10, [&] {
-    return service::last_lines(folder_ / "prehend-simulation.log", 50).find("joining anew") !=
+    return stage::last_lines(folder_ / "prehend-simulation.log", 50).find("joining anew") !=
            std::string::npos;
   }));
   EXPECT_EQ(status_with(store_.folder() / "viewer", wait).exit_code, 0);
   EXPECT_EQ(status_with(eve, {"--wait", "simulation", "--timeout", "3"}).exit_code, 1);
   EXPECT_FALSE(simulation.exit());
   ASSERT_TRUE(eventually(10, [&] {
-    return service::last_lines(folder_ / "prehend-simulation.log", 50).find("peer refused") !=
+    return stage::last_lines(folder_ / "prehend-simulation.log", 50).find("peer refused") !=
            std::string::npos;
   }));
 }

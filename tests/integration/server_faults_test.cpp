@@ -20,13 +20,13 @@ class ServerFaults : public FaultRig {
     for (const char* host : {"post", "hand", "eye", "robot"}) hosts_->add(host);
     Strings serve{program("prehend"), "discovery-server", "--listen", "0.0.0.0:11811"};
     for (const std::string& argument : lab_arguments()) serve.push_back(argument);
-    auto made = service::Process::start(
+    auto made = stage::Process::start(
         {.command = hosts_->on("post", serve), .log = folder_ / "server.log"});
     ASSERT_TRUE(made);
     server_.emplace(std::move(*made));
     start_lab();
   }
-  std::optional<service::Process> server_;
+  std::optional<stage::Process> server_;
 };
 
 TEST_F(ServerFaults, CutOffAndBack) {

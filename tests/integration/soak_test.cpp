@@ -66,7 +66,7 @@ TEST_F(Soak, NothingIsLostAndNothingGrows) {
   watch(dds::grasp_report);
   watch(dds::lab_beacon);
   const Strings sets{"lab.scene=" + scene(1), "glove.device=synthetic", "glove.rate=500"};
-  std::map<std::string, service::Process> processes;
+  std::map<std::string, stage::Process> processes;
   for (const char* name : {"recognition", "mapping", "simulation", "glove"})
     processes.emplace(name, start(name, sets));
   ASSERT_TRUE(eventually(40, [&] {

@@ -412,13 +412,13 @@ TEST_F(Stop, TheLeadIsTakenOverByName) {
 /// A recording that is played twice, by operators who do not know of each other.
 class Replayers : public Stop {
  protected:
-  service::Process play(const std::string& topic) {
+  stage::Process play(const std::string& topic) {
     return start_program(
         "prehend-replay",
         with_lab({test::in_sources("deploy/samples/intelligent-grasp.mcap"), "--quiet", "--stamps",
                   "now", "--rate", "0.5", "--topics", topic}));
   }
-  static std::string name_of(const service::Process& player) {
+  static std::string name_of(const stage::Process& player) {
     return fmt::format("replayer@{}/{}", service::host_name(), player.pid());
   }
 };
@@ -448,7 +448,7 @@ TEST_F(Replayers, MappingFollowsOneOfTwoAndNamesTheOther) {
   ASSERT_TRUE(wait(20, [&] { return gate_.leader().to_string().starts_with("mapping@"); }));
   const auto second = play("hand/posture");
   auto statuses = reader(dds::service_status);
-  const auto words = [](const service::Process& refused, const service::Process& leads) {
+  const auto words = [](const stage::Process& refused, const stage::Process& leads) {
     return fmt::format("hand/posture of {} is refused, for {} leads", name_of(refused),
                        name_of(leads));
   };

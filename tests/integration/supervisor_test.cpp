@@ -25,16 +25,16 @@ class Supervised : public Rig {
   }
   ~Supervised() override { ::close(socket_); }
 
-  service::Process start_supervised(Strings command, const std::string& watchdog_us,
-                                    const Strings& sets = {}) {
-    service::Process::Options options;
+  stage::Process start_supervised(Strings command, const std::string& watchdog_us,
+                                  const Strings& sets = {}) {
+    stage::Process::Options options;
     options.log = folder_ / (command.front() + ".log");
     options.output = folder_ / (command.front() + ".out");
     command.front() = program(command.front());
     options.command = command;
     for (const std::string& argument : lab_arguments(sets)) options.command.push_back(argument);
     options.environment = {{"NOTIFY_SOCKET", path_}, {"WATCHDOG_USEC", watchdog_us}};
-    auto process = service::Process::start(options);
+    auto process = stage::Process::start(options);
     if (!process) throw std::runtime_error(process.error().message());
     return std::move(*process);
   }

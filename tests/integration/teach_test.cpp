@@ -24,7 +24,7 @@ class Teach : public Rig {
   /// A closed index finger closes fingers 1 and 2 (here 120 degrees were taught) and not the third.
   void expect_answers_as_taught(const std::string& model) {
     auto commands = reader(dds::robot_command);
-    service::Process mapping =
+    stage::Process mapping =
         start("mapping", {"mapping.model=" + model, "mapping.intelligent=false"});
     std::vector<double> dof;
     EXPECT_TRUE(eventually(20, [&] {
@@ -51,9 +51,9 @@ TEST_F(Teach, ShownTrainedUsedAndRepeatedFromTheRecording) {
                     model = (folder_ / "taught.mapping").string(),
                     recording = (folder_ / "session.mcap").string();
   auto orders = reader(dds::operator_command);
-  service::Process recorder = start_program(
+  stage::Process recorder = start_program(
       "prehend-record", with_lab({"hand/posture", "operator/command", "--quiet", "-o", recording}));
-  service::Process teacher =
+  stage::Process teacher =
       start_program("prehend-teach", with_lab({"--user", "tester", "-o", set, "--limit", "60"}));
 
   std::optional<std::int64_t> first;
@@ -112,7 +112,7 @@ TEST_F(Teach, ByOrdersToTheTeacher) {
   const auto start_teacher = [&](const std::string& users) {
     return start("teacher", {"teacher.folder=" + (folder_ / "taught").string(), users});
   };
-  service::Process teacher = start_teacher("teacher.users=2");
+  stage::Process teacher = start_teacher("teacher.users=2");
   int given = 0;
   const auto answer = [&](const std::string& words) {
     v1::OperatorCommand order;
@@ -186,7 +186,7 @@ TEST_F(Teach, ByOrdersToTheTeacher) {
 
   // One that learns from many people does so for minutes, and ends in the middle of it.
   teacher.stop(seconds(10));
-  service::Process busy = start_teacher("teacher.users=300");
+  stage::Process busy = start_teacher("teacher.users=300");
   ASSERT_TRUE(answer("train tester").done());
   ASSERT_TRUE(until(90, [](const auto& one) {
     return one.phase() == v1::TRAINING_COMPUTING && one.share() > 0 && one.share() < 0.5;

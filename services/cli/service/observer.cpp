@@ -8,6 +8,7 @@
 
 #include "common/base/printable.hpp"
 #include "common/convert/convert.hpp"
+#include "common/convert/names.hpp"
 
 namespace prehend::cli {
 namespace {
@@ -64,21 +65,8 @@ void Observer::hear(const v1::GraspReport& report) {
   if (!report_) report_ = report;
 }
 
-void Observer::expect_arm(const std::string& name, const std::vector<double>& speeds) {
-  arm_ = Outcome::Arm{name};
-  joint_speeds_ = speeds;
-}
-
 void Observer::hear(const v1::ArmState& state) {
-  if (!arm_ || report_) return;
-  for (std::size_t i = 0; i < std::min(joint_speeds_.size(), state.velocity().size()); ++i)
-    arm_->worst_joint_speed =
-        std::max(arm_->worst_joint_speed, std::abs(state.velocity()[i]) / joint_speeds_[i]);
-  ++arm_states_;
-  const v1::ArmHindrance why = state.hindrance();
-  hindered_states_ += why == v1::HINDRANCE_JOINT_LIMIT || why == v1::HINDRANCE_COLLISION ||
-                      why == v1::HINDRANCE_REACH;
-  arm_->out_of_reach = static_cast<double>(hindered_states_) / static_cast<double>(arm_states_);
+  if (arm_ && !report_) arm_->hear(state);
 }
 
 void Observer::hear(const v1::ServiceStatus& status) {
@@ -154,7 +142,9 @@ std::string Observer::progress() const {
   if (const v1::ObjectDetection* seen = recognised())
     text += fmt::format(", {} ({:.0f} %)", printable(seen->name().to_string()),
                         100 * seen->probability());
-  if (command_) text += fmt::format(", {} {:.2f}", to_string(command_->mode()), command_->weight());
+  if (command_)
+    text += fmt::format(", {} {:.2f}", convert::mode_names.name(command_->mode(), "hold"),
+                        command_->weight());
   if (report_)
     text += fmt::format(", {} contacts, {}", report_->contacts().size(),
                         report_->held() ? "held" : "dropped");
@@ -205,7 +195,8 @@ Outcome Observer::outcome() const {
     for (const v1::StageLatency& stage : simulation->latency())
       if (stage.stage().to_string() == stage_to_world && stage.count() > 0)
         result.latency = Outcome::Latency{stage.p50_us() / 1000, stage.p99_us() / 1000};
-  result.arm = arm_;
+  if (arm_)
+    result.arm = Outcome::Arm{arm_->name(), arm_->worst_joint_speed(), arm_->out_of_reach()};
   result.device = device_;
   result.frames = frames_;
   if (const v1::ServiceStatus* glove = service("glove"))

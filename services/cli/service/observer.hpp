@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "common/model/scene.hpp"
+#include "common/stage/arm.hpp"
 #include "idl/Arm.h"
 #include "idl/Glove.h"
 #include "idl/Operation.h"
@@ -23,8 +24,8 @@ class Observer {
   /// truth: what really stands on the table, where that is known.
   explicit Observer(std::optional<model::Scene> truth = std::nullopt);
 
-  /// An arm carries the hand; how fast each of its joints may turn, rad/s.
-  void expect_arm(const std::string& name, const std::vector<double>& speeds);
+  /// This arm carries the hand.
+  void expect_arm(const model::ArmModel& arm) { arm_.emplace(arm); }
 
   void hear(const v1::GloveFrame& frame);
   void hear(const v1::ObjectDetection& detection);
@@ -60,9 +61,7 @@ class Observer {
   std::map<std::string, std::deque<v1::ObjectDetection>> detections_;  // by name, in order of stamp
   std::optional<v2::HandCommand> command_;
   std::optional<v1::GraspReport> report_;
-  std::optional<Outcome::Arm> arm_;
-  std::vector<double> joint_speeds_;  // that the arm may have
-  std::uint64_t arm_states_ = 0, hindered_states_ = 0;
+  std::optional<stage::ArmUse> arm_;
   std::string device_;
   std::uint64_t frames_ = 0;
 };

@@ -4,8 +4,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include "common/base/named_values.hpp"
 #include "common/base/printable.hpp"
+#include "common/convert/names.hpp"
 
 namespace prehend::cli {
 namespace {
@@ -33,23 +33,19 @@ std::string with_spaces(std::string_view text) {
   return result;
 }
 
-constexpr auto mode_names = named_values<v1::MappingMode>(
-    {{v1::MODE_HOLD, "hold"}, {v1::MODE_DIRECT, "direct"}, {v1::MODE_INTELLIGENT, "intelligent"}});
-constexpr auto grasp_names =
-    named_values<v1::GraspType>({{v1::GRASP_NONE, "none"},
-                                 {v1::GRASP_POWER_WRAP, "power_wrap"},
-                                 {v1::GRASP_CIRCULAR_SPHERE, "circular_sphere"},
-                                 {v1::GRASP_PRECISION, "precision"}});
-
 }  // namespace
 
-std::string_view to_string(v1::MappingMode mode) {
-  return mode_names.name(mode, "hold");
+namespace {
+
+std::string_view name_of(v1::MappingMode mode) {
+  return convert::mode_names.name(mode, "hold");
 }
 
-std::string_view to_string(v1::GraspType type) {
-  return grasp_names.name(type, "none");
+std::string_view name_of(v1::GraspType type) {
+  return convert::grasp_names.name(type, "none");
 }
+
+}  // namespace
 
 std::string to_json(const Outcome& outcome) {
   Json object;
@@ -69,10 +65,10 @@ std::string to_json(const Outcome& outcome) {
   Json document = {
       {"object", object},
       {"mapping",
-       {{"mode", to_string(outcome.mode)},
+       {{"mode", name_of(outcome.mode)},
         {"weight", outcome.weight},
         {"hand", outcome.hand},
-        {"grasp_type", to_string(outcome.grasp_type)}}},
+        {"grasp_type", name_of(outcome.grasp_type)}}},
       {"grasp",
        {{"contacts", grasp.contacts},
         {"epsilon", grasp.epsilon},
@@ -110,9 +106,9 @@ std::string to_table(const Outcome& outcome) {
     row("object", "none recognised");
   }
   if (!outcome.target.empty()) row("target", outcome.target);
-  row("mapping", fmt::format("{}, weight {:.2f}, {}", to_string(outcome.mode), outcome.weight,
+  row("mapping", fmt::format("{}, weight {:.2f}, {}", name_of(outcome.mode), outcome.weight,
                              outcome.hand.empty() ? "no hand" : outcome.hand));
-  row("grasp", with_spaces(to_string(outcome.grasp_type)));
+  row("grasp", with_spaces(name_of(outcome.grasp_type)));
   const Outcome::Grasp& grasp = outcome.grasp;
   if (outcome.judged)
     row("quality",

@@ -48,9 +48,6 @@ struct Outcome {
   double seconds = 0;  // from the glove's start to the end
 };
 
-std::string_view to_string(v1::MappingMode mode);
-std::string_view to_string(v1::GraspType type);
-
 /// The JSON document of `prehend demo --json`, on one line.
 std::string to_json(const Outcome& outcome);
 /// The same for people, several lines.

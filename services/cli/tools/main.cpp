@@ -1,13 +1,11 @@
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <iostream>
 
 #include "common/tool/program.hpp"
 #include "services/cli/tools/alive_command.hpp"
 #include "services/cli/tools/arguments.hpp"
 #include "services/cli/tools/audit/audit_command.hpp"
-#include "services/cli/tools/demo/demo_command.hpp"
 #include "services/cli/tools/demo/scene_command.hpp"
 #include "services/cli/tools/dispatch.hpp"
 #include "services/cli/tools/doctor/doctor_command.hpp"
@@ -17,6 +15,7 @@
 #include "services/cli/tools/orders/release_command.hpp"
 #include "services/cli/tools/orders/stop_command.hpp"
 #include "services/cli/tools/orders/takeover_command.hpp"
+#include "services/cli/tools/plays.hpp"
 #include "services/cli/tools/server_command.hpp"
 #include "services/cli/tools/status/status_command.hpp"
 
@@ -24,27 +23,13 @@ using namespace prehend;
 
 namespace {
 
-/// Tasks are shown to other services, and judged otherwise: by a tool of those.
-bool is_about_task(const std::vector<std::string>& arguments) {
-  return std::any_of(arguments.begin(), arguments.end(), [](const std::string& argument) {
-    return argument == "--task" || argument.starts_with("--task=");
-  });
-}
-
-int demo(const std::vector<std::string>& arguments) {
-  if (!is_about_task(arguments)) return cli::demo_command(arguments);
-  std::vector<std::string> command{"demo"};
-  command.insert(command.end(), arguments.begin(), arguments.end());
-  return cli::become({"tasks", "prehend-tasks", ""}, command);
-}
-
 struct Command {
   std::string_view name;
   int (*run)(const std::vector<std::string>&);
   std::string_view help;
 };
 constexpr Command commands[] = {
-    {"demo", demo, "play a demonstration through all services and judge the grasp"},
+    {"demo", cli::play, "play a demonstration through all services and judge the grasp"},
     {"status", cli::status_command, "who is there and how they fare"},
     {"alive", cli::alive_command, "does a service on this host answer for itself"},
     {"metrics", cli::metrics_command, "serve what services say of themselves to Prometheus"},

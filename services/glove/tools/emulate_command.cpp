@@ -1,13 +1,13 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <csignal>
 #include <iostream>
 #include <memory>
 
 #include "common/base/log.hpp"
 #include "common/base/log_format.hpp"
 #include "common/base/paths.hpp"
+#include "common/tool/interrupt.hpp"
 #include "services/glove/devices/device.hpp"
 #include "services/glove/service/options.hpp"
 #include "services/glove/tools/commands.hpp"
@@ -33,11 +33,6 @@ struct EmulateArguments {
   double rate = 30;
   FaultOptions faults;
 };
-
-volatile std::sig_atomic_t stopped = 0;
-extern "C" void on_signal(int) {
-  stopped = 1;
-}
 
 /// «synthetic or recording:FILE».
 std::string sources() {
@@ -92,15 +87,12 @@ int run(const EmulateArguments& arguments) {
     log::error(source.error());
     return 3;
   }
-  struct sigaction action {};
-  action.sa_handler = on_signal;
-  sigaction(SIGTERM, &action, nullptr);
-  sigaction(SIGINT, &action, nullptr);
+  tool::note_interrupts();
   EmulationOptions emulation = emulation_of(*kind, *options, arguments.link);
   emulation.on_plugged = [](const std::string& where) { std::cout << where << std::endl; };
   emulation.rate = arguments.rate;
   emulation.faults = arguments.faults;
-  const auto done = emulate(emulation, **source, [] { return stopped != 0; });
+  const auto done = emulate(emulation, **source, [] { return tool::interrupted(); });
   if (done) return 0;
   log::error(done.error());
   return 3;

@@ -2,7 +2,6 @@
 
 #include <CLI/CLI.hpp>
 #include <atomic>
-#include <csignal>
 #include <iostream>
 #include <memory>
 #include <thread>
@@ -12,6 +11,7 @@
 #include "common/service/consent_key.hpp"
 #include "common/service/membership.hpp"
 #include "common/service/shell.hpp"
+#include "common/tool/interrupt.hpp"
 #include "common/tool/keyboard.hpp"
 #include "services/glove/tools/commands.hpp"
 #include "services/glove/tools/frame_input.hpp"
@@ -68,11 +68,6 @@ class Consent {
   std::jthread thread_;  // last: joined before the rest goes
 };
 
-volatile std::sig_atomic_t ended = 0;
-extern "C" void on_end(int) {
-  ended = 1;
-}
-
 Time now() {
   return std::chrono::time_point_cast<Duration>(std::chrono::system_clock::now());
 }
@@ -89,10 +84,7 @@ int watch(const WatchArguments& arguments) {
   if (!frames) return service::complain(frames.error(), exit_broken);
   if (!postures) return service::complain(postures.error(), exit_broken);
   if (!statuses) return service::complain(statuses.error(), exit_broken);
-  struct sigaction action {};
-  action.sa_handler = on_end;
-  sigaction(SIGTERM, &action, nullptr);
-  sigaction(SIGINT, &action, nullptr);
+  tool::note_interrupts();
 
   constexpr double snapshot_after = 2;  // s, in which every topic says something
   const double duration =
@@ -109,7 +101,8 @@ int watch(const WatchArguments& arguments) {
   const Clock::time_point begin = Clock::now();
   Clock::time_point shown = begin;
   if (terminal) std::cout << "\x1b[2J";
-  while (ended == 0 && std::chrono::duration<double>(Clock::now() - begin).count() < duration) {
+  while (!tool::interrupted() &&
+         std::chrono::duration<double>(Clock::now() - begin).count() < duration) {
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
     for (const auto& sample : frames->take())
       if (!sample.info.gone) view.hear(sample.data, now());

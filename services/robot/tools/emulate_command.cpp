@@ -1,5 +1,4 @@
 #include <CLI/CLI.hpp>
-#include <csignal>
 #include <filesystem>
 #include <iostream>
 #include <memory>
@@ -8,6 +7,7 @@
 #include "common/base/log.hpp"
 #include "common/serial/pseudo_terminal.hpp"
 #include "common/service/arguments.hpp"
+#include "common/tool/interrupt.hpp"
 #include "services/robot/devices/emulation.hpp"
 #include "services/robot/devices/nodes.hpp"
 #include "services/robot/service/options.hpp"
@@ -26,11 +26,6 @@ struct EmulateArguments {
   FaultOptions faults;
   std::string stuck;
 };
-
-volatile std::sig_atomic_t stopped = 0;
-extern "C" void on_signal(int) {
-  stopped = 1;
-}
 
 /// The DoF of that name.
 Expected<std::size_t> dof_of(const model::HandModel& hand, const std::string& name) {
@@ -100,10 +95,7 @@ Expected<int> run(EmulateArguments arguments) {
     if (!joined) return tl::unexpected(joined.error());
     twin = std::move(*joined);
   }
-  struct sigaction action {};
-  action.sa_handler = on_signal;
-  sigaction(SIGTERM, &action, nullptr);
-  sigaction(SIGINT, &action, nullptr);
+  tool::note_interrupts();
   EmulationOptions emulation;
   const auto plug_in = way_to(**kind, arguments);
   if (!plug_in) return tl::unexpected(plug_in.error());
@@ -114,7 +106,7 @@ Expected<int> run(EmulateArguments arguments) {
   if (twin) emulation.on_step = [&twin](Emulator& robot) { twin->exchange(robot); };
   const auto robot = (*kind)->create(*hand, arguments.robot);
   if (!robot) return tl::unexpected(robot.error());
-  const auto done = emulate(emulation, **robot, [] { return stopped != 0; });
+  const auto done = emulate(emulation, **robot, [] { return tool::interrupted(); });
   if (!done) return tl::unexpected(done.error());
   return exit_done;
 }

@@ -3,7 +3,6 @@
 
 #include <CLI/CLI.hpp>
 #include <chrono>
-#include <csignal>
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -16,6 +15,7 @@
 #include "common/dds/topics.hpp"
 #include "common/service/arguments.hpp"
 #include "common/service/membership.hpp"
+#include "common/tool/interrupt.hpp"
 #include "services/robot/core/parting.hpp"
 #include "services/robot/tools/commands.hpp"
 
@@ -33,11 +33,6 @@ struct TwinArguments {
   double seconds = 0, within = 0.1, patience = 0.3;
   bool json = false;
 };
-
-volatile std::sig_atomic_t ended = 0;
-extern "C" void on_end(int) {
-  ended = 1;
-}
 
 /// Tells the twin what the robot is told, and compares what they say.
 class SideBySide {
@@ -179,13 +174,10 @@ int run(const TwinArguments& arguments) {
   if (!config) return tool::complain(config.error(), exit_wrong_use);
   auto both = SideBySide::create(*config, arguments);
   if (!both) return tool::complain(both.error());
-  struct sigaction action {};
-  action.sa_handler = on_end;
-  sigaction(SIGTERM, &action, nullptr);
-  sigaction(SIGINT, &action, nullptr);
+  tool::note_interrupts();
   const Time begun = process_now();
   std::optional<Time> joined;
-  while (ended == 0) {
+  while (!tool::interrupted()) {
     std::this_thread::sleep_for(looks_every);
     const Time now = process_now();
     if (const auto stepped = (*both)->step(now); !stepped) return tool::complain(stepped.error());

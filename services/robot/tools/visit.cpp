@@ -2,12 +2,12 @@
 
 #include <fmt/format.h>
 
-#include <csignal>
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
 
 #include "common/robot/kept_stop.hpp"
+#include "common/tool/interrupt.hpp"
 #include "services/robot/devices/line.hpp"
 #include "services/robot/service/options.hpp"
 
@@ -17,17 +17,9 @@ namespace {
 constexpr Duration to_answer = std::chrono::seconds(8);
 constexpr Duration to_home = std::chrono::seconds(60);
 
-volatile std::sig_atomic_t interrupted = 0;
-extern "C" void on_interrupt(int) {
-  interrupted = 1;
-}
-
 /// Ctrl-C must not leave a motor running: the line says farewell at its end.
 void end_orderly_when_interrupted() {
-  struct sigaction action {};
-  action.sa_handler = on_interrupt;
-  sigaction(SIGTERM, &action, nullptr);
-  sigaction(SIGINT, &action, nullptr);
+  tool::note_interrupts();
 }
 
 /// It has said what it is and how it fares.
@@ -84,18 +76,18 @@ int visit(const VisitArguments& arguments, bool homes) {
   Driver& driver = *robot->driver;
   end_orderly_when_interrupted();
   Line line(driver, robot->open);
-  if (!exchange_until(line, to_answer, [&] { return interrupted != 0 || has_answered(driver); }))
+  if (!exchange_until(line, to_answer, [&] { return tool::interrupted() || has_answered(driver); }))
     return tool::complain({driver.trouble(), robot->port,
                            "is it switched on, is robot.baud right, and no service on that port?"},
                           exit_broken);
-  if (!homes || interrupted != 0 || driver.phase() == Phase::faulted)
+  if (!homes || tool::interrupted() || driver.phase() == Phase::faulted)
     return tell(*robot, arguments.json,
-                !homes && interrupted == 0 && driver.phase() != Phase::faulted);
+                !homes && !tool::interrupted() && driver.phase() != Phase::faulted);
   driver.home();
   bool began = false;
   const bool over = exchange_until(line, to_home, [&] {
     began |= driver.phase() == Phase::homing;
-    return interrupted != 0 || !may_move(*config) ||
+    return tool::interrupted() || !may_move(*config) ||
            (began && driver.phase() != Phase::homing && has_answered(driver));
   });
   return tell(*robot, arguments.json, over && driver.phase() == Phase::ready);

@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <csignal>
 #include <iostream>
 
 #include "common/base/clock.hpp"
@@ -9,6 +8,7 @@
 #include "common/ros2/nodes/nodes.hpp"
 #include "common/service/arguments.hpp"
 #include "common/service/supervisor.hpp"
+#include "common/tool/interrupt.hpp"
 #include "services/ros/service/teller.hpp"
 
 namespace {
@@ -17,23 +17,15 @@ using namespace prehend;
 
 constexpr Duration beat = std::chrono::milliseconds(100);
 
-volatile std::sig_atomic_t ended = 0;
-extern "C" void on_end(int) {
-  ended = 1;
-}
-
 int run(const service::Config& config, const ros::Teller::Options& options) {
   auto teller = ros::Teller::create(config, options);
   if (!teller) return service::complain(teller.error());
-  struct sigaction action {};
-  action.sa_handler = on_end;
-  ::sigaction(SIGTERM, &action, nullptr);
-  ::sigaction(SIGINT, &action, nullptr);
+  tool::note_interrupts();
   std::cout << fmt::format("domain {} of ROS 2: /joint_states /robot_description /tf /tf_static\n",
                            options.domain)
             << std::flush;
   service::Supervisor supervisor;
-  while (ended == 0) {
+  while (!tool::interrupted()) {
     (*teller)->tell(beat);
     supervisor.beat(process_now());
   }

@@ -233,7 +233,12 @@ TEST(Observer, OfAnArmTellsTheFastestJointAndHowLongItWasHindered) {
   Observer observer;
   observer.hear(arm_state(1, v1::HINDRANCE_REACH));
   EXPECT_FALSE(observer.outcome().arm) << "of which nobody told";
-  observer.expect_arm("puma560", {1, 2});
+  model::ArmModel model;
+  model.name = "puma560";
+  model.joints.resize(2);
+  model.joints[0].velocity = 1;
+  model.joints[1].velocity = 2;
+  observer.expect_arm(model);
   observer.hear(arm_state(0.5, v1::HINDRANCE_NONE));
   observer.hear(arm_state(1.5, v1::HINDRANCE_ON_THE_WAY));
   observer.hear(arm_state(1.0, v1::HINDRANCE_REACH));

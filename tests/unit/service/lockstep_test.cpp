@@ -7,8 +7,8 @@
 #include <random>
 #include <thread>
 
-#include "common/service/conductor.hpp"
 #include "common/service/shell.hpp"
+#include "common/stage/conductor.hpp"
 #include "tests/support/domains/domain_lease.hpp"
 #include "tests/support/paths/paths.hpp"
 
@@ -59,7 +59,7 @@ Played play(unsigned seed, int domain, const std::string& rig) {
   auto postures = participant->writer(dds::hand_posture);
   auto detections = participant->writer(dds::object_detection);
   auto states = participant->reader(dds::robot_state);
-  auto conductor = Conductor::create(*participant, {"summing"});
+  auto conductor = stage::Conductor::create(*participant, {"summing"});
   std::mt19937 random(seed);
   for (int i = 1; i <= 60; ++i) {
     const Time now = from_ns(i * 10'000'000);
@@ -122,7 +122,7 @@ TEST(Lockstep, AMissingServiceIsNamed) {
                                                .domain = lease.domain(),
                                                .rig = "empty-" + std::to_string(getpid()),
                                                .lockstep = true});
-  auto conductor = Conductor::create(*participant, {"nobody"});
+  auto conductor = stage::Conductor::create(*participant, {"nobody"});
   const auto stepped = conductor->step(from_ns(1), 50ms);
   ASSERT_FALSE(stepped);
   EXPECT_NE(stepped.error().message().find("nobody"), std::string::npos);

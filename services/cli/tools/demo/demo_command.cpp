@@ -77,11 +77,12 @@ void add_devices(CLI::App& app, DemoOptions& demo) {
       ->excludes(robot);
 }
 
-/// For the help: who uses it gets another one.
-void add_task(CLI::App& app) {
+/// For the help: these are read before, by who chooses the play.
+void add_choices(CLI::App& app) {
   app.add_option("--task",
                  "a task (pick-and-place), or a file of one: it is shown, and done again "
                  "elsewhere;\nprehend demo --task pick-and-place --help tells more");
+  app.add_flag("--targets", "only say what `cmake --build` must make for this");
 }
 
 }  // namespace
@@ -110,7 +111,7 @@ int demo_command(const std::vector<std::string>& arguments) {
   app.add_option("--timeout", demo.timeout, "s until it ends without a grasp")
       ->check(CLI::Range(1.0, 3600.0));
   app.add_option("--record", demo.record, "record all topics into this file");
-  add_task(app);
+  add_choices(app);
   auto* watch =
       app.add_flag("--watch", demo.watch, "with a page that shows it (console.port), until Ctrl-C");
   app.add_flag("--attach", demo.attach, "start nothing, judge the lab that runs")->excludes(watch);
@@ -124,7 +125,7 @@ int demo_command(const std::vector<std::string>& arguments) {
   demo.direct = mode == "direct";
 
   Screen screen(quiet);
-  const Progress progress = [&screen](const std::string& text) { screen.show(text); };
+  const stage::Progress progress = [&screen](const std::string& text) { screen.show(text); };
   if (!seeds.empty()) {
     series.json = json;
     if (!read_range(seeds, series))
@@ -138,7 +139,7 @@ int demo_command(const std::vector<std::string>& arguments) {
   if (demo.watch) demo.on_outcome = show;
   const auto outcome = demonstrate(demo, progress);
   screen.clear();
-  if (!outcome) return service::complain(outcome.error().error, outcome.error().exit_code);
+  if (!outcome) return service::complain(outcome.error());
   if (!demo.watch) show(*outcome);
   return outcome->grasp.held ? exit_done : exit_no;
 }

@@ -1,7 +1,6 @@
 #pragma once
 
-#include <tl/expected.hpp>
-
+#include "common/stage/stage.hpp"
 #include "services/cli/service/outcome.hpp"
 #include "services/cli/tools/demo/options.hpp"
 
@@ -9,6 +8,6 @@ namespace prehend::cli {
 
 /// Gives one demonstration with the services as processes of their own, or watches a lab that runs,
 /// until the first grasp has been judged. Ctrl-C ends it, and the services with it.
-tl::expected<Outcome, Failure> demonstrate(const DemoOptions& options, const Progress& progress);
+Expected<Outcome> demonstrate(const DemoOptions& options, const stage::Progress& progress);
 
 }  // namespace prehend::cli

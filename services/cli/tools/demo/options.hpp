@@ -32,22 +32,4 @@ struct DemoOptions {
   std::function<void(const Outcome&)> on_outcome = [](const Outcome&) {};
 };
 
-/// A demonstration that could not be given.
-struct Failure {
-  Error error;
-  int exit_code = exit_broken;
-};
-
-/// Nothing, or why the demonstration ends here.
-using Trouble = std::optional<Failure>;
-inline Trouble wrong(const Error& error) {
-  return Failure{error, exit_wrong_use};
-}
-inline Trouble broken(const Error& error) {
-  return Failure{error, exit_broken};
-}
-
-/// Says how it goes: a few words, several times a second.
-using Progress = std::function<void(const std::string&)>;
-
 }  // namespace prehend::cli

@@ -4,8 +4,8 @@
 
 #include "common/base/file_text.hpp"
 #include "common/base/paths.hpp"
-#include "common/service/lab.hpp"
-#include "common/service/process.hpp"
+#include "common/stage/process.hpp"
+#include "common/stage/temporary_folder.hpp"
 
 namespace prehend::cli {
 namespace {
@@ -17,18 +17,18 @@ constexpr Duration patience = std::chrono::seconds(10);
 /// What a program of ours prints, which must end at once.
 Expected<std::string> printed_by(const std::string& program,
                                  const std::vector<std::string>& arguments) {
-  auto folder = service::TemporaryFolder::create(false);
+  auto folder = stage::TemporaryFolder::create(false);
   if (!folder) return tl::unexpected(folder.error());
-  service::Process::Options options;
+  stage::Process::Options options;
   options.command = {(program_directory() / program).string()};
   options.command.insert(options.command.end(), arguments.begin(), arguments.end());
   options.log = folder->path() / "log";
   options.output = folder->path() / "output";
-  auto process = service::Process::start(options);
+  auto process = stage::Process::start(options);
   if (!process) return tl::unexpected(process.error());
   const auto exit = process->wait(patience);
   if (!exit) return fail("does not answer", program);
-  if (exit->code != 0) return fail(service::last_lines(options.log, 5), program);
+  if (exit->code != 0) return fail(stage::last_lines(options.log, 5), program);
   return read_file(options.output);
 }
 

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
+#include "common/convert/names.hpp"
 #include "services/cli/tools/demo/demonstration.hpp"
 
 namespace prehend::cli {
@@ -38,8 +39,8 @@ std::string row(std::uint64_t seed, const Outcome& outcome) {
                                 ? fmt::format("{:.1f}", *outcome.object->position_error * 1000)
                                 : "-";
   return fmt::format("{:>5}  {:<12} {:<12} {:>7}  {:<12} {:>8}  {:>7.4f}  {}\n", seed,
-                     outcome.target, seen, error, to_string(outcome.mode), outcome.grasp.contacts,
-                     outcome.grasp.epsilon,
+                     outcome.target, seen, error, convert::mode_names.name(outcome.mode, "hold"),
+                     outcome.grasp.contacts, outcome.grasp.epsilon,
                      outcome.grasp.held ? std::string("held") : outcome.grasp.reason);
 }
 
@@ -53,7 +54,8 @@ nlohmann::ordered_json summary(Tally& tally) {
 
 }  // namespace
 
-int run_series(const DemoOptions& demo, const SeriesOptions& options, const Progress& progress) {
+int run_series(const DemoOptions& demo, const SeriesOptions& options,
+               const stage::Progress& progress) {
   Tally normal, direct;
   if (!options.json)
     fmt::print("{:>5}  {:<12} {:<12} {:>7}  {:<12} {:>8}  {:>7}  {}\n", "seed", "target",
@@ -66,7 +68,7 @@ int run_series(const DemoOptions& demo, const SeriesOptions& options, const Prog
       one.direct = demo.direct || compare;
       const auto outcome = demonstrate(
           one, [&](const std::string& text) { progress(fmt::format("seed {}: {}", seed, text)); });
-      if (!outcome) return service::complain(outcome.error().error, outcome.error().exit_code);
+      if (!outcome) return service::complain(outcome.error());
       (compare ? direct : normal).add(*outcome);
       if (options.json) {
         auto document = nlohmann::ordered_json::parse(to_json(*outcome));

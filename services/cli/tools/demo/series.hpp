@@ -1,5 +1,6 @@
 #pragma once
 
+#include "common/stage/stage.hpp"
 #include "services/cli/tools/demo/options.hpp"
 
 namespace prehend::cli {
@@ -13,6 +14,7 @@ struct SeriesOptions {
 
 /// Runs them and prints a table. Exit code 0 when the object was right in at least 95 % and held in
 /// at least 80 % of the demonstrations (direct ones are for comparison only).
-int run_series(const DemoOptions& demo, const SeriesOptions& options, const Progress& progress);
+int run_series(const DemoOptions& demo, const SeriesOptions& options,
+               const stage::Progress& progress);
 
 }  // namespace prehend::cli

@@ -18,8 +18,8 @@
 #include "common/base/paths.hpp"
 #include "common/dds/network.hpp"
 #include "common/dds/security.hpp"
-#include "common/service/lab.hpp"
 #include "common/service/membership.hpp"
+#include "common/stage/temporary_folder.hpp"
 
 namespace prehend::cli {
 
@@ -193,17 +193,17 @@ Check check_users() {
 }
 
 Check check_programs() {
-  auto folder = service::TemporaryFolder::create(false);
+  auto folder = stage::TemporaryFolder::create(false);
   if (!folder) return fault("programs", folder.error().message(), folder.error().hint);
   std::string trouble;
   for (const char* name : {"glove", "recognition", "mapping", "simulation", "record", "replay"}) {
     const fs::path program = program_directory() / (std::string("prehend-") + name);
     const fs::path log = folder->path() / name;
-    auto process = service::Process::start(
+    auto process = stage::Process::start(
         {.command = {program.string(), "--help"}, .log = log, .output = "/dev/null"});
     const auto exit = process ? process->wait(seconds(20)) : std::nullopt;
     if (exit && exit->code == 0) continue;
-    const std::string said = service::last_lines(log, 1);
+    const std::string said = stage::last_lines(log, 1);
     (trouble += trouble.empty() ? "" : "; ") +=
         fmt::format("prehend-{}: {}", name, said.empty() ? "cannot be started" : said);
   }

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <csignal>
 #include <iostream>
 
 #include "common/base/clock.hpp"
@@ -12,6 +11,7 @@
 #include "common/service/arguments.hpp"
 #include "common/service/membership.hpp"
 #include "common/service/supervisor.hpp"
+#include "common/tool/interrupt.hpp"
 #include "services/cli/service/self_reports.hpp"
 #include "services/cli/tools/metrics/http/server.hpp"
 #include "services/cli/tools/metrics/lab_metrics.hpp"
@@ -20,11 +20,6 @@ namespace prehend::cli {
 namespace {
 
 constexpr Duration round = std::chrono::milliseconds(50);
-
-volatile std::sig_atomic_t ended = 0;
-extern "C" void on_end_of_metrics(int) {
-  ended = 1;
-}
 
 void listen(SelfReports& reports, LabMetrics& metrics, Time now) {
   for (const auto& sample : reports.statuses.take())
@@ -46,10 +41,7 @@ int serve(const service::Config& config, http::Server& server) {
   if (!participant) return service::complain(participant.error());
   auto reports = SelfReports::create(*participant);
   if (!reports) return service::complain(reports.error());
-  struct sigaction action {};
-  action.sa_handler = on_end_of_metrics;
-  ::sigaction(SIGTERM, &action, nullptr);
-  ::sigaction(SIGINT, &action, nullptr);
+  tool::note_interrupts();
 
   const std::string& address = config.text("metrics.address");
   std::cout << fmt::format("http://{}:{}/metrics\n",
@@ -58,7 +50,7 @@ int serve(const service::Config& config, http::Server& server) {
             << std::flush;
   LabMetrics metrics(config.names("lab.services"));
   service::Supervisor supervisor;
-  while (ended == 0) {
+  while (!tool::interrupted()) {
     listen(*reports, metrics, process_now());
     server.serve(round, [&] { return metrics.text(process_now()); });
     supervisor.beat(process_now());

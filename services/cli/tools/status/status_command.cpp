@@ -6,7 +6,6 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <csignal>
 #include <iostream>
 #include <thread>
 
@@ -14,16 +13,12 @@
 #include "common/dds/participant.hpp"
 #include "common/service/arguments.hpp"
 #include "common/service/membership.hpp"
+#include "common/tool/interrupt.hpp"
 #include "services/cli/service/self_reports.hpp"
 #include "services/cli/tools/status/status_view.hpp"
 
 namespace prehend::cli {
 namespace {
-
-volatile std::sig_atomic_t ended = 0;
-extern "C" void on_end(int) {
-  ended = 1;
-}
 
 /// The last character that was entered on standard input; 0: none. Does not wait.
 char entered_key() {
@@ -90,10 +85,7 @@ void tell(StatusView& view, SelfReports& reports, const dds::Participant& partic
 }
 
 void clear_terminal() {
-  struct sigaction action {};
-  action.sa_handler = on_end;
-  sigaction(SIGTERM, &action, nullptr);
-  sigaction(SIGINT, &action, nullptr);
+  tool::note_interrupts();
   std::cout << "\x1b[2J";
 }
 
@@ -125,7 +117,7 @@ int status_command(const std::vector<std::string>& arguments) {
   if (live) clear_terminal();
   const Time begin = process_now();
   Time next_page = begin + std::chrono::milliseconds(500);
-  while (ended == 0) {
+  while (!tool::interrupted()) {
     const Time now = process_now();
     if (!live && now - begin > prehend::seconds(given.timeout)) break;
     if (!given.awaited.empty() && all_up()) break;

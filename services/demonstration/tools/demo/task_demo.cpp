@@ -1,22 +1,15 @@
 #include "services/demonstration/tools/demo/task_demo.hpp"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <chrono>
-#include <csignal>
 #include <nlohmann/json.hpp>
 #include <set>
-#include <thread>
 
-#include "common/arm/mounting.hpp"
 #include "common/base/file_text.hpp"
 #include "common/base/log.hpp"
-#include "common/base/paths.hpp"
+#include "common/convert/names.hpp"
 #include "common/dds/topics.hpp"
-#include "common/model/arm_choice.hpp"
-#include "common/service/lab.hpp"
 #include "common/service/membership.hpp"
 #include "services/demonstration/core/person/table.hpp"
 #include "services/demonstration/files/task_file.hpp"
@@ -25,34 +18,8 @@ namespace prehend::demonstration {
 
 namespace {
 
-using Clock = std::chrono::steady_clock;
-using Strings = std::vector<std::string>;
-
 constexpr std::uint64_t elsewhere = 1000;  // seed of the second scene beside that of the first
 constexpr std::string_view task_kind = ".task";
-
-volatile std::sig_atomic_t interrupted = 0;
-
-/// Ctrl-C ends the demonstration, not this program at once, so that the services are stopped.
-void watch_for_interrupts() {
-  struct sigaction action {};
-  action.sa_handler = [](int) { interrupted = 1; };
-  for (const int number : {SIGINT, SIGTERM, SIGHUP}) ::sigaction(number, &action, nullptr);
-}
-
-std::string_view to_string(v1::HandPhase phase) {
-  constexpr std::array<std::string_view, 6> names{"rest", "approach", "close",
-                                                  "hold", "release",  "retract"};
-  const auto at = static_cast<std::size_t>(phase);
-  return at < names.size() ? names[at] : "unknown";
-}
-
-std::string_view to_string(v1::GraspType type) {
-  constexpr std::array<std::string_view, 4> names{"none", "power wrap", "circular sphere",
-                                                  "precision"};
-  const auto at = static_cast<std::size_t>(type);
-  return at < names.size() ? names[at] : "unknown";
-}
 
 /// What the lab says.
 struct Ears {
@@ -88,16 +55,16 @@ struct Ears {
   }
 };
 
-class TaskDemo {
+/// A person shows, the lab understands, and a performer does it again elsewhere.
+class TaskPlay {
  public:
-  explicit TaskDemo(const TaskDemoOptions& options)
-      : options_(options),
-        end_(Clock::now() + std::chrono::duration_cast<Clock::duration>(seconds(options.timeout))) {
-  }
+  /// Both must outlive it.
+  TaskPlay(const TaskDemoOptions& options, stage::Stage& stage)
+      : options_(options), stage_(stage) {}
 
   Expected<TaskDemoOutcome> run() {
     if (auto ok = prepare(); !ok) return tl::unexpected(ok.error());
-    if (auto ok = start(); !ok) return tl::unexpected(ok.error());
+    if (auto ok = put_up(); !ok) return tl::unexpected(ok.error());
     if (is_shown())
       if (auto ok = show(); !ok) return tl::unexpected(ok.error());
     auto record = load_record(task_file_);
@@ -109,6 +76,7 @@ class TaskDemo {
         outcome_.place_error = (put - place_).norm();
     }
     if (auto ok = perform(); !ok) return tl::unexpected(ok.error());
+    outcome_.arm = arm_;
     return outcome_;
   }
 
@@ -117,19 +85,15 @@ class TaskDemo {
 
   /// Scenes, and the names of all that is needed.
   Expected<void> prepare() {
-    sets_ = options_.lab.overrides();
-    sets_.push_back(fmt::format("lab.rig=demo-{}-{:x}", ::getpid(),
-                                std::chrono::system_clock::now().time_since_epoch().count()));
-    if (!options_.arm.empty()) sets_.push_back("robot.arm=" + arm_setting());
-    if (!options_.hand.empty()) sets_.push_back("simulation.hand=" + options_.hand);
-    auto folder = service::TemporaryFolder::create(options_.keep);
-    if (!folder) return tl::unexpected(folder.error());
-    folder_.emplace(std::move(*folder));
-    if (options_.keep) log::info("scenes, tasks and logs are in {}", folder_->path().string());
-    const auto config = service::Config::load(options_.lab.file(), sets_);
+    if (!options_.arm.empty()) stage_.set("robot.arm=" + arm_setting());
+    if (!options_.hand.empty()) stage_.set("simulation.hand=" + options_.hand);
+    if (options_.keep) log::info("scenes, tasks and logs are in {}", stage_.folder().string());
+    const auto config = stage_.config();
     if (!config) return tl::unexpected(config.error());
     outcome_.hand = config->text("simulation.hand");
-    if (auto ok = expect_arm(config->text("robot.arm")); !ok) return ok;
+    const auto arm = stage::carrying_arm(*config);
+    if (!arm) return tl::unexpected(arm.error());
+    if (*arm) arm_.emplace(**arm);
     const auto catalogue = model::Catalogue::load(config->path("lab.catalogue"));
     if (!catalogue) return tl::unexpected(catalogue.error());
     return is_shown() ? prepare_show(*catalogue) : prepare_known(*catalogue);
@@ -139,18 +103,6 @@ class TaskDemo {
   std::string arm_setting() const {
     if (options_.arm.find('/') == std::string::npos) return options_.arm;
     return std::filesystem::absolute(options_.arm).string();
-  }
-
-  Expected<void> expect_arm(const std::string& name) {
-    if (name.empty()) return {};
-    auto arm = model::load_arm(name);
-    if (!arm) return tl::unexpected(arm.error());
-    const auto hand = model::HandModel::load(model::hand_directory(outcome_.hand));
-    if (!hand) return tl::unexpected(hand.error());
-    if (const auto fits = arm::check_fit(*arm, *hand); !fits) return fits;
-    outcome_.arm = TaskDemoOutcome::Arm{arm->name};
-    arm_ = std::move(*arm);
-    return {};
   }
 
   /// Objects of a task, on a table.
@@ -170,10 +122,10 @@ class TaskDemo {
     table.free = {place_};
     auto again = drawn_table(catalogue, options_.seed + elsewhere, table);
     if (!again) return tl::unexpected(again.error());
-    sets_.push_back(fmt::format("glove.hand_scale={:.3f}", shown->demonstrator.hand_scale));
-    sets_.push_back("glove.device=topic");
-    sets_.push_back("demonstration.tasks=" + (folder_->path() / "tasks").string());
-    const auto file = task_path(options_.task, folder_->path() / "tasks");
+    stage_.set(fmt::format("glove.hand_scale={:.3f}", shown->demonstrator.hand_scale));
+    stage_.set("glove.device=topic");
+    stage_.set("demonstration.tasks=" + (stage_.folder() / "tasks").string());
+    const auto file = task_path(options_.task, stage_.folder() / "tasks");
     if (!file) return tl::unexpected(file.error());
     task_file_ = *file;
     return write(shown_file(), *shown).and_then([&] { return write(again_file(), *again); });
@@ -213,20 +165,23 @@ class TaskDemo {
     return write(again_file(), *scene);
   }
 
-  std::filesystem::path shown_file() const { return folder_->path() / "shown.toml"; }
-  std::filesystem::path again_file() const { return folder_->path() / "again.toml"; }
+  std::filesystem::path shown_file() const { return stage_.folder() / "shown.toml"; }
+  std::filesystem::path again_file() const { return stage_.folder() / "again.toml"; }
 
   static Expected<void> write(const std::filesystem::path& file, const model::Scene& scene) {
     return write_file(file, model::to_toml(scene));
   }
 
-  Expected<void> start() {
-    const auto config = service::Config::load(options_.lab.file(), sets_);
+  Expected<void> put_up() {
+    const auto config = stage_.config();
     if (!config) return tl::unexpected(config.error());
     auto ears = Ears::create(*config);
     if (!ears) return tl::unexpected(ears.error());
     ears_.emplace(std::move(*ears));
-    lab_.emplace(options_.lab.file(), sets_, folder_->path());
+    stage_.on_look([this] {
+      listen();
+      return doing_;
+    });
     std::vector<std::pair<std::string, std::filesystem::path>> services{
         {"simulation", again_file()}};
     if (is_shown()) {
@@ -234,27 +189,17 @@ class TaskDemo {
       services.emplace_back("demonstration", shown_file());
     }
     for (const auto& [name, scene] : services)
-      if (auto made = lab_->start_service(name, {"lab.scene=" + scene.string()}); !made)
+      if (auto made = stage_.start_service(name, {"lab.scene=" + scene.string()}); !made)
         return made;
-    return until("starting", [&] {
-      return std::all_of(services.begin(), services.end(),
-                         [&](const auto& each) { return up_.contains(each.first); });
-    });
-  }
-
-  /// Listens until something holds.
-  Expected<void> until(const std::string& what, const std::function<bool()>& holds,
-                       std::string_view may_end = {}) {
-    while (!holds()) {
-      std::this_thread::sleep_for(std::chrono::milliseconds(20));
-      listen();
-      options_.tell(doing_.empty() ? what : what + ", " + doing_);
-      if (interrupted) return fail("interrupted", "demo", {}, exit_no);
-      if (Clock::now() > end_)
-        return fail(fmt::format("{} took longer than {:.0f} s", what, options_.timeout), "demo");
-      if (const auto casualty = lab_->casualty(may_end)) return tl::unexpected(*casualty);
-    }
-    return {};
+    return stage_.until(
+        "starting",
+        [&] {
+          return std::all_of(services.begin(), services.end(),
+                             [&](const auto& each) { return up_.contains(each.first); });
+        },
+        [] {
+          return Error{"the services did not come up", "demo", {}};
+        });
   }
 
   void listen() {
@@ -276,85 +221,55 @@ class TaskDemo {
         outcome_.grasp = {static_cast<int>(sample.data.contacts().size()), sample.data.epsilon(),
                           sample.data.volume(), sample.data.force_closure(), sample.data.held()};
     for (const auto& sample : ears_->arms.take())
-      if (!sample.info.gone && arm_) hear(sample.data);
+      if (!sample.info.gone && arm_) arm_->hear(sample.data);
     for (const auto& sample : ears_->commands.take())
-      if (!sample.info.gone) outcome_.grasp_type = to_string(sample.data.grasp_type());
-  }
-
-  /// As `prehend demo --arm` counts it, but to the end of the task.
-  void hear(const v1::ArmState& state) {
-    for (std::size_t i = 0; i < arm_->joints.size() && i < state.velocity().size(); ++i)
-      outcome_.arm->worst_joint_speed =
-          std::max(outcome_.arm->worst_joint_speed,
-                   std::abs(state.velocity()[i]) / arm_->joints[i].velocity);
-    ++arm_states_;
-    hindered_ += state.hindrance() == v1::HINDRANCE_JOINT_LIMIT ||
-                 state.hindrance() == v1::HINDRANCE_COLLISION ||
-                 state.hindrance() == v1::HINDRANCE_REACH;
-    outcome_.arm->out_of_reach = static_cast<double>(hindered_) / arm_states_;
+      if (!sample.info.gone)
+        outcome_.grasp_type = convert::grasp_names.name(sample.data.grasp_type(), "none");
   }
 
   void hear(const v1::DemonstratedSegment& segment) {
     if (outcome_.phases.empty()) first_ns_ = segment.begin_ns();
-    outcome_.phases.push_back({std::string(to_string(segment.phase())),
-                               segment.object().to_string(),
+    const std::string phase(convert::phase_names.name(segment.phase()));
+    outcome_.phases.push_back({phase, segment.object().to_string(),
                                1e-9 * static_cast<double>(segment.begin_ns() - first_ns_),
                                1e-9 * static_cast<double>(segment.end_ns() - first_ns_)});
-    doing_ = std::string(to_string(segment.phase()));
+    doing_ = phase;
   }
 
-  /// Runs one of our programs in the lab, to its end.
-  Expected<service::Process::Exit> run(const std::string& what, const std::string& program,
-                                       Strings arguments, const std::filesystem::path& scene,
-                                       const std::filesystem::path& output = {}) {
-    Strings command{(program_directory() / program).string()};
-    command.insert(command.end(), arguments.begin(), arguments.end());
-    command.insert(command.end(), {"--config", options_.lab.file()});
-    Strings sets = sets_;
-    sets.push_back("lab.scene=" + scene.string());
-    for (const std::string& set : sets) command.insert(command.end(), {"--set", set});
-    auto process = service::Process::start(
-        {.command = command, .log = folder_->path() / (program + ".log"), .output = output});
-    if (!process) return tl::unexpected(process.error());
-    std::optional<service::Process::Exit> exit;
-    if (auto ok = until(what, [&] { return (exit = process->exit()).has_value(); }); !ok)
-      return tl::unexpected(ok.error());
-    return *exit;
-  }
+  std::vector<std::string> in_show() const { return {"lab.scene=" + shown_file().string()}; }
 
   Expected<void> order(const std::string& which) {
     const auto exit =
-        run("showing", "prehend-demonstrate", {"--name", options_.task, which}, shown_file());
+        stage_.run("showing", "prehend-demonstrate", {"--name", options_.task, which}, in_show());
     if (!exit) return tl::unexpected(exit.error());
     if (exit->code == exit_done) return {};
-    return fail(service::last_lines(folder_->path() / "prehend-demonstrate.log", 1), "demonstrate",
-                {}, exit_no);
+    return fail(stage_.last_words("prehend-demonstrate"), "demonstrate", {}, exit_no);
   }
 
   Expected<void> show() {
     if (auto ok = order("--begin"); !ok) return ok;
-    const auto exit =
-        run("showing", "prehend-person",
-            {"--put", fmt::format("{}={:.4f},{:.4f}", options_.object, place_.x(), place_.y()),
-             "--seed", std::to_string(options_.seed)},
-            shown_file());
+    const auto exit = stage_.run(
+        "showing", "prehend-person",
+        {"--put", fmt::format("{}={:.4f},{:.4f}", options_.object, place_.x(), place_.y()),
+         "--seed", std::to_string(options_.seed)},
+        in_show());
     if (!exit) return tl::unexpected(exit.error());
-    if (exit->code != exit_done)
-      return fail(service::last_lines(folder_->path() / "prehend-person.log", 1), "person");
+    if (exit->code != exit_done) return fail(stage_.last_words("prehend-person"), "person");
     return order("--end");
   }
 
   Expected<void> perform() {
     doing_.clear();
-    const auto output = folder_->path() / "performed.json";
-    const auto exit = run("doing it again", "prehend-tasks", {"run", task_file_.string(), "--json"},
-                          again_file(), output);
+    const auto output = stage_.folder() / "performed.json";
+    const auto exit =
+        stage_.run("doing it again", "prehend-tasks", {"run", task_file_.string(), "--json"},
+                   {"lab.scene=" + again_file().string()}, output);
     if (!exit) return tl::unexpected(exit.error());
     listen();
     const auto text = read_file(output);
     const auto document = nlohmann::json::parse(text.value_or(""), nullptr, false);
     if (!document.is_object()) {
-      outcome_.reason = service::last_lines(folder_->path() / "prehend-tasks.log", 1);
+      outcome_.reason = stage_.last_words("prehend-tasks");
       return {};
     }
     outcome_.done = document.value("done", false);
@@ -367,15 +282,11 @@ class TaskDemo {
   }
 
   const TaskDemoOptions& options_;
-  Clock::time_point end_;
-  Strings sets_;
-  std::optional<service::TemporaryFolder> folder_;
+  stage::Stage& stage_;
   std::filesystem::path task_file_;
   Eigen::Vector2d place_ = Eigen::Vector2d::Zero();  // where the object is put, as shown
-  std::optional<model::ArmModel> arm_;
-  int arm_states_ = 0, hindered_ = 0;
+  std::optional<stage::ArmUse> arm_;
   std::optional<Ears> ears_;
-  std::optional<service::Lab> lab_;  // after the folder: stopped before it is removed
   std::set<std::string> up_;
   std::int64_t first_ns_ = 0;
   std::string doing_;
@@ -385,8 +296,9 @@ class TaskDemo {
 }  // namespace
 
 Expected<TaskDemoOutcome> run_task_demo(const TaskDemoOptions& options) {
-  watch_for_interrupts();
-  return TaskDemo(options).run();
+  auto stage = stage::Stage::create({options.lab, options.timeout, options.keep, options.tell});
+  if (!stage) return tl::unexpected(stage.error());
+  return TaskPlay(options, *stage).run();
 }
 
 }  // namespace prehend::demonstration

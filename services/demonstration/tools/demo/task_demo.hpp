@@ -1,13 +1,14 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "common/base/error.hpp"
 #include "common/service/arguments.hpp"
+#include "common/stage/arm.hpp"
+#include "common/stage/stage.hpp"
 #include "services/demonstration/core/tasks/task_model.hpp"
 
 namespace prehend::demonstration {
@@ -20,7 +21,7 @@ struct TaskDemoOptions {
   std::uint64_t seed = 1;
   double timeout = 120;  // s
   bool keep = false;     // scenes, tasks and logs
-  std::function<void(const std::string& line)> tell = [](const std::string&) {};
+  stage::Progress tell = [](const std::string&) {};
 };
 
 /// What a demonstration of demonstrations came to.
@@ -39,17 +40,12 @@ struct TaskDemoOutcome {
     bool done = false;
     double error = 0, turn = 0;  // m, rad
   };
-  struct Arm {
-    std::string name;
-    double worst_joint_speed = 0;  // by its joint's limit
-    double out_of_reach = 0;       // share of the time
-  };
   TaskModel task;             // as it was understood
   std::vector<Phase> phases;  // that were seen
   std::string hand, grasp_type;
   std::uint64_t frames = 0;
   std::optional<double> place_error;  // m, of where the object was seen to be put; if it was shown
-  std::optional<Arm> arm;             // that carried the hand
+  std::optional<stage::ArmUse> arm;   // that carried the hand
   std::optional<Grasp> grasp;         // as the simulation judged it
   bool done = false;
   std::string reason;

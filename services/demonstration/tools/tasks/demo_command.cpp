@@ -35,9 +35,10 @@ Json document_of(const TaskDemoOutcome& outcome, const TaskDemoOptions& options)
   named["position_error_m"] = number(outcome.place_error);
   const auto grasp = outcome.grasp.value_or(TaskDemoOutcome::Grasp{});
   Json document{{"object", named},
+                // No mapping runs: a performer plans the grasp.
                 {"mapping",
-                 {{"mode", "intelligent"},
-                  {"weight", 1.0},
+                 {{"mode", nullptr},
+                  {"weight", nullptr},
                   {"hand", outcome.hand},
                   {"grasp_type", outcome.grasp_type}}},
                 {"grasp",
@@ -55,9 +56,9 @@ Json document_of(const TaskDemoOutcome& outcome, const TaskDemoOptions& options)
                   {"reason", outcome.reason},
                   {"steps", Json::array()}}}};
   if (const auto& arm = outcome.arm)
-    document["arm"] = {{"name", arm->name},
-                       {"worst_joint_speed", arm->worst_joint_speed},
-                       {"out_of_reach", arm->out_of_reach}};
+    document["arm"] = {{"name", arm->name()},
+                       {"worst_joint_speed", arm->worst_joint_speed()},
+                       {"out_of_reach", arm->out_of_reach()}};
   for (const auto& phase : outcome.phases)
     document["understood"]["phases"].push_back({{"phase", phase.name},
                                                 {"object", phase.object},
@@ -91,7 +92,7 @@ void print(const TaskDemoOutcome& outcome) {
     fmt::print("  the place is {:.1f} mm from where the person put it\n",
                1000 * *outcome.place_error);
   fmt::print("done again by {}{}, from elsewhere: {}\n", outcome.hand,
-             outcome.arm ? " on " + outcome.arm->name : "",
+             outcome.arm ? " on " + outcome.arm->name() : "",
              outcome.done ? "as it was shown" : "no: " + outcome.reason);
   for (const auto& step : outcome.steps)
     fmt::print("  {:16} {:8} {:5.1f} mm {:5.1f}° off\n", step.object,

@@ -13,9 +13,9 @@
 
 #include "common/convert/convert.hpp"
 #include "common/dds/topics.hpp"
-#include "common/service/conductor.hpp"
 #include "common/service/membership.hpp"
-#include "common/service/process.hpp"
+#include "common/stage/conductor.hpp"
+#include "common/stage/process.hpp"
 #include "services/mapping/tools/judge/lab_messages.hpp"
 #include "services/mapping/tools/judge/own_by_messages.hpp"
 
@@ -63,9 +63,9 @@ class Inbox {
 
 struct ExternalMapping::State {
   ExternalOptions options;
-  std::optional<service::Process> process;
+  std::optional<stage::Process> process;
   std::optional<dds::Participant> participant;
-  std::optional<service::Conductor> conductor;
+  std::optional<stage::Conductor> conductor;
   Inbox inbox;
   std::optional<dds::RawWriter> postures, detections, states, gates;
   std::unique_ptr<dds::RawReader> commands;
@@ -93,7 +93,7 @@ struct ExternalMapping::State {
     if (!reader) return tl::unexpected(reader.error());
     commands = std::move(*reader);
     if (!options.lockstep) return tell_of_gate();
-    auto made = service::Conductor::create(*participant, {options.service});
+    auto made = stage::Conductor::create(*participant, {options.service});
     if (!made) return tl::unexpected(made.error());
     conductor.emplace(std::move(*made));
     return {};
@@ -114,7 +114,7 @@ struct ExternalMapping::State {
   }
 
   Expected<void> start(const std::string& rig) {
-    auto started = service::Process::start(
+    auto started = stage::Process::start(
         {.command = {"/bin/sh", "-c", options.command},
          .log = options.log,
          .environment = {
@@ -130,7 +130,7 @@ struct ExternalMapping::State {
   std::optional<Error> dead() {
     if (!process || !process->exit()) return std::nullopt;
     return Error{fmt::format("ended with code {}: {}", process->exit()->code,
-                             service::last_lines(options.log, 3)),
+                             stage::last_lines(options.log, 3)),
                  options.command,
                  {}};
   }

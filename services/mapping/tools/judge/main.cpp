@@ -17,7 +17,7 @@
 #include "common/base/progress.hpp"
 #include "common/base/workers.hpp"
 #include "common/service/arguments.hpp"
-#include "common/service/lab.hpp"
+#include "common/stage/temporary_folder.hpp"
 #include "services/mapping/files/mapping_model_file.hpp"
 #include "services/mapping/files/model_places.hpp"
 #include "services/mapping/tools/benchmark/real_reach.hpp"
@@ -187,7 +187,7 @@ Expected<std::vector<TrialResult>> judge_own(const Judged& judged, const Benchma
 
 Expected<std::vector<TrialResult>> judge_external(const Judged& judged, const Arguments& arguments,
                                                   const service::Config& lab) {
-  const auto folder = service::TemporaryFolder::create(false);
+  const auto folder = stage::TemporaryFolder::create(false);
   if (!folder) return tl::unexpected(folder.error());
   ExternalOptions options{&lab,
                           judged.hand.name(),

@@ -10,9 +10,9 @@
 #include <set>
 
 #include "common/dds/topics.hpp"
-#include "common/service/conductor.hpp"
-#include "common/service/lab.hpp"
 #include "common/service/membership.hpp"
+#include "common/stage/conductor.hpp"
+#include "common/stage/lab.hpp"
 #include "services/recorder/service/describe.hpp"
 #include "services/recorder/service/recording_file.hpp"
 
@@ -193,7 +193,7 @@ class Run {
     auto participant = dds::Participant::create(membership);
     if (!participant) return tl::unexpected(participant.error());
     participant_.emplace(std::move(*participant));
-    auto conductor = service::Conductor::create(*participant_, names_);
+    auto conductor = stage::Conductor::create(*participant_, names_);
     if (!conductor) return tl::unexpected(conductor.error());
     conductor_.emplace(std::move(*conductor));
     for (const std::string& topic : writes_) {
@@ -285,10 +285,10 @@ class Run {
   std::vector<Played> played_;
   std::vector<std::string> names_;
   Topics reads_, writes_;
-  std::optional<service::Lab> lab_;
+  std::optional<stage::Lab> lab_;
   std::map<std::string, std::unique_ptr<Answers>> answers_;
   std::optional<dds::Participant> participant_;
-  std::optional<service::Conductor> conductor_;
+  std::optional<stage::Conductor> conductor_;
   std::vector<std::unique_ptr<dds::RawReader>> readers_;
   std::map<std::string, dds::RawWriter> writers_;
 };

@@ -7,7 +7,7 @@
 
 #include "common/base/log.hpp"
 #include "common/recording/types/idl.hpp"
-#include "common/service/lab.hpp"
+#include "common/stage/temporary_folder.hpp"
 #include "services/recorder/tools/check/check.hpp"
 #include "services/recorder/tools/terminal/progress_line.hpp"
 
@@ -122,7 +122,7 @@ int run(const std::vector<std::string>& texts) {
   const auto table = tolerances.empty() ? recording::ToleranceTable::load_defaults()
                                         : recording::ToleranceTable::load(tolerances);
   if (!table) return service::complain(table.error(), exit_wrong_use);
-  const auto folder = service::TemporaryFolder::create(keep);
+  const auto folder = stage::TemporaryFolder::create(keep);
   if (!folder) return service::complain(folder.error(), exit_broken);
   options.log_folder = folder->path();
 

@@ -1,4 +1,4 @@
-#include "common/service/process.hpp"
+#include "common/stage/process.hpp"
 
 #include <fcntl.h>
 #include <sys/prctl.h>
@@ -12,7 +12,7 @@
 #include <fstream>
 #include <thread>
 
-namespace prehend::service {
+namespace prehend::stage {
 namespace {
 
 /// Runs in the child, between fork and exec: only calls that are safe there, no memory is taken.
@@ -177,4 +177,4 @@ std::string last_lines(const std::filesystem::path& file, int lines) {
   return text;
 }
 
-}  // namespace prehend::service
+}  // namespace prehend::stage

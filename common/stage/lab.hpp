@@ -6,31 +6,16 @@
 #include <vector>
 
 #include "common/base/error.hpp"
-#include "common/service/process.hpp"
+#include "common/stage/process.hpp"
 
-namespace prehend::service {
-
-/// A folder under the system's temporary one, removed at the end unless it shall be kept.
-class TemporaryFolder {
- public:
-  static Expected<TemporaryFolder> create(bool keep);
-  TemporaryFolder(TemporaryFolder&& other) noexcept;
-  TemporaryFolder& operator=(TemporaryFolder&&) = delete;
-  ~TemporaryFolder();
-  const std::filesystem::path& path() const { return path_; }
-
- private:
-  explicit TemporaryFolder(std::filesystem::path path, bool keep)
-      : path_(std::move(path)), keep_(keep) {}
-  std::filesystem::path path_;
-  bool keep_;
-};
+namespace prehend::stage {
 
 /// The processes of a lab on this machine. All are stopped when it goes.
 class Lab {
  public:
   /// config, sets: what every service is started with; logs: folder for what they say.
   Lab(std::string config, std::vector<std::string> sets, std::filesystem::path logs);
+  Lab(Lab&&) = default;
   ~Lab();
 
   /// Starts prehend-NAME with the lab's configuration and further overrides.
@@ -57,4 +42,4 @@ class Lab {
   std::vector<Member> members_;
 };
 
-}  // namespace prehend::service
+}  // namespace prehend::stage

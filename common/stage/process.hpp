@@ -11,7 +11,7 @@
 #include "common/base/error.hpp"
 #include "common/base/time.hpp"
 
-namespace prehend::service {
+namespace prehend::stage {
 
 /// A child process in a process group of its own, so that Ctrl-C reaches only the parent, which
 /// then stops its children. None is left behind: the destructor kills it, and so does the kernel
@@ -58,4 +58,4 @@ class Process {
 /// The last lines of a text file, for saying why a process ended; empty when there is none.
 std::string last_lines(const std::filesystem::path& file, int lines);
 
-}  // namespace prehend::service
+}  // namespace prehend::stage

@@ -13,7 +13,7 @@
 #include "common/base/time.hpp"
 #include "common/dds/participant.hpp"
 
-namespace prehend::service {
+namespace prehend::stage {
 
 /// Leads services through time in lockstep: publishes lab/clock, waits for lab/progress. Whoever
 /// feeds the services (a replayer, a test) publishes with a Participant in lockstep and tells the
@@ -54,4 +54,4 @@ class Conductor {
   std::map<std::string, std::map<std::string, std::uint64_t>> by_service_;
 };
 
-}  // namespace prehend::service
+}  // namespace prehend::stage

@@ -1,31 +1,13 @@
-#include "common/service/lab.hpp"
+#include "common/stage/lab.hpp"
 
 #include <fmt/format.h>
 
 #include <csignal>
-#include <cstdlib>
 #include <span>
 
 #include "common/base/paths.hpp"
 
-namespace prehend::service {
-
-Expected<TemporaryFolder> TemporaryFolder::create(bool keep) {
-  std::error_code code;
-  const std::filesystem::path base = std::filesystem::temp_directory_path(code);
-  if (code) return fail(code.message(), "temporary folder", "set TMPDIR");
-  std::string name = (base / "prehend-XXXXXX").string();
-  if (!::mkdtemp(name.data())) return fail("cannot make a folder", base.string(), "set TMPDIR");
-  return TemporaryFolder(name, keep);
-}
-
-TemporaryFolder::TemporaryFolder(TemporaryFolder&& other) noexcept
-    : path_(std::exchange(other.path_, {})), keep_(other.keep_) {}
-
-TemporaryFolder::~TemporaryFolder() {
-  std::error_code ignored;
-  if (!keep_ && !path_.empty()) std::filesystem::remove_all(path_, ignored);
-}
+namespace prehend::stage {
 
 Lab::Lab(std::string config, std::vector<std::string> sets, std::filesystem::path logs)
     : config_(std::move(config)), sets_(std::move(sets)), logs_(std::move(logs)) {}
@@ -82,4 +64,4 @@ void Lab::stop() {
   members_.clear();
 }
 
-}  // namespace prehend::service
+}  // namespace prehend::stage

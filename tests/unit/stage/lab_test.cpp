@@ -1,12 +1,14 @@
 // A lab of processes is ended so that who listens hears the last words of the others.
-#include "common/service/lab.hpp"
+#include "common/stage/lab.hpp"
 
 #include <gtest/gtest.h>
 
 #include <filesystem>
 #include <thread>
 
-namespace prehend::service {
+#include "common/stage/temporary_folder.hpp"
+
+namespace prehend::stage {
 namespace {
 
 void await(const std::filesystem::path& file) {
@@ -35,4 +37,4 @@ TEST(Lab, TheFirstThatWasStartedEndsLast) {
 }
 
 }  // namespace
-}  // namespace prehend::service
+}  // namespace prehend::stage

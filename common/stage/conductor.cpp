@@ -1,8 +1,8 @@
-#include "common/service/conductor.hpp"
+#include "common/stage/conductor.hpp"
 
 #include <algorithm>
 
-namespace prehend::service {
+namespace prehend::stage {
 
 Expected<Conductor> Conductor::create(dds::Participant& participant,
                                       const std::vector<std::string>& services) {
@@ -75,4 +75,4 @@ Expected<void> Conductor::settle(Time now, std::chrono::milliseconds patience) {
   }
 }
 
-}  // namespace prehend::service
+}  // namespace prehend::stage

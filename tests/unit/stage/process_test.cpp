@@ -1,6 +1,6 @@
 // Children of this program: how they end, and that none is ever left behind. Limits of seconds only
 // bound the waiting; a passing test waits for events.
-#include "common/service/process.hpp"
+#include "common/stage/process.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -11,7 +11,7 @@
 #include <fstream>
 #include <thread>
 
-namespace prehend::service {
+namespace prehend::stage {
 namespace {
 
 Process::Options shell(const std::string& script, const std::filesystem::path& log = {}) {
@@ -163,4 +163,4 @@ TEST_F(ProcessTest, DiesWithItsParent) {
 }
 
 }  // namespace
-}  // namespace prehend::service
+}  // namespace prehend::stage

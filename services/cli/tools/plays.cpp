@@ -1,0 +1,61 @@
+#include "services/cli/tools/plays.hpp"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <iostream>
+
+#include "services/cli/tools/demo/demo_command.hpp"
+#include "services/cli/tools/dispatch.hpp"
+
+namespace prehend::cli {
+namespace {
+
+/// What decides who plays; the play itself reads all arguments.
+struct Choice {
+  std::string task, record, robot;
+  bool watch = false, targets = false;
+};
+
+Choice chosen_by(std::vector<std::string> arguments) {
+  Choice choice;
+  CLI::App app;
+  app.allow_extras();
+  app.set_help_flag();
+  app.add_option("--task", choice.task);
+  app.add_option("--record", choice.record);
+  app.add_option("--robot", choice.robot);
+  app.add_flag("--watch", choice.watch);
+  app.add_flag("--targets", choice.targets);
+  std::reverse(arguments.begin(), arguments.end());  // as CLI11 takes them
+  try {
+    app.parse(arguments);
+  } catch (const CLI::ParseError&) {
+    // The play says what is wrong.
+  }
+  return choice;
+}
+
+std::string targets_of(const Choice& choice) {
+  if (!choice.task.empty()) return "task_lab";
+  std::string targets = "lab";
+  if (!choice.record.empty()) targets += " prehend-record";
+  if (!choice.robot.empty()) targets += " prehend-robot prehend-robot-tool";
+  if (choice.watch) targets += " prehend-console prehend-teacher";
+  return targets;
+}
+
+}  // namespace
+
+int play(const std::vector<std::string>& arguments) {
+  const Choice choice = chosen_by(arguments);
+  if (choice.targets) {
+    std::cout << targets_of(choice) << "\n";
+    return exit_done;
+  }
+  if (choice.task.empty()) return demo_command(arguments);
+  std::vector<std::string> command{"demo"};
+  command.insert(command.end(), arguments.begin(), arguments.end());
+  return become({"tasks", "prehend-tasks", ""}, command);
+}
+
+}  // namespace prehend::cli
