@@ -170,16 +170,16 @@ inline constexpr Topic<v1::OperatorCommandPubSubType> operator_command{
     {.name = "operator/command",
      .qos = {.writer_depth = 0, .reader_depth = 0},
      .writers = Role::operator_ | Role::console,
-     .readers = Role::mapping | Role::simulation | Role::demonstration | Role::robot |
-                Role::recorder | Role::replayer,
+     .readers = Role::mapping | Role::simulation | Role::demonstration | Role::performer |
+                Role::robot | Role::recorder | Role::replayer,
      .content = Content::order,
      .rate = "on demand"}};
 
 inline constexpr Topic<v1::OperatorReplyPubSubType> operator_reply{
     {.name = "operator/reply",
      .qos = {.writer_depth = 0, .reader_depth = 0},
-     .writers = Role::mapping | Role::simulation | Role::demonstration | Role::robot |
-                Role::recorder | Role::replayer,
+     .writers = Role::mapping | Role::simulation | Role::demonstration | Role::performer |
+                Role::robot | Role::recorder | Role::replayer,
      .readers = Role::operator_,
      .content = Content::order,
      .rate = "a command"}};

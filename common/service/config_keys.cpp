@@ -103,6 +103,8 @@ const std::vector<ConfigKey>& config_keys() {
        "where objects are: seen (object/detection) or simulated (object/state)"},
       {"demonstration.accept", 0.3, "least probability of a grasp that is named"},
 
+      {"performer.tries", std::int64_t{24}, "grasps of each step that are tried in thought"},
+
       {"robot.device", Text("barrett"), "the robot at the end of the wire, see services/robot"},
       {"robot.port", Text(""), "its serial port, or its controller in ROS 2"},
       {"robot.network", Text("laptop"), "how nodes of ROS 2 are reached: laptop or lan"},

@@ -12,6 +12,10 @@
 #include <fstream>
 #include <thread>
 
+#include "common/base/file_text.hpp"
+#include "common/base/paths.hpp"
+#include "common/stage/temporary_folder.hpp"
+
 namespace prehend::stage {
 namespace {
 
@@ -162,6 +166,23 @@ Process::Exit Process::stop(Duration grace) {
   if (const auto ended = wait(grace)) return *ended;
   kill_now();
   return exit_.value_or(Exit{});
+}
+
+Expected<std::string> printed_by(const std::string& program,
+                                 const std::vector<std::string>& arguments, Duration patience) {
+  const auto folder = TemporaryFolder::create(false);
+  if (!folder) return tl::unexpected(folder.error());
+  Process::Options options;
+  options.command = {(program_directory() / program).string()};
+  options.command.insert(options.command.end(), arguments.begin(), arguments.end());
+  options.log = folder->path() / "log";
+  options.output = folder->path() / "output";
+  auto process = Process::start(options);
+  if (!process) return tl::unexpected(process.error());
+  const auto exit = process->wait(patience);
+  if (!exit) return fail("does not answer", program);
+  if (exit->code != 0) return fail(last_lines(options.log, 5), program);
+  return read_file(options.output);
 }
 
 std::string last_lines(const std::filesystem::path& file, int lines) {

@@ -55,6 +55,11 @@ class Process {
   std::optional<Exit> exit_;
 };
 
+/// What a program from the folder of this one prints, which must end within `patience`, with
+/// success.
+Expected<std::string> printed_by(const std::string& program,
+                                 const std::vector<std::string>& arguments, Duration patience);
+
 /// The last lines of a text file, for saying why a process ended; empty when there is none.
 std::string last_lines(const std::filesystem::path& file, int lines);
 

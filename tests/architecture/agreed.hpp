@@ -103,6 +103,12 @@ inline constexpr std::array common_edges{
     Edge{"common/stage", "common/tool"},
     Edge{"common/stage", "idl"},
     Edge{"common/statistics", "common/base"},
+    Edge{"common/tasks", "common/base"},
+    Edge{"common/tasks", "common/model"},
+    Edge{"common/tasks/files", "common/base"},
+    Edge{"common/tasks/files", "common/model"},
+    Edge{"common/tasks/files", "common/proto"},
+    Edge{"common/tasks/files", "common/tasks"},
     Edge{"common/tool", "common/base"},
 };
 

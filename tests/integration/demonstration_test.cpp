@@ -8,7 +8,7 @@
 #include "common/base/paths.hpp"
 #include "common/model/catalogue.hpp"
 #include "common/model/placement.hpp"
-#include "services/demonstration/files/task_file.hpp"
+#include "common/tasks/files/task_file.hpp"
 #include "tests/integration/rig.hpp"
 #include "tests/integration/shown_hand.hpp"
 
@@ -83,7 +83,7 @@ TEST_F(DemonstrationLab, AShownTaskIsUnderstoodToldAndKept) {
             (std::vector{v1::PHASE_REST, v1::PHASE_APPROACH, v1::PHASE_CLOSE, v1::PHASE_HOLD,
                          v1::PHASE_RELEASE, v1::PHASE_RETRACT, v1::PHASE_REST}));
   EXPECT_TRUE(hear<v1::DemonstratedGrasp>(grasps, 20, [](auto&) { return true; }));
-  const auto kept = demonstration::load_record(std::filesystem::path(tasks()) / "TEA.task");
+  const auto kept = tasks::load_record(std::filesystem::path(tasks()) / "TEA.task");
   ASSERT_TRUE(kept) << kept.error().message();
   EXPECT_EQ(kept->shown.size(), 1u);
 }
@@ -172,8 +172,8 @@ TEST_F(DemonstrationLab, ASecondHandIsNotFollowedAndTheLabSaysSo) {
 TEST_F(DemonstrationLab, ATaskThatCannotBeDoneMovesNothing) {
   auto commands = reader(dds::robot_command);
   std::filesystem::create_directories(tasks());
-  demonstration::TaskModel task{"TEA", 1, {{.object = "Teapot"}}};
-  ASSERT_TRUE(demonstration::save_task(tasks() + "/TEA.task", task));
+  tasks::TaskModel task{"TEA", 1, {{.object = "Teapot"}}};
+  ASSERT_TRUE(tasks::save_task(tasks() + "/TEA.task", task));
   auto simulation = start("simulation", {"lab.scene=" + scene(1)});
   wait_for("simulation");
   const Answer strange = tasks_run("TEA");
@@ -202,8 +202,8 @@ TEST_F(DemonstrationLab, ShownOnceDoneAgainElsewhere) {
 }
 
 /// Three objects, each to a place of its own on the table.
-demonstration::TaskModel tidying() {
-  demonstration::TaskModel task{"TIDY", 1, {}};
+tasks::TaskModel tidying() {
+  tasks::TaskModel task{"TIDY", 1, {}};
   const auto put = [&](const char* object, double x, double y, double z) {
     task.steps.push_back(
         {.object = object,
@@ -224,11 +224,11 @@ TEST_F(DemonstrationLab, AnArmMovesThreeObjectsOfATaskFile) {
     GTEST_SKIP() << "PREHEND_LONG=1 moves three objects by an arm (a minute and a half)";
   const auto catalogue =
       model::Catalogue::load(share_directory() / "models/objects/catalogue.toml").value();
-  demonstration::TaskModel task = tidying();
-  for (demonstration::Step& step : task.steps)
+  tasks::TaskModel task = tidying();
+  for (tasks::Step& step : task.steps)
     step.X_RO.translation().z() = model::half_extents(catalogue.find(step.object)->shape).z();
   const std::string file = (folder_ / "TIDY.task").string();
-  ASSERT_TRUE(demonstration::save_task(file, task));
+  ASSERT_TRUE(tasks::save_task(file, task));
   const Answer answer = run("prehend",
                             {"demo", "--arm", "puma560", "--task", file, "--json", "--timeout",
                              "280", "--domain", std::to_string(domain_)},

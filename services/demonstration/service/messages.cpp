@@ -28,7 +28,7 @@ v1::HandPhase to_message(Phase phase) {
   return v1::PHASE_REST;
 }
 
-v1::TaskStep to_message(const Step& step) {
+v1::TaskStep to_message(const tasks::Step& step) {
   v1::TaskStep made;
   made.object(step.object);
   made.grasp(step.grasp);
@@ -89,11 +89,11 @@ v1::DemonstratedSegment to_message(const TimedSegment& segment) {
   return made;
 }
 
-v1::TaskModel to_message(const TaskModel& task) {
+v1::TaskModel to_message(const tasks::TaskModel& task) {
   v1::TaskModel made;
   made.task(task.name);
   made.demonstrations(static_cast<std::uint32_t>(task.demonstrations));
-  for (const Step& step : task.steps)
+  for (const tasks::Step& step : task.steps)
     if (made.steps().size() < max_steps) made.steps().push_back(to_message(step));
   return made;
 }

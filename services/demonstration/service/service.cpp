@@ -14,11 +14,11 @@
 #include "common/model/catalogue.hpp"
 #include "common/model/task_kinds.hpp"
 #include "common/service/order_book.hpp"
+#include "common/tasks/files/task_file.hpp"
 #include "services/demonstration/core/observation/grasp_judge.hpp"
 #include "services/demonstration/core/observation/task_prior.hpp"
 #include "services/demonstration/core/observation/watcher.hpp"
 #include "services/demonstration/files/recogniser_file.hpp"
-#include "services/demonstration/files/task_file.hpp"
 #include "services/demonstration/service/messages.hpp"
 
 namespace prehend::demonstration {
@@ -35,15 +35,15 @@ struct Setting {
   model::Catalogue catalogue;
   std::vector<TaskRecogniser> recognisers;  // the first one is used
   std::filesystem::path folder;             // of tasks; empty: none is kept
-  std::map<std::string, TaskRecord> tasks;
+  std::map<std::string, tasks::TaskRecord> tasks;
   std::string glove;
   double accept = 0;
   bool simulated = false;  // objects are those of object/state
 };
 
-std::string in_words(const TaskModel& task) {
+std::string in_words(const tasks::TaskModel& task) {
   std::vector<std::string> words;
-  for (const Step& step : task.steps) {
+  for (const tasks::Step& step : task.steps) {
     const Eigen::Vector3d p = step.X_RO.translation();
     words.push_back(fmt::format("{} ({}) to {:.0f}, {:.0f} cm of {}", step.object,
                                 step.grasp.empty() ? "any grasp" : step.grasp, 100 * p.x(),
@@ -52,15 +52,15 @@ std::string in_words(const TaskModel& task) {
   return fmt::format("{}: {}", task.name, fmt::join(words, "; then "));
 }
 
-Expected<std::map<std::string, TaskRecord>> tasks_in(const std::filesystem::path& folder) {
-  std::map<std::string, TaskRecord> made;
+Expected<std::map<std::string, tasks::TaskRecord>> tasks_in(const std::filesystem::path& folder) {
+  std::map<std::string, tasks::TaskRecord> made;
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   if (error) return fail(error.message(), folder.string(), "set demonstration.tasks");
   for (std::filesystem::directory_iterator at(folder, error), end; !error && at != end;
        at.increment(error)) {
     if (at->path().extension() != ".task") continue;
-    auto record = load_record(at->path());
+    auto record = tasks::load_record(at->path());
     if (record)
       made[record->task.name] = std::move(*record);
     else
@@ -147,7 +147,7 @@ class Service::Topics {
     const auto known = setting_.tasks.find(*watcher_.task());
     const auto keep_free = setting_.task_kinds.keep_free(*watcher_.task());
     if (known == setting_.tasks.end() && keep_free.empty()) return {};
-    static const std::vector<ShownTask> never;
+    static const std::vector<tasks::ShownTask> never;
     return task_prior(judge_.kinds(), setting_.taxonomy, keep_free,
                       known == setting_.tasks.end() ? never : known->second.shown, object);
   }
@@ -194,7 +194,7 @@ class Service::Topics {
   }
 
   Expected<std::string> begin(const std::string& task) {
-    if (auto path = task_path(task, "."); !path || task.ends_with(".task"))
+    if (auto path = tasks::task_path(task, "."); !path || task.ends_with(".task"))
       return wrong_use("is no name of a task", task, "letters, digits, spaces, dots, - and _");
     if (auto begun = watcher_.begin(task, shell_.now()); !begun)
       return tl::unexpected(begun.error());
@@ -214,7 +214,7 @@ class Service::Topics {
   }
 
   Expected<std::string> learn(const Demonstration& seen, Time now) {
-    TaskRecord record;
+    tasks::TaskRecord record;
     if (const auto known = setting_.tasks.find(seen.task); known != setting_.tasks.end())
       record = known->second;
     record.shown.push_back(seen.steps);
@@ -222,9 +222,10 @@ class Service::Topics {
     if (!task) return tl::unexpected(task.error());
     record.task = std::move(*task);
     if (!setting_.folder.empty()) {
-      const auto saved = task_path(seen.task, setting_.folder).and_then([&](const auto& path) {
-        return save_record(path, record);
-      });
+      const auto saved =
+          tasks::task_path(seen.task, setting_.folder).and_then([&](const auto& path) {
+            return tasks::save_record(path, record);
+          });
       if (!saved) return tl::unexpected(saved.error());
     }
     publish(record.task, now);
@@ -242,7 +243,7 @@ class Service::Topics {
     segments_.publish(message);
   }
 
-  void publish(const TaskModel& task, Time now) {
+  void publish(const tasks::TaskModel& task, Time now) {
     v1::TaskModel message = to_message(task);
     message.sequence_number(model_count_++);
     message.stamp_ns(to_ns(now));
@@ -315,7 +316,7 @@ Expected<std::unique_ptr<Service>> Service::create(service::Shell& shell) {
   }
   // What a recording is checked by depends on nothing else, and changes nothing.
   if (!shell.lockstep()) {
-    setting.folder = task_folder(config.path("demonstration.tasks").string());
+    setting.folder = tasks::task_folder(config.path("demonstration.tasks").string());
     if (setting.folder.empty())
       return fail("there is no folder for tasks", "demonstration.tasks", "name one");
     auto tasks = tasks_in(setting.folder);

@@ -32,9 +32,11 @@ const std::map<std::string, Roles> roles_of_path{
     {"services/simulation", Role::simulation},
     {"services/demonstration", Role::demonstration},
     {"services/demonstration/tools/demonstrate", Role::operator_},
-    {"services/demonstration/tools/performing", Role::performer},
     {"services/demonstration/tools/person/hand_output.cpp", Role::glove},
     {"services/demonstration/tools/person/object_output.cpp", Role::recognition},
+    {"services/performer/service", Role::performer},
+    {"services/performer/tools", Role::viewer},
+    {"services/performer/tools/tasks/order_command.cpp", Role::operator_},
     {"services/recorder", Role::recorder | Role::replayer},
     {"services/recorder/tools/record", Role::recorder},
     {"services/recorder/tools/replay", Role::replayer},
@@ -47,7 +49,7 @@ const std::map<std::string, Roles> roles_of_path{
     {"services/cli/tools/orders", Role::operator_},
     {"common/robot", Role::simulation | Role::robot},  // the gate before a hand
     {"common/service", services},                      // the shell, which every service has
-    {"common/service/conductor.cpp", Role::replayer},
+    {"common/stage/conductor.cpp", Role::replayer},
     {"common/service/consent_key.cpp", Role::operator_},
 };
 
@@ -71,7 +73,8 @@ struct Call {
   /// By the Shell, in the role of its process. Other readers in the services are those of tools
   /// that only look.
   bool in_role() const {
-    return verb == "publish" || verb == "subscribe" || file.starts_with("common/service");
+    return verb == "publish" || verb == "subscribe" || file.starts_with("common/service") ||
+           file.starts_with("common/stage");
   }
 };
 
@@ -98,7 +101,7 @@ std::vector<Call> calls_in(const fs::path& path) {
 const std::vector<Call>& all_calls() {
   static const std::vector<Call> calls = [] {
     std::vector<Call> found;
-    for (const char* top : {"/services", "/common/robot", "/common/service"})
+    for (const char* top : {"/services", "/common/robot", "/common/service", "/common/stage"})
       for (const auto& entry : fs::recursive_directory_iterator(test::in_sources("") + top))
         if (entry.path().extension() == ".cpp")
           std::ranges::copy(calls_in(entry.path()), std::back_inserter(found));

@@ -98,7 +98,7 @@ TEST(Watcher, UnderstandsWhatWasTakenAndWhereItWasPut) {
     const auto made = shown(one, showing);
     ASSERT_TRUE(made) << made.error().message();
     ASSERT_EQ(made->steps.size(), 1u);
-    const ShownStep& step = made->steps.front();
+    const tasks::ShownStep& step = made->steps.front();
     EXPECT_EQ(step.object, "Talc");
     EXPECT_EQ(step.grasp, "medium wrap");
     // Noise of 2 mm, averaged over five pictures and more.
@@ -261,13 +261,13 @@ TEST(TaskPrior, IsHowOftenAKindWasShownAndNothingForWhatBlocksWhatIsNeeded) {
   const auto taxonomy = model::GraspTaxonomy::of_the_house().value();
   const std::vector<std::string> kinds{"large diameter", "power sphere", "tripod", "own kind"};
   const auto shown = [](const std::string& object, const std::string& grasp) {
-    ShownStep step;
+    tasks::ShownStep step;
     step.object = object;
     step.grasp = grasp;
-    return ShownTask{step};
+    return tasks::ShownTask{step};
   };
-  const std::vector<ShownTask> before{shown("Cup", "tripod"), shown("Cup", "tripod"),
-                                      shown("Talc", "large diameter"), shown("Cup", "")};
+  const std::vector<tasks::ShownTask> before{shown("Cup", "tripod"), shown("Cup", "tripod"),
+                                             shown("Talc", "large diameter"), shown("Cup", "")};
   const Eigen::VectorXd p = task_prior(kinds, taxonomy, {}, before, "Cup");
   EXPECT_NEAR(p.sum(), 1, 1e-12);
   EXPECT_NEAR(p[2], 3.0 / 6, 1e-12) << "twice, and once for all that may still come";

@@ -5,8 +5,8 @@
 #include <fstream>
 
 #include "common/base/random.hpp"
+#include "common/tasks/files/task_file.hpp"
 #include "services/demonstration/core/tasks/learn_task.hpp"
-#include "services/demonstration/files/task_file.hpp"
 
 namespace prehend::demonstration {
 namespace {
@@ -16,7 +16,7 @@ Pose at(double x, double y, double z = 0.05) {
 }
 
 /// A cup is put 12 cm beside a plate that stands elsewhere each time; then a spoon into the cup.
-ShownTask lay_the_table(Random& random) {
+tasks::ShownTask lay_the_table(Random& random) {
   const Pose plate = at(random.uniform(0.3, 0.6), random.uniform(-0.3, 0.3));
   const Pose cup = at(random.uniform(0, 0.2), random.uniform(-0.3, 0.3));
   const Pose spoon = at(random.uniform(0, 0.2), random.uniform(-0.3, 0.3));
@@ -25,7 +25,7 @@ ShownTask lay_the_table(Random& random) {
     return make_pose(X.translation() + random.normal3(0.002), Eigen::Matrix3d(X.linear()));
   };
   const Pose cup_put = plate * make_pose({0, 0.12, 0});
-  ShownTask made(2);
+  tasks::ShownTask made(2);
   made[0] = {"cup",
              "medium wrap",
              cup * make_pose({0, 0, 0.02}),
@@ -50,12 +50,12 @@ ShownTask lay_the_table(Random& random) {
 TEST(LearnTask, TakesTheReferenceToWhichPlacesAgreeBest) {
   Random random(1);
   for (int round = 0; round < 20; ++round) {
-    std::vector<ShownTask> shown;
+    std::vector<tasks::ShownTask> shown;
     for (int i = 0; i < 4; ++i) shown.push_back(lay_the_table(random));
     const auto task = learn_task("lay the table", shown);
     ASSERT_TRUE(task) << task.error().message();
     ASSERT_EQ(task->steps.size(), 2U);
-    const Step& cup = task->steps[0];
+    const tasks::Step& cup = task->steps[0];
     EXPECT_EQ(cup.reference, "plate");
     EXPECT_LT((cup.X_RO.translation() - Eigen::Vector3d(0, 0.12, 0)).norm(), 0.006);
     EXPECT_LT(cup.spread, 0.008);
@@ -64,7 +64,7 @@ TEST(LearnTask, TakesTheReferenceToWhichPlacesAgreeBest) {
     EXPECT_EQ(cup.grasp, "medium wrap");
     EXPECT_LT((cup.X_OG.translation() - Eigen::Vector3d(0, 0, 0.02)).norm(), 1e-9);
     EXPECT_TRUE(cup.after.empty());
-    const Step& spoon = task->steps[1];
+    const tasks::Step& spoon = task->steps[1];
     EXPECT_EQ(spoon.reference, "cup");
     EXPECT_FALSE(spoon.upright);
     EXPECT_EQ(spoon.after, std::vector<std::size_t>{0}) << "the cup must be there first";
@@ -72,17 +72,17 @@ TEST(LearnTask, TakesTheReferenceToWhichPlacesAgreeBest) {
 }
 
 TEST(LearnTask, OfOneDemonstrationTheNearestObjectElseTheTable) {
-  ShownTask shown(1);
+  tasks::ShownTask shown(1);
   shown[0] = {"cup",      "",  at(0, 0), at(0, 0),
               at(0.4, 0), 0.2, 0,        {{"plate", at(0.4, 0.12)}, {"tray", at(0.4, 0.3)}}};
   EXPECT_EQ(learn_task("t", {shown})->steps[0].reference, "plate");
   shown[0].X_WR["plate"] = at(0.4, 0.16);
-  EXPECT_EQ(learn_task("t", {shown})->steps[0].reference, the_table);
+  EXPECT_EQ(learn_task("t", {shown})->steps[0].reference, tasks::the_table);
 }
 
 TEST(LearnTask, WhatIsPutAtTheSamePlaceOfTheTableIsRelativeToIt) {
   Random random(2);
-  std::vector<ShownTask> shown;
+  std::vector<tasks::ShownTask> shown;
   for (int i = 0; i < 3; ++i)
     shown.push_back({{"cup",
                       "",
@@ -92,7 +92,7 @@ TEST(LearnTask, WhatIsPutAtTheSamePlaceOfTheTableIsRelativeToIt) {
                       0.2,
                       0,
                       {{"plate", at(random.uniform(), random.uniform())}}}});
-  EXPECT_EQ(learn_task("t", shown)->steps[0].reference, the_table);
+  EXPECT_EQ(learn_task("t", shown)->steps[0].reference, tasks::the_table);
 }
 
 TEST(LearnTask, SaysWhenDemonstrationsDiffer) {
@@ -104,14 +104,14 @@ TEST(LearnTask, SaysWhenDemonstrationsDiffer) {
   other.pop_back();
   EXPECT_FALSE(learn_task("t", {one, other}));
   EXPECT_FALSE(learn_task("t", {}));
-  EXPECT_FALSE(learn_task("t", {ShownTask{}}));
+  EXPECT_FALSE(learn_task("t", {tasks::ShownTask{}}));
 }
 
-TEST(TaskModel, OrderKeepsWhatMustComeFirst) {
-  TaskModel task{"t", 1, std::vector<Step>(3)};
+TEST(tasks::TaskModel, OrderKeepsWhatMustComeFirst) {
+  tasks::TaskModel task{"t", 1, std::vector<tasks::Step>(3)};
   for (std::size_t i = 0; i < 3; ++i) task.steps[i].object = "o" + std::to_string(i);
   task.steps[0].after = {2};
-  EXPECT_EQ(*order_of(task), (std::vector<std::size_t>{1, 2, 0}));
+  EXPECT_EQ(*tasks::order_of(task), (std::vector<std::size_t>{1, 2, 0}));
   ASSERT_TRUE(check(task));
   task.steps[2].after = {0};
   ASSERT_FALSE(check(task));
@@ -126,8 +126,8 @@ TEST(TaskFile, ComesBackBitForBitAndDamageIsTold) {
   ASSERT_TRUE(task);
   const auto file =
       std::filesystem::path(testing::TempDir()) / ("t" + std::to_string(getpid()) + ".task");
-  ASSERT_TRUE(save_task(file, *task));
-  const auto back = load_task(file);
+  ASSERT_TRUE(tasks::save_task(file, *task));
+  const auto back = tasks::load_task(file);
   ASSERT_TRUE(back) << back.error().message();
   EXPECT_EQ(to_toml(*back), to_toml(*task));
   for (std::size_t i = 0; i < task->steps.size(); ++i) {
@@ -137,25 +137,26 @@ TEST(TaskFile, ComesBackBitForBitAndDamageIsTold) {
   }
   EXPECT_NE(to_toml(*task).find("name = \"lay \\\"the\\\" table\""), std::string::npos);
   std::ofstream(file, std::ios::app) << "x";
-  const auto damaged = load_task(file);
+  const auto damaged = tasks::load_task(file);
   std::filesystem::remove(file);
   ASSERT_FALSE(damaged);
-  EXPECT_FALSE(load_task(file));
-  TaskModel nothing;
-  EXPECT_FALSE(save_task(file, nothing)) << "what is no task is not written";
+  EXPECT_FALSE(tasks::load_task(file));
+  tasks::TaskModel nothing;
+  EXPECT_FALSE(tasks::save_task(file, nothing)) << "what is no task is not written";
 }
 
 TEST(TaskFile, KeepsWhatItWasLearntFromAndHowItWent) {
   Random random(4);
-  const std::vector<ShownTask> shown{lay_the_table(random), lay_the_table(random)};
-  const TaskRecord record{*learn_task("lay", shown),
-                          shown,
-                          {{from_ns(5), "barrett", false, "step 1, Cup: lift: was not lifted"},
-                           {from_ns(6), "barrett", true, ""}}};
+  const std::vector<tasks::ShownTask> shown{lay_the_table(random), lay_the_table(random)};
+  const tasks::TaskRecord record{
+      *learn_task("lay", shown),
+      shown,
+      {{from_ns(5), "barrett", false, "step 1, Cup: lift: was not lifted"},
+       {from_ns(6), "barrett", true, ""}}};
   const auto file =
       std::filesystem::path(testing::TempDir()) / ("r" + std::to_string(getpid()) + ".task");
-  ASSERT_TRUE(save_record(file, record));
-  const auto back = load_record(file);
+  ASSERT_TRUE(tasks::save_record(file, record));
+  const auto back = tasks::load_record(file);
   std::filesystem::remove(file);
   ASSERT_TRUE(back) << back.error().message();
   // Learnt again from what was kept, it is the same task.
@@ -167,24 +168,24 @@ TEST(TaskFile, KeepsWhatItWasLearntFromAndHowItWent) {
 }
 
 TEST(TaskFile, NamesAreNamesOfFiles) {
-  EXPECT_EQ(task_path("lay the table", "tasks")->string(), "tasks/lay the table.task");
-  EXPECT_EQ(task_path("some/where.task", "tasks")->string(), "some/where.task");
+  EXPECT_EQ(tasks::task_path("lay the table", "tasks")->string(), "tasks/lay the table.task");
+  EXPECT_EQ(tasks::task_path("some/where.task", "tasks")->string(), "some/where.task");
   for (const char* name : {"", "../tea", "a/b", ".tea", "-tea", "tea\n"})
-    EXPECT_FALSE(task_path(name, "tasks")) << name;
-  EXPECT_FALSE(task_path("tea", "")) << "nowhere to look";
+    EXPECT_FALSE(tasks::task_path(name, "tasks")) << name;
+  EXPECT_FALSE(tasks::task_path("tea", "")) << "nowhere to look";
 }
 
 TEST(TaskToml, ComesBackAndSaysWhatIsWrong) {
   Random random(4);
   const auto task = learn_task("lay", {lay_the_table(random), lay_the_table(random)});
   const std::string text = to_toml(*task);
-  const auto back = from_toml(text, "lay.toml");
+  const auto back = tasks::from_toml(text, "lay.toml");
   ASSERT_TRUE(back) << back.error().message();
   EXPECT_EQ(to_toml(*back), text);
   const auto refused = [&](const std::string& what, const std::string& by) {
     std::string other = text;
     other.replace(other.find(what), what.size(), by);
-    const auto made = from_toml(other, "lay.toml");
+    const auto made = tasks::from_toml(other, "lay.toml");
     return made ? std::string("taken") : made.error().message();
   };
   EXPECT_NE(refused("upright", "uprigth").find("uprigth"), std::string::npos);
@@ -198,7 +199,7 @@ TEST(TaskToml, ComesBackAndSaysWhatIsWrong) {
     const std::size_t from = text.find("\n" + key + " = ") + 1;
     std::string other = text;
     other.replace(from, text.find('\n', from) - from, key + " = " + value);
-    const auto made = from_toml(other, "lay.toml");
+    const auto made = tasks::from_toml(other, "lay.toml");
     return made ? std::string("taken") : made.error().message();
   };
   for (const auto& [key, value] :

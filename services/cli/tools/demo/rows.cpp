@@ -2,10 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "common/base/file_text.hpp"
-#include "common/base/paths.hpp"
 #include "common/stage/process.hpp"
-#include "common/stage/temporary_folder.hpp"
 
 namespace prehend::cli {
 namespace {
@@ -13,24 +10,6 @@ namespace {
 using Document = nlohmann::json;
 
 constexpr Duration patience = std::chrono::seconds(10);
-
-/// What a program of ours prints, which must end at once.
-Expected<std::string> printed_by(const std::string& program,
-                                 const std::vector<std::string>& arguments) {
-  auto folder = stage::TemporaryFolder::create(false);
-  if (!folder) return tl::unexpected(folder.error());
-  stage::Process::Options options;
-  options.command = {(program_directory() / program).string()};
-  options.command.insert(options.command.end(), arguments.begin(), arguments.end());
-  options.log = folder->path() / "log";
-  options.output = folder->path() / "output";
-  auto process = stage::Process::start(options);
-  if (!process) return tl::unexpected(process.error());
-  const auto exit = process->wait(patience);
-  if (!exit) return fail("does not answer", program);
-  if (exit->code != 0) return fail(stage::last_lines(options.log, 5), program);
-  return read_file(options.output);
-}
 
 /// Each entry of the document's one list as a row. There is at least one.
 template <class Row, class Read>
@@ -65,11 +44,12 @@ Expected<std::vector<CameraRow>> camera_rows(const std::string& document) {
 }
 
 Expected<std::vector<GloveRow>> ask_glove_rows() {
-  return printed_by("prehend-glove-tool", {"devices", "--json"}).and_then(glove_rows);
+  return stage::printed_by("prehend-glove-tool", {"devices", "--json"}, patience)
+      .and_then(glove_rows);
 }
 
 Expected<std::vector<CameraRow>> ask_camera_rows() {
-  return printed_by("prehend-camera", {"sources", "--json"}).and_then(camera_rows);
+  return stage::printed_by("prehend-camera", {"sources", "--json"}, patience).and_then(camera_rows);
 }
 
 }  // namespace prehend::cli

@@ -76,11 +76,12 @@ class Steps {
   }
 
   /// Nothing: the object was touched and stayed where it was.
-  Expected<std::optional<ShownStep>> step(const Held& held, double until) const {
+  Expected<std::optional<tasks::ShownStep>> step(const Held& held, double until) const {
     const std::string& name = seen_.objects[held.object];
     const Sightings& sightings = seen_.sightings[held.object];
     const std::size_t begin = sample_at(seen_, held.grasped), end = sample_at(seen_, held.release);
-    ShownStep made{.object = name, .grasp = seen_.kinds[begin], .X_WG_grasped = seen_.X_WG[begin]};
+    tasks::ShownStep made{
+        .object = name, .grasp = seen_.kinds[begin], .X_WG_grasped = seen_.X_WG[begin]};
     const auto before = last_before(sightings, held.close, options_.average);
     if (!before)
       return fail("was not seen before it was taken", name, "show it to the camera first");
@@ -101,7 +102,7 @@ class Steps {
     for (std::size_t i = begin; i <= end; ++i) {
       const Pose X_WO = seen_.X_WG[i] * X_GO;
       made.highest = std::max(made.highest, X_WO.translation().z());
-      made.max_tilt = std::max(made.max_tilt, tilt(X_WO));
+      made.max_tilt = std::max(made.max_tilt, tasks::tilt(X_WO));
     }
     for (std::size_t other = 0; other < seen_.objects.size(); ++other)
       if (other != held.object)
@@ -117,12 +118,12 @@ class Steps {
 
 }  // namespace
 
-Expected<ShownTask> shown_steps(const Seen& seen, const std::vector<Segment>& segments,
-                                const StepOptions& options) {
+Expected<tasks::ShownTask> shown_steps(const Seen& seen, const std::vector<Segment>& segments,
+                                       const StepOptions& options) {
   const Steps steps(seen, options);
   const auto held = steps.held(segments);
   if (!held) return tl::unexpected(held.error());
-  ShownTask made;
+  tasks::ShownTask made;
   for (std::size_t i = 0; i < held->size(); ++i) {
     double until = std::numeric_limits<double>::infinity();
     for (std::size_t k = i + 1; k < held->size(); ++k)

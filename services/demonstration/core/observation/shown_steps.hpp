@@ -32,7 +32,7 @@ struct StepOptions {
 /// What was taken and put down, in order. An object that cannot be seen moves with the hand that
 /// holds it. Fails, naming the object, where it is held at the end, was never seen before it was
 /// held or is not seen again, and where nothing was moved.
-Expected<ShownTask> shown_steps(const Seen& seen, const std::vector<Segment>& segments,
-                                const StepOptions& options = {});
+Expected<tasks::ShownTask> shown_steps(const Seen& seen, const std::vector<Segment>& segments,
+                                       const StepOptions& options = {});
 
 }  // namespace prehend::demonstration

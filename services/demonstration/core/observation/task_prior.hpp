@@ -16,6 +16,6 @@ namespace prehend::demonstration {
 Eigen::VectorXd task_prior(const std::vector<std::string>& kinds,
                            const model::GraspTaxonomy& taxonomy,
                            const std::vector<model::ObjectPart>& keep_free,
-                           const std::vector<ShownTask>& shown, const std::string& object);
+                           const std::vector<tasks::ShownTask>& shown, const std::string& object);
 
 }  // namespace prehend::demonstration

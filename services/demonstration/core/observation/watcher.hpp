@@ -32,7 +32,7 @@ struct TimedSegment {
 struct Demonstration {
   std::string task;
   std::vector<TimedSegment> segments;
-  ShownTask steps;
+  tasks::ShownTask steps;
 };
 
 /// Watches a hand and the objects around it, and understands what it is shown. All times are those

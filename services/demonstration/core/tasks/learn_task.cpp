@@ -13,7 +13,7 @@ namespace prehend::demonstration {
 namespace {
 
 /// The same step in all demonstrations.
-using Same = std::vector<const ShownStep*>;
+using Same = std::vector<const tasks::ShownStep*>;
 
 /// Mean place and mean rotation (the largest eigenvector of the sum of q qᵀ).
 Pose mean_pose(const std::vector<Pose>& poses) {
@@ -40,8 +40,8 @@ double spread_of(const std::vector<Pose>& poses) {
 /// Where the object was put, relative to a reference; nothing if that was not always seen.
 std::optional<std::vector<Pose>> places(const Same& same, const std::string& reference) {
   std::vector<Pose> made;
-  for (const ShownStep* step : same) {
-    if (reference == the_table) {
+  for (const tasks::ShownStep* step : same) {
+    if (reference == tasks::the_table) {
       made.push_back(step->X_WO_after);
       continue;
     }
@@ -52,8 +52,8 @@ std::optional<std::vector<Pose>> places(const Same& same, const std::string& ref
   return made;
 }
 
-std::string nearest_reference(const ShownStep& step, double near) {
-  std::string best = the_table;
+std::string nearest_reference(const tasks::ShownStep& step, double near) {
+  std::string best = tasks::the_table;
   double least = near;
   for (const auto& [name, X_WR] : step.X_WR) {
     const double distance = (X_WR.translation() - step.X_WO_after.translation()).norm();
@@ -64,7 +64,8 @@ std::string nearest_reference(const ShownStep& step, double near) {
 
 std::string best_reference(const Same& same, const LearnOptions& options) {
   if (same.size() == 1) return nearest_reference(*same.front(), options.near);
-  std::map<std::string, double> spreads{{the_table, spread_of(*places(same, the_table))}};
+  std::map<std::string, double> spreads{
+      {tasks::the_table, spread_of(*places(same, tasks::the_table))}};
   for (const auto& [name, X_WR] : same.front()->X_WR)
     if (const auto found = places(same, name)) spreads[name] = spread_of(*found);
   double least = std::numeric_limits<double>::infinity();
@@ -74,19 +75,20 @@ std::string best_reference(const Same& same, const LearnOptions& options) {
   double nearest = std::numeric_limits<double>::infinity();
   for (const auto& [name, spread] : spreads) {
     if (spread > least + options.min_spread) continue;
-    const double distance =
-        name == the_table ? options.near : mean_pose(*places(same, name)).translation().norm();
+    const double distance = name == tasks::the_table
+                                ? options.near
+                                : mean_pose(*places(same, name)).translation().norm();
     if (distance < nearest) nearest = distance, best = name;
   }
   return best;
 }
 
 /// Which step of a demonstration is the k-th with the object of step i of the first one.
-Expected<std::vector<Same>> matched(const std::vector<ShownTask>& shown) {
+Expected<std::vector<Same>> matched(const std::vector<tasks::ShownTask>& shown) {
   std::vector<Same> made;
   for (std::size_t i = 0; i < shown.front().size(); ++i) {
     const std::string& object = shown.front()[i].object;
-    const auto is_object = [&](const ShownStep& step) { return step.object == object; };
+    const auto is_object = [&](const tasks::ShownStep& step) { return step.object == object; };
     const auto before = std::count_if(
         shown.front().begin(), shown.front().begin() + static_cast<std::ptrdiff_t>(i), is_object);
     Same same;
@@ -96,7 +98,7 @@ Expected<std::vector<Same>> matched(const std::vector<ShownTask>& shown) {
                                 shown[d].size()),
                     {}, "show the same task each time");
       std::ptrdiff_t seen = 0;
-      for (const ShownStep& step : shown[d])
+      for (const tasks::ShownStep& step : shown[d])
         if (is_object(step) && seen++ == before) same.push_back(&step);
       if (same.size() != d + 1)
         return fail(
@@ -108,8 +110,8 @@ Expected<std::vector<Same>> matched(const std::vector<ShownTask>& shown) {
   return made;
 }
 
-Step learn_step(const Same& same, const LearnOptions& options) {
-  Step made{.object = same.front()->object};
+tasks::Step learn_step(const Same& same, const LearnOptions& options) {
+  tasks::Step made{.object = same.front()->object};
   made.reference = best_reference(same, options);
   const auto put = *places(same, made.reference);
   made.X_RO = mean_pose(put);
@@ -117,7 +119,7 @@ Step learn_step(const Same& same, const LearnOptions& options) {
   made.upright = true;
   std::vector<Pose> grasps;
   std::vector<std::string> kinds;
-  for (const ShownStep* step : same) {
+  for (const tasks::ShownStep* step : same) {
     grasps.push_back(step->X_WO_before.inverse() * step->X_WG_grasped);
     kinds.push_back(step->grasp);
     made.upright &= step->max_tilt <= options.upright_tilt;
@@ -133,7 +135,7 @@ Step learn_step(const Same& same, const LearnOptions& options) {
 }
 
 /// Whether step a came before step b in every demonstration.
-bool always_before(const std::vector<ShownTask>& shown, const Same& a, const Same& b) {
+bool always_before(const std::vector<tasks::ShownTask>& shown, const Same& a, const Same& b) {
   for (std::size_t d = 0; d < shown.size(); ++d)
     if (a[d] > b[d]) return false;  // both point into the same demonstration
   return true;
@@ -141,13 +143,14 @@ bool always_before(const std::vector<ShownTask>& shown, const Same& a, const Sam
 
 }  // namespace
 
-Expected<TaskModel> learn_task(const std::string& name, const std::vector<ShownTask>& shown,
-                               const LearnOptions& options) {
+Expected<tasks::TaskModel> learn_task(const std::string& name,
+                                      const std::vector<tasks::ShownTask>& shown,
+                                      const LearnOptions& options) {
   if (shown.empty() || shown.front().empty())
     return fail("nothing was shown", name, "take something and put it somewhere");
   const auto steps = matched(shown);
   if (!steps) return fail(steps.error().what, name, steps.error().hint);
-  TaskModel made{name, shown.size(), {}};
+  tasks::TaskModel made{name, shown.size(), {}};
   for (const Same& same : *steps) made.steps.push_back(learn_step(same, options));
   for (std::size_t i = 0; i < made.steps.size(); ++i)
     for (std::size_t k = 0; k < made.steps.size(); ++k) {

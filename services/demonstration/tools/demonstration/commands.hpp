@@ -8,5 +8,6 @@ namespace prehend::demonstration {
 void add_train(tool::Program& program);
 void add_evaluate(tool::Program& program);
 void add_draw(tool::Program& program);
+void add_show(tool::Program& program);
 
 }  // namespace prehend::demonstration

@@ -6,5 +6,6 @@ int main(int argc, char** argv) {
   add_train(program);
   add_evaluate(program);
   add_draw(program);
+  add_show(program);
   return program.run(argc, argv);
 }

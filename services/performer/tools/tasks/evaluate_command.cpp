@@ -1,0 +1,167 @@
+// `prehend tasks evaluate`.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <numbers>
+
+#include "common/arm/mounting.hpp"
+#include "common/base/paths.hpp"
+#include "common/model/arm_choice.hpp"
+#include "common/model/catalogue.hpp"
+#include "common/model/scene.hpp"
+#include "common/stage/process.hpp"
+#include "common/stage/temporary_folder.hpp"
+#include "common/tasks/files/task_file.hpp"
+#include "services/performer/tools/tasks/commands.hpp"
+#include "services/performer/tools/trials/trial.hpp"
+
+namespace prehend::performer {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct EvaluateArguments {
+  std::string hand = model::lab_hand(), arm;
+  int tasks = 20, max_steps = 4;
+  std::uint64_t seed = 1;
+  bool json = false;
+};
+
+/// Where the configuration's defaults have it.
+planning::Robot standing(const model::ArmModel& arm, const model::HandModel& hand) {
+  constexpr double before = 0.7, bracket = 0.7;  // m, rad
+  const Eigen::AngleAxisd turn(std::numbers::pi / 2, Eigen::Vector3d::UnitZ());
+  return {&arm, &hand, make_pose({0, -before, 0}, turn.toRotationMatrix()),
+          arm.X_EF * arm::mounted(hand, bracket)};
+}
+
+/// One task that was shown, and what came of it.
+struct Tried {
+  int steps = 0;
+  bool understood = false;
+  TaskTrial trial;
+};
+
+Json entry_of(const Tried& tried, std::uint64_t seed) {
+  const TaskTrial& trial = tried.trial;
+  return {{"seed", seed},
+          {"steps", tried.steps},
+          {"understood", tried.understood},
+          {"rehearsed", trial.rehearsed},
+          {"done", trial.done},
+          {"max_error_m", trial.max_error},
+          {"max_turn_rad", trial.max_turn},
+          {"reason", trial.reason}};
+}
+
+std::vector<Thing> things_of(const model::Scene& scene, const model::Catalogue& catalogue) {
+  std::vector<Thing> things;
+  for (const model::PlacedObject& placed : scene.objects) {
+    const model::CatalogueObject& known = *catalogue.find(placed.name);
+    things.push_back({{known.name, known.shape, known.mass, known.material, {}, {}}, placed.X_WO});
+  }
+  return things;
+}
+
+/// The demonstration draws it, shows it and learns it; then it is done again.
+Tried try_one(const EvaluateArguments& arguments, const model::HandModel& hand,
+              const model::Catalogue& catalogue, int steps, std::uint64_t seed,
+              const std::optional<planning::Robot>& robot) {
+  Tried tried{.steps = steps};
+  const auto refuse = [&](const std::string& reason) {
+    tried.trial.reason = reason;
+    return tried;
+  };
+  const auto folder = stage::TemporaryFolder::create(false);
+  if (!folder) return refuse(folder.error().message());
+  std::vector<std::string> words{"show",    folder->path().string(), "--hand", arguments.hand,
+                                 "--steps", std::to_string(steps),   "--seed", std::to_string(seed),
+                                 "--json"};
+  if (robot) words.push_back("--by-arm");
+  const auto said = stage::printed_by("prehend-demonstration-tool", words, std::chrono::minutes(1));
+  if (!said) return refuse(said.error().message());
+  const auto document = Json::parse(*said, nullptr, false);
+  tried.understood = document.is_object() && document.value("understood", false);
+  if (!tried.understood) return refuse("other steps were understood");
+  const auto task = tasks::load_task(folder->path() / "trial.task");
+  if (!task) return refuse(task.error().message());
+  const auto scene = model::load_scene(folder->path() / "again.toml", catalogue);
+  if (!scene) return refuse(scene.error().message());
+  tried.trial = try_task(hand, *task, things_of(*scene, catalogue), seed, robot);
+  return tried;
+}
+
+int evaluate(const EvaluateArguments& arguments) {
+  const auto hand = model::HandModel::load(model::hand_directory(arguments.hand));
+  if (!hand) return tool::complain(hand.error());
+  const auto catalogue =
+      model::Catalogue::load(share_directory() / "models" / "objects" / "catalogue.toml");
+  if (!catalogue) return tool::complain(catalogue.error());
+  std::optional<model::ArmModel> arm;
+  std::optional<planning::Robot> robot;
+  if (!arguments.arm.empty()) {
+    auto loaded = model::load_arm(arguments.arm);
+    if (!loaded) return tool::complain(loaded.error());
+    if (const auto fits = arm::check_fit(*loaded, *hand); !fits)
+      return tool::complain(fits.error());
+    arm = std::move(*loaded);
+    robot = standing(*arm, *hand);
+  }
+  Json document{{"hand", hand->name()},
+                {"arm", arm ? Json(arm->name) : Json(nullptr)},
+                {"tasks", Json::array()}};
+  int understood = 0, rehearsed = 0, done = 0;
+  for (int n = 0; n < arguments.tasks; ++n) {
+    const std::uint64_t seed = arguments.seed + static_cast<std::uint64_t>(n);
+    const Tried tried =
+        try_one(arguments, *hand, *catalogue, 1 + n % arguments.max_steps, seed, robot);
+    const TaskTrial& trial = tried.trial;
+    understood += tried.understood;
+    rehearsed += trial.rehearsed;
+    done += trial.done;
+    document["tasks"].push_back(entry_of(tried, seed));
+    if (arguments.json) continue;
+    fmt::print("{:4} {} steps: {:10} {:5.1f} mm {:5.1f}°  {}\n", seed, tried.steps,
+               trial.done        ? "done"
+               : trial.rehearsed ? "not done"
+                                 : "not tried",
+               1000 * trial.max_error, trial.max_turn * 57.29578, trial.reason);
+    std::fflush(stdout);
+  }
+  document["understood"] = understood;
+  document["rehearsed"] = rehearsed;
+  document["done"] = done;
+  if (arguments.json)
+    std::cout << document.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) << "\n";
+  else
+    fmt::print("{} tasks: {} understood, {} rehearsed, {} done\n", arguments.tasks, understood,
+               rehearsed, done);
+  return exit_done;
+}
+
+}  // namespace
+
+void add_evaluate(tool::Program& program) {
+  auto arguments = std::make_shared<EvaluateArguments>();
+  CLI::App* command = program.app().add_subcommand(
+      "evaluate",
+      "Tasks that are drawn, shown once by people who do not exist, and done again elsewhere in a "
+      "simulated\nworld: how many are understood and done as they were shown?");
+  command->add_option("--hand", arguments->hand, "the robot hand")->capture_default_str();
+  command->add_option("--arm", arguments->arm,
+                      "the arm that carries it, a name or folder: puma560; else it flies");
+  command->add_option("--tasks", arguments->tasks, "how many")
+      ->check(CLI::Range(1, 10000))
+      ->capture_default_str();
+  command->add_option("--max-steps", arguments->max_steps, "tasks have 1 to so many steps, in turn")
+      ->check(CLI::Range(1, 6))
+      ->capture_default_str();
+  command->add_option("--seed", arguments->seed, "of the first one")->capture_default_str();
+  command->add_flag("--json", arguments->json, "one JSON document");
+  program.on(*command, [arguments] { return evaluate(*arguments); });
+}
+
+}  // namespace prehend::performer
