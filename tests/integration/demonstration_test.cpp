@@ -9,6 +9,7 @@
 #include "common/model/catalogue.hpp"
 #include "common/model/placement.hpp"
 #include "common/tasks/files/task_file.hpp"
+#include "common/tasks/table.hpp"
 #include "tests/integration/rig.hpp"
 #include "tests/integration/shown_hand.hpp"
 
@@ -184,6 +185,54 @@ TEST_F(DemonstrationLab, ATaskThatCannotBeDoneMovesNothing) {
   EXPECT_NE(damaged.exit_code, 0);
   EXPECT_NE(damaged.log.find("BAD.task"), std::string::npos) << damaged.log;
   EXPECT_TRUE(commands.take().empty());
+}
+
+// The performer as a service: an operator orders by name, and hears on task/progress how it goes.
+TEST_F(DemonstrationLab, APerformerDoesWhatIsOrderedAndEndsIt) {
+  const auto catalogue =
+      model::Catalogue::load(share_directory() / "models/objects/catalogue.toml").value();
+  const double height = model::half_extents(catalogue.find("Talc")->shape).z();
+  const auto table =
+      tasks::drawn_table(catalogue, 3, {.objects = {"Talc"}, .free = {Eigen::Vector2d(0.2, -0.1)}});
+  ASSERT_TRUE(table);
+  const std::string file = (folder_ / "table.toml").string();
+  ASSERT_TRUE(write_file(file, model::to_toml(*table)));
+  tasks::TaskModel task{"TEA", 1, {{.object = "Talc", .via_height = 0.1}}};
+  task.steps[0].X_OG = make_pose(
+      {0, 0, 0.01}, model::grasp_axes(Eigen::Vector3d::UnitY(), Eigen::Vector3d::UnitX()));
+  task.steps[0].X_RO = make_pose({0.2, -0.1, height});
+  std::filesystem::create_directories(tasks());
+  ASSERT_TRUE(tasks::save_task(tasks() + "/TEA.task", task));
+  auto simulation = start("simulation", {"lab.scene=" + file});
+  auto performer = start("performer", {"demonstration.tasks=" + tasks()});
+  wait_for("simulation");
+  wait_for("performer");
+  auto progress = reader(dds::task_progress);
+  const auto order = [&](Strings words) {
+    words.insert(words.begin(), {"tasks", "order"});
+    return run("prehend", with_lab(words), 30);
+  };
+  EXPECT_EQ(order({"COFFEE"}).exit_code, 1);
+  EXPECT_EQ(order({tasks() + "/TEA.task"}).exit_code, 1) << "that is no name";
+  const Answer begun = order({"TEA"});
+  ASSERT_EQ(begun.exit_code, 0) << begun.output << begun.log;
+  const Answer again = order({"TEA"});
+  EXPECT_EQ(again.exit_code, 1);
+  EXPECT_NE(again.output.find("is being done"), std::string::npos) << again.output;
+  const auto done = hear<v1::TaskProgress>(
+      progress, 120, [](const auto& said) { return said.state() != v1::TASK_RUNNING; });
+  ASSERT_TRUE(done);
+  EXPECT_EQ(done->state(), v1::TASK_DONE) << done->reason().to_string();
+  EXPECT_TRUE(eventually(10, [&] {
+    const auto record = tasks::load_record(tasks() + "/TEA.task");
+    return record && record->runs.size() == 1 && record->runs[0].done;
+  })) << "success is kept with the task";
+
+  ASSERT_TRUE(eventually(10, [&] { return order({"TEA"}).exit_code == 0; }));
+  ASSERT_EQ(order({"TEA", "--end"}).exit_code, 0);
+  EXPECT_TRUE(eventually(60, [&] {
+    return order({"TEA", "--end"}).exit_code == 1;
+  })) << "it has ended";
 }
 
 TEST_F(DemonstrationLab, ShownOnceDoneAgainElsewhere) {
