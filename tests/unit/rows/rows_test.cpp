@@ -157,7 +157,7 @@ TEST(Rows, NobodyElseNamesAGloveDevice) {
                     // What is checked comes from the recording.
                     {"services/recorder/tools/check/check.cpp", "glove.device=topic"},
                     // What is shown comes from a person who does not exist.
-                    {"services/performer/tools/demo/task_demo.cpp", "glove.device=topic"},
+                    {"services/performer/tools/play/task_play.cpp", "glove.device=topic"},
                     // A table of users' files.
                     {"services/glove/core/joint_sensors.hpp", "joint_glove"}}});
   EXPECT_TRUE(found.empty()) << "ask the row (glove::DeviceKind, prehend glove devices):\n"

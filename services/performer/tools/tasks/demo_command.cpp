@@ -9,7 +9,7 @@
 #include "common/base/paths.hpp"
 #include "common/model/catalogue.hpp"
 #include "common/tasks/files/task_file.hpp"
-#include "services/performer/tools/demo/task_demo.hpp"
+#include "services/performer/tools/play/task_play.hpp"
 #include "services/performer/tools/tasks/commands.hpp"
 #include "services/performer/tools/tasks/news.hpp"
 
@@ -19,7 +19,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 /// The same keys as of `prehend demo`, and those of the task.
-Json document_of(const TaskDemoOutcome& outcome, const TaskDemoOptions& options) {
+Json document_of(const TaskPlayOutcome& outcome, const TaskPlayOptions& options) {
   const std::string& object = outcome.task.steps.front().object;
   const auto number = [](const std::optional<double>& value) {
     return value ? Json(*value) : Json(nullptr);
@@ -33,7 +33,7 @@ Json document_of(const TaskDemoOutcome& outcome, const TaskDemoOptions& options)
     named["size_m"] = {known->shape.size.x(), known->shape.size.y(), known->shape.size.z()};
   }
   named["position_error_m"] = number(outcome.place_error);
-  const auto grasp = outcome.grasp.value_or(TaskDemoOutcome::Grasp{});
+  const auto grasp = outcome.grasp.value_or(TaskPlayOutcome::Grasp{});
   Json document{{"object", named},
                 // No mapping runs: a performer plans the grasp.
                 {"mapping",
@@ -76,7 +76,7 @@ Json document_of(const TaskDemoOutcome& outcome, const TaskDemoOptions& options)
   return document;
 }
 
-void print(const TaskDemoOutcome& outcome) {
+void print(const TaskPlayOutcome& outcome) {
   if (!outcome.phases.empty()) fmt::print("seen\n");
   for (const auto& phase : outcome.phases)
     fmt::print("  {:5.2f} to {:5.2f} s  {:9} {}\n", phase.begin, phase.end, phase.name,
@@ -99,8 +99,8 @@ void print(const TaskDemoOutcome& outcome) {
                step.done ? "done" : "not done", 1000 * step.error, step.turn * 57.29578);
 }
 
-int demo(const TaskDemoOptions& options, bool json) {
-  const auto outcome = run_task_demo(options);
+int demo(const TaskPlayOptions& options, bool json) {
+  const auto outcome = play_task(options);
   end_news();
   if (!outcome) return tool::complain(outcome.error());
   if (json)
@@ -116,7 +116,7 @@ int demo(const TaskDemoOptions& options, bool json) {
 
 void add_demo(tool::Program& program) {
   struct Arguments {
-    TaskDemoOptions demo;
+    TaskPlayOptions demo;
     bool json = false, quiet = false;
   };
   auto arguments = std::make_shared<Arguments>();
@@ -125,7 +125,7 @@ void add_demo(tool::Program& program) {
       "A person who does not exist shows a task to a lab of processes on this machine; everything "
       "is moved\nelsewhere, and a simulated robot hand does it again and is judged. Exit code 0: "
       "as it was shown, 1: not.");
-  TaskDemoOptions& demo_options = arguments->demo;
+  TaskPlayOptions& demo_options = arguments->demo;
   demo_options.lab.add_to(*command);
   command->add_option("--task", demo_options.task, "what it is called, or a file NAME.task")
       ->capture_default_str();

@@ -13,7 +13,7 @@
 
 namespace prehend::performer {
 
-struct TaskDemoOptions {
+struct TaskPlayOptions {
   service::LabArguments lab;
   std::string task = "pick-and-place";  // or a file NAME.task, which needs not be shown
   std::string object = "Talc", hand;    // empty: the lab's
@@ -25,7 +25,7 @@ struct TaskDemoOptions {
 };
 
 /// What a demonstration of demonstrations came to.
-struct TaskDemoOutcome {
+struct TaskPlayOutcome {
   struct Phase {
     std::string name, object;
     double begin = 0, end = 0;  // s since the first one began
@@ -54,6 +54,6 @@ struct TaskDemoOutcome {
 
 /// A person who does not exist shows a task to a lab of real processes; the lab learns it;
 /// everything is moved elsewhere, and a simulated robot hand does it again and is judged.
-Expected<TaskDemoOutcome> run_task_demo(const TaskDemoOptions& options);
+Expected<TaskPlayOutcome> play_task(const TaskPlayOptions& options);
 
 }  // namespace prehend::performer

@@ -1,4 +1,4 @@
-#include "services/performer/tools/demo/task_demo.hpp"
+#include "services/performer/tools/play/task_play.hpp"
 
 #include <fmt/format.h>
 
@@ -59,10 +59,10 @@ struct Ears {
 class TaskPlay {
  public:
   /// Both must outlive it.
-  TaskPlay(const TaskDemoOptions& options, stage::Stage& stage)
+  TaskPlay(const TaskPlayOptions& options, stage::Stage& stage)
       : options_(options), stage_(stage) {}
 
-  Expected<TaskDemoOutcome> run() {
+  Expected<TaskPlayOutcome> run() {
     if (auto ok = prepare(); !ok) return tl::unexpected(ok.error());
     if (auto ok = put_up(); !ok) return tl::unexpected(ok.error());
     if (is_shown())
@@ -283,7 +283,7 @@ class TaskPlay {
     return {};
   }
 
-  const TaskDemoOptions& options_;
+  const TaskPlayOptions& options_;
   stage::Stage& stage_;
   std::filesystem::path task_file_;
   Eigen::Vector2d place_ = Eigen::Vector2d::Zero();  // where the object is put, as shown
@@ -292,12 +292,12 @@ class TaskPlay {
   std::set<std::string> up_;
   std::int64_t first_ns_ = 0;
   std::string doing_;
-  TaskDemoOutcome outcome_;
+  TaskPlayOutcome outcome_;
 };
 
 }  // namespace
 
-Expected<TaskDemoOutcome> run_task_demo(const TaskDemoOptions& options) {
+Expected<TaskPlayOutcome> play_task(const TaskPlayOptions& options) {
   auto stage = stage::Stage::create({options.lab, options.timeout, options.keep, options.tell});
   if (!stage) return tl::unexpected(stage.error());
   return TaskPlay(options, *stage).run();
