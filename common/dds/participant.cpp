@@ -202,7 +202,7 @@ Expected<Participant> Participant::join(const ParticipantOptions& options) {
   auto qos = participant_qos(network, {options.listener != nullptr, options.serves});
   if (!qos) return tl::unexpected(qos.error());
   qos->name(options.name);
-  const std::string announced = user_data(options.role.empty() ? options.name : options.role);
+  const std::string announced = own_user_data(options.role.empty() ? options.name : options.role);
   qos->user_data().setValue({announced.begin(), announced.end()});
   if (state->keys) {
     secure(*qos, *state->keys);

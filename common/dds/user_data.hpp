@@ -19,7 +19,7 @@ struct UserData {
   std::optional<Role> role;  // nothing: it announces none that we know
 };
 
-inline std::string user_data(std::string_view role) {
+inline std::string own_user_data(std::string_view role) {
   return std::string(own_middleware) + "; " + std::string(role);
 }
 

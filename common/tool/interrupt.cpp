@@ -1,6 +1,7 @@
 #include "common/tool/interrupt.hpp"
 
 #include <csignal>
+#include <initializer_list>
 
 namespace prehend::tool {
 namespace {

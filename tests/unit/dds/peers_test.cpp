@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "common/dds/guarded_transport.hpp"
+#include "common/dds/user_data.hpp"
 
 namespace prehend::dds {
 namespace {
@@ -127,7 +128,7 @@ TEST(Peers, AFarewellThatIsOnlyHeardEndsNobodyWhoWasLetIn) {
   farewell.leaves = true;
   peers.hear(farewell);
   EXPECT_EQ(peers.present().size(), 1u);
-  peers.on_participant({News::gone, guid(1), "", "", false, ""});
+  peers.on_participant({News::gone, guid(1)});
   EXPECT_THAT(peers.present(), IsEmpty());
 }
 

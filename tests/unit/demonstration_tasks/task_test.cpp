@@ -107,7 +107,7 @@ TEST(LearnTask, SaysWhenDemonstrationsDiffer) {
   EXPECT_FALSE(learn_task("t", {tasks::ShownTask{}}));
 }
 
-TEST(tasks::TaskModel, OrderKeepsWhatMustComeFirst) {
+TEST(TaskModel, OrderKeepsWhatMustComeFirst) {
   tasks::TaskModel task{"t", 1, std::vector<tasks::Step>(3)};
   for (std::size_t i = 0; i < 3; ++i) task.steps[i].object = "o" + std::to_string(i);
   task.steps[0].after = {2};

@@ -19,6 +19,7 @@
 #include "common/dds/network.hpp"
 #include "common/dds/security.hpp"
 #include "common/service/membership.hpp"
+#include "common/stage/process.hpp"
 #include "common/stage/temporary_folder.hpp"
 
 namespace prehend::cli {

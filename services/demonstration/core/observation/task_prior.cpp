@@ -13,14 +13,14 @@ constexpr double unshown = 1;  // times that each kind counts as shown before an
 Eigen::VectorXd task_prior(const std::vector<std::string>& kinds,
                            const model::GraspTaxonomy& taxonomy,
                            const std::vector<model::ObjectPart>& keep_free,
-                           const std::vector<ShownTask>& shown, const std::string& object) {
+                           const std::vector<tasks::ShownTask>& shown, const std::string& object) {
   Eigen::VectorXd made =
       Eigen::VectorXd::Constant(static_cast<Eigen::Index>(kinds.size()), unshown);
   for (std::size_t k = 0; k < kinds.size(); ++k) {
     double& own = made[static_cast<Eigen::Index>(k)];
-    for (const ShownTask& task : shown)
+    for (const tasks::ShownTask& task : shown)
       own +=
-          static_cast<double>(std::count_if(task.begin(), task.end(), [&](const ShownStep& step) {
+          static_cast<double>(std::count_if(task.begin(), task.end(), [&](const tasks::ShownStep& step) {
             return step.object == object && step.grasp == kinds[k];
           }));
     const model::GraspClass* known = taxonomy.find(kinds[k]);
