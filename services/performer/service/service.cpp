@@ -1,6 +1,7 @@
 #include "services/performer/service/service.hpp"
 
 #include "common/base/log.hpp"
+#include "common/base/log_format.hpp"
 #include "common/dds/topics.hpp"
 #include "common/tasks/files/task_file.hpp"
 
