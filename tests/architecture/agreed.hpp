@@ -97,6 +97,7 @@ inline constexpr std::array common_edges{
     Edge{"common/service", "idl"},
     Edge{"common/statistics", "common/base"},
     Edge{"common/tool", "common/base"},
+    Edge{"common/web", "common/base"},
 };
 
 inline constexpr std::string_view older = "older than the rule";
