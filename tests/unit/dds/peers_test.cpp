@@ -5,7 +5,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "common/dds/guarded_transport.hpp"
+#include "common/dds/guard/guarded_transport.hpp"
+#include "common/dds/release/user_data.hpp"
 
 namespace prehend::dds {
 namespace {
@@ -127,7 +128,7 @@ TEST(Peers, AFarewellThatIsOnlyHeardEndsNobodyWhoWasLetIn) {
   farewell.leaves = true;
   peers.hear(farewell);
   EXPECT_EQ(peers.present().size(), 1u);
-  peers.on_participant({News::gone, guid(1), "", "", false, ""});
+  peers.on_participant({News::gone, guid(1)});
   EXPECT_THAT(peers.present(), IsEmpty());
 }
 

@@ -1,9 +1,8 @@
-#include "common/dds/wan_transport.hpp"
+#include "common/dds/sites.hpp"
 
 #include <arpa/inet.h>
 #include <fmt/format.h>
 #include <ifaddrs.h>
-#include <linux/tcp.h>
 #include <net/if.h>
 #include <netinet/in.h>
 #include <sys/socket.h>
@@ -11,22 +10,16 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <chrono>
-#include <condition_variable>
-#include <cstdlib>
 #include <filesystem>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <random>
 #include <set>
-#include <stop_token>
-#include <thread>
 #include <utility>
 
-#include "common/dds/pass_through_transport.hpp"
+#include "common/dds/guard/tls_front.hpp"
+#include "common/dds/guard/wan_transport.hpp"
 #include "common/dds/security.hpp"
-#include "common/dds/tls_front.hpp"
 
 namespace prehend::dds {
 
@@ -37,25 +30,13 @@ namespace {
 /// Where the processes of a listening site are found.
 constexpr std::uint16_t first_wan_port = 7420, wan_ports = 16;
 
-/// Logical port of who listens and of who dials: it tells them apart.
-constexpr std::uint16_t listens = 7410, dials = 7412;
-
-/// A connection that works carries two announcements a second. One over which nothing has been said
-/// for so long, and not more received than a greeting, has missed it.
-constexpr std::chrono::milliseconds max_silence{1200};
-constexpr std::uint64_t max_greeting = 4096;  // bytes, that of TLS as well
-constexpr std::uint8_t established = 1;       // the kernel's TCP_ESTABLISHED
-
-using Ip = std::array<std::uint8_t, 4>;
-using Dialled = std::set<std::pair<Ip, std::uint16_t>>;
-
-Ip ip_of(const rtps::octet* bytes) {
-  Ip ip;
+Ipv4 ip_of(const rtps::octet* bytes) {
+  Ipv4 ip;
   std::copy_n(bytes, ip.size(), ip.begin());
   return ip;
 }
 
-rtps::Locator_t locator(std::int32_t kind, const Ip& ip = {}) {
+rtps::Locator_t locator(std::int32_t kind, const Ipv4& ip = {}) {
   rtps::Locator_t made;
   made.kind = kind;
   made.port = 0;
@@ -63,71 +44,6 @@ rtps::Locator_t locator(std::int32_t kind, const Ip& ip = {}) {
   IPLocator::setIPv4(made, ip.data());
   return made;
 }
-
-/// Cuts connections to these places that have stopped at the greeting.
-void cut_silent(const Dialled& dialled) {
-  std::error_code code;
-  for (const auto& entry : std::filesystem::directory_iterator("/proc/self/fd", code)) {
-    const int file = std::atoi(entry.path().filename().c_str());
-    sockaddr_in peer{};
-    socklen_t size = sizeof peer;
-    if (::getpeername(file, reinterpret_cast<sockaddr*>(&peer), &size) != 0 ||
-        peer.sin_family != AF_INET ||
-        !dialled.contains(
-            {ip_of(reinterpret_cast<const rtps::octet*>(&peer.sin_addr)), ntohs(peer.sin_port)}))
-      continue;
-    tcp_info info{};
-    size = sizeof info;
-    if (::getsockopt(file, IPPROTO_TCP, TCP_INFO, &info, &size) == 0 &&
-        info.tcpi_state == established && info.tcpi_bytes_received < max_greeting &&
-        info.tcpi_last_data_sent > max_silence.count())
-      ::shutdown(file, SHUT_RDWR);
-  }
-}
-
-class WanTransport final : public PassThroughTransport {
- public:
-  WanTransport(const transport::ChainingTransportDescriptor& descriptor, Dialled dialled)
-      : PassThroughTransport(descriptor), dialled_(std::move(dialled)) {
-    if (dialled_.empty()) return;
-    watch_ = std::jthread([this](const std::stop_token& end) {
-      std::mutex mutex;
-      std::unique_lock lock(mutex);
-      std::condition_variable_any ended;
-      while (!ended.wait_for(lock, end, max_silence, [&] { return end.stop_requested(); }))
-        cut_silent(dialled_);
-    });
-  }
-  bool transform_remote_locator(const rtps::Locator_t& remote,
-                                rtps::Locator_t& result) const override {
-    const auto found = way(remote);
-    if (found) result = *found;
-    return found.has_value();
-  }
-  bool OpenOutputChannel(transport::SendResourceList& senders,
-                         const rtps::Locator_t& remote) override {
-    const auto found = way(remote);
-    return found && PassThroughTransport::OpenOutputChannel(senders, *found);
-  }
-
- private:
-  /// The locator by which a remote one is reached; nothing: not by TCP.
-  std::optional<rtps::Locator_t> way(const rtps::Locator_t& remote) const {
-    if (remote.kind != LOCATOR_KIND_TCPv4) return std::nullopt;
-    // Who dials has made the connection itself.
-    if (dialled_.empty())
-      return IPLocator::getLogicalPort(remote) == dials ? std::optional(remote) : std::nullopt;
-    const Ip ip =
-        ip_of(IPLocator::hasWan(remote) ? IPLocator::getWan(remote) : IPLocator::getIPv4(remote));
-    if (!dialled_.contains({ip, IPLocator::getPhysicalPort(remote)})) return std::nullopt;
-    rtps::Locator_t there = locator(LOCATOR_KIND_TCPv4, ip);
-    there.port = remote.port;
-    return there;
-  }
-
-  Dialled dialled_;
-  std::jthread watch_;
-};
 
 bool is_free(std::uint16_t port) {
   const int socket = ::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
@@ -167,35 +83,22 @@ class PortLock {
   int socket_;
 };
 
-/// What others come to: a port, and with keys who stands before it.
+/// What others come to: a port, which is its own as long as the participant has it, and with keys
+/// who stands before it.
 struct Door {
   std::shared_ptr<const PortLock> port;
   std::shared_ptr<const TlsFront> front;
 };
 
-/// As long as the participant has it, the port is its own.
-struct WanTransportDescriptor final : transport::ChainingTransportDescriptor {
-  WanTransportDescriptor(std::shared_ptr<transport::TransportDescriptorInterface> lower,
-                         Dialled dialled, Door door)
-      : ChainingTransportDescriptor(std::move(lower)),
-        dialled_(std::move(dialled)),
-        door_(std::move(door)) {}
-  transport::TransportInterface* create_transport() const override {
-    return new WanTransport(*this, dialled_);
-  }
-  Dialled dialled_;
-  Door door_;
-};
-
 /// Our own address on the way to another; 0.0.0.0: there is no way yet.
-Ip address_towards(const Address& other) {
+Ipv4 address_towards(const Address& other) {
   const int socket = ::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
   sockaddr_in address{};
   address.sin_family = AF_INET;
   address.sin_port = htons(first_wan_port);
   std::copy(other.ip.begin(), other.ip.end(), reinterpret_cast<std::uint8_t*>(&address.sin_addr));
   socklen_t size = sizeof address;
-  Ip own{};
+  Ipv4 own{};
   if (::connect(socket, reinterpret_cast<const sockaddr*>(&address), size) == 0 &&
       ::getsockname(socket, reinterpret_cast<sockaddr*>(&address), &size) == 0)
     own = ip_of(reinterpret_cast<const rtps::octet*>(&address.sin_addr));
@@ -221,8 +124,8 @@ struct Listening {
 };
 
 /// The addresses by which others reach this host; empty: it is alone.
-std::vector<Ip> own_addresses() {
-  std::vector<Ip> own;
+std::vector<Ipv4> own_addresses() {
+  std::vector<Ipv4> own;
   ifaddrs* all = nullptr;
   if (::getifaddrs(&all) != 0) return own;
   for (const ifaddrs* one = all; one; one = one->ifa_next)
@@ -241,7 +144,12 @@ Expected<std::shared_ptr<const TlsFront>> stand_before(transport::TCPv4Transport
   const std::uint16_t inner = free_inner_port();
   tcp.interfaceWhiteList = {"127.0.0.1"};
   tcp.add_listener_port(inner);
-  auto front = TlsFront::create({.port = port, .inner = inner, .keys = keys});
+  auto front = TlsFront::create({.port = port,
+                                 .inner = inner,
+                                 .certificate = keys / key_files::certificate,
+                                 .key = keys / key_files::key,
+                                 .authority = keys / key_files::authority,
+                                 .revoked = keys / key_files::revoked});
   if (!front) return tl::unexpected(front.error());
   return std::move(*front);
 }
@@ -273,10 +181,10 @@ Expected<Listening> listen(transport::TCPv4TransportDescriptor& tcp, const Netwo
     front = std::move(*made);
   }
   // Behind the front Fast DDS would announce the loopback, where it listens.
-  std::vector<Ip> addresses = front ? own_addresses() : std::vector<Ip>{};
+  std::vector<Ipv4> addresses = front ? own_addresses() : std::vector<Ipv4>{};
   if (addresses.empty()) addresses.emplace_back();
   std::vector<rtps::Locator_t> own;
-  for (const Ip& ip : addresses) {
+  for (const Ipv4& ip : addresses) {
     own.push_back(locator(LOCATOR_KIND_TCPv4, ip));
     IPLocator::setPhysicalPort(own.back(), port);
     IPLocator::setLogicalPort(own.back(), listens);
@@ -285,10 +193,10 @@ Expected<Listening> listen(transport::TCPv4TransportDescriptor& tcp, const Netwo
 }
 
 /// Dials all peers, and returns them with our own addresses on the way there.
-Expected<std::pair<Dialled, std::set<Ip>>> dial(rtps::LocatorList_t& initial,
-                                                const std::vector<std::string>& peers) {
+Expected<std::pair<Dialled, std::set<Ipv4>>> dial(rtps::LocatorList_t& initial,
+                                                  const std::vector<std::string>& peers) {
   Dialled all;
-  std::set<Ip> own;
+  std::set<Ipv4> own;
   for (const std::string& text : peers) {
     const auto places = dialled(text);
     if (!places) return tl::unexpected(places.error());
@@ -356,13 +264,13 @@ Expected<void> join_sites(eprosima::fastdds::dds::DomainParticipantQos& qos,
     std::uniform_int_distribution<int> any(0, 255);
     const auto byte = [&] { return static_cast<rtps::octet>(any(random)); };
     tcp.set_WAN_address(127, byte(), byte(), byte());
-    for (const Ip& ip : called->second) {
+    for (const Ipv4& ip : called->second) {
       rtps::Locator_t own = locator(LOCATOR_KIND_TCPv4, ip);
       IPLocator::setLogicalPort(own, dials);  // Fast DDS adds its process number
       announce(own);
     }
   }
-  *found = std::make_shared<WanTransportDescriptor>(*found, std::move(places), std::move(door));
+  *found = wan_transport(*found, std::move(places), std::make_shared<const Door>(std::move(door)));
   return {};
 }
 

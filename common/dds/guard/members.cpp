@@ -1,4 +1,4 @@
-#include "common/dds/members.hpp"
+#include "common/dds/guard/members.hpp"
 
 #include <algorithm>
 #include <utility>

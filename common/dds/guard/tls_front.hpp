@@ -16,9 +16,11 @@ namespace prehend::dds {
 class TlsFront {
  public:
   struct Options {
-    std::uint16_t port = 0;      // of all interfaces, where others come
-    std::uint16_t inner = 0;     // of 127.0.0.1, where Fast DDS listens
-    std::filesystem::path keys;  // the folder of this process's keys
+    std::uint16_t port = 0;   // of all interfaces, where others come
+    std::uint16_t inner = 0;  // of 127.0.0.1, where Fast DDS listens
+    // Files in PEM: the keys of this process, who vouches for those of the lab, and which of these
+    // are revoked.
+    std::filesystem::path certificate, key, authority, revoked;
   };
   static Expected<std::unique_ptr<TlsFront>> create(const Options& options);
   ~TlsFront();

@@ -1,16 +1,11 @@
-#include "common/dds/serialized_transport.hpp"
+#include "common/dds/guard/serialized_transport.hpp"
 
-#include "common/dds/pass_through_transport.hpp"
-#include "common/dds/registry.hpp"
+#include "common/dds/guard/pass_through_transport.hpp"
+#include "common/dds/guard/registry.hpp"
 
 namespace prehend::dds {
 
 namespace {
-
-/// Ports of samples are odd, those of discovery even (RTPS 2.2, 9.6.1.1).
-bool carries_samples(const rtps::Locator_t& local) {
-  return local.kind == LOCATOR_KIND_UDPv4 && local.port % 2 == 1;
-}
 
 class SerializingTransport final : public PassThroughTransport {
  public:

@@ -1,11 +1,11 @@
-#include "common/dds/handshake_pause.hpp"
+#include "common/dds/guard/handshake_pause.hpp"
 
 #include <dlfcn.h>
 
 #include <chrono>
 #include <mutex>
 
-#include "common/dds/fastdds.hpp"
+#include "common/dds/release/fastdds.hpp"
 
 #if PREHEND_FAST_DDS == 2
 

@@ -1,4 +1,4 @@
-#include "common/dds/role.hpp"
+#include "common/dds/release/role.hpp"
 
 namespace prehend::dds {
 namespace {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "common/dds/fastdds.hpp"
+#include "common/dds/release/fastdds.hpp"
 
 #if PREHEND_FAST_DDS == 2
 #include <fastrtps/xmlparser/XMLProfileManager.h>

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "common/base/time.hpp"
-#include "common/dds/role.hpp"
+#include "common/dds/release/role.hpp"
 
 namespace prehend::dds {
 

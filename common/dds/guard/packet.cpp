@@ -1,9 +1,9 @@
-#include "common/dds/packet.hpp"
+#include "common/dds/guard/packet.hpp"
 
 #include <algorithm>
 
-#include "common/dds/rtps_parts.hpp"
-#include "common/dds/user_data.hpp"
+#include "common/dds/guard/rtps_parts.hpp"
+#include "common/dds/release/user_data.hpp"
 
 namespace prehend::dds {
 namespace {
@@ -36,7 +36,7 @@ void read_word(Announcement& said, std::uint16_t parameter, const Numbers& value
   std::size_t at = 0;
   if (parameter == entity_name) {
     said.name = text_at(value, at);
-  } else if (parameter == user_data) {
+  } else if (parameter == participant_user_data) {
     if (UserData told = read_user_data(text_at(value, at, 40)); !told.middleware.empty()) {
       said.middleware = std::move(told.middleware);
       said.role = told.role;

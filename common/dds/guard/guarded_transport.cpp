@@ -1,14 +1,14 @@
-#include "common/dds/guarded_transport.hpp"
+#include "common/dds/guard/guarded_transport.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 
 #include "common/base/clock.hpp"
-#include "common/dds/early_handshakes.hpp"
-#include "common/dds/pass_through_transport.hpp"
-#include "common/dds/registry.hpp"
-#include "common/dds/rtps_parts.hpp"
+#include "common/dds/guard/early_handshakes.hpp"
+#include "common/dds/guard/pass_through_transport.hpp"
+#include "common/dds/guard/registry.hpp"
+#include "common/dds/guard/rtps_parts.hpp"
 
 namespace prehend::dds {
 
@@ -48,11 +48,6 @@ std::vector<std::uint8_t> whole(const std::vector<transport::NetworkBuffer>& pie
   return bytes;
 }
 #endif
-
-/// Ports of samples are odd, those of discovery even (RTPS 2.2, 9.6.1.1).
-bool carries_samples(const rtps::Locator_t& locator) {
-  return locator.port % 2 == 1;
-}
 
 /// Sends through a resource of the lower transport, but by our send().
 class Sender final : public rtps::SenderResource {

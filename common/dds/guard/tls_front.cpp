@@ -1,4 +1,4 @@
-#include "common/dds/tls_front.hpp"
+#include "common/dds/guard/tls_front.hpp"
 
 #include <arpa/inet.h>
 #include <fcntl.h>
@@ -23,7 +23,6 @@
 #include <vector>
 
 #include "common/base/file_text.hpp"
-#include "common/dds/security.hpp"
 #include "common/keys/openssl.hpp"
 
 namespace prehend::dds::tls {
@@ -67,23 +66,23 @@ inline Socket tcp_socket() {
 }
 
 /// For both sides: with the keys of this process, for peers with keys of the lab.
-inline Expected<Context> context_of(const std::filesystem::path& folder) {
-  const auto at = [&](const char* name) { return (folder / name).string(); };
-  const auto text = read_file(at(key_files::revoked));
+inline Expected<Context> context_of(const TlsFront::Options& files) {
+  const auto text = read_file(files.revoked);
   if (!text) return tl::unexpected(text.error());
   const auto revoked = keys::openssl::list_of(*text);
   if (!revoked) return tl::unexpected(revoked.error());
   Context made(SSL_CTX_new(TLS_method()));
   SSL_CTX* raw = made.get();
-  const bool good =
-      raw && SSL_CTX_set_min_proto_version(raw, TLS1_2_VERSION) == 1 &&
-      SSL_CTX_use_certificate_chain_file(raw, at(key_files::certificate).c_str()) == 1 &&
-      SSL_CTX_use_PrivateKey_file(raw, at(key_files::key).c_str(), SSL_FILETYPE_PEM) == 1 &&
-      SSL_CTX_load_verify_locations(raw, at(key_files::authority).c_str(), nullptr) == 1 &&
-      X509_STORE_add_crl(SSL_CTX_get_cert_store(raw), revoked->get()) == 1 &&
-      X509_STORE_set_flags(SSL_CTX_get_cert_store(raw), X509_V_FLAG_CRL_CHECK) == 1 &&
-      SSL_CTX_set_num_tickets(raw, 0) == 1;
-  if (!good) return keys::openssl::failed("cannot be used for TLS", folder.string());
+  const bool good = raw && SSL_CTX_set_min_proto_version(raw, TLS1_2_VERSION) == 1 &&
+                    SSL_CTX_use_certificate_chain_file(raw, files.certificate.c_str()) == 1 &&
+                    SSL_CTX_use_PrivateKey_file(raw, files.key.c_str(), SSL_FILETYPE_PEM) == 1 &&
+                    SSL_CTX_load_verify_locations(raw, files.authority.c_str(), nullptr) == 1 &&
+                    X509_STORE_add_crl(SSL_CTX_get_cert_store(raw), revoked->get()) == 1 &&
+                    X509_STORE_set_flags(SSL_CTX_get_cert_store(raw), X509_V_FLAG_CRL_CHECK) == 1 &&
+                    SSL_CTX_set_num_tickets(raw, 0) == 1;
+  if (!good)
+    return keys::openssl::failed("cannot be used for TLS",
+                                 files.certificate.parent_path().string());
   SSL_CTX_set_verify(raw, SSL_VERIFY_PEER | SSL_VERIFY_FAIL_IF_NO_PEER_CERT, nullptr);
   SSL_CTX_set_session_cache_mode(raw, SSL_SESS_CACHE_OFF);
   SSL_CTX_set_options(raw, SSL_OP_NO_RENEGOTIATION);
@@ -301,7 +300,7 @@ class TlsFront::Loop {
 };
 
 Expected<std::unique_ptr<TlsFront>> TlsFront::create(const Options& options) {
-  auto context = tls::context_of(options.keys);
+  auto context = tls::context_of(options);
   if (!context) return tl::unexpected(context.error());
   tls::Socket door = tls::tcp_socket();
   const int on = 1;

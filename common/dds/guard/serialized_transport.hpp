@@ -7,7 +7,7 @@
 #include <mutex>
 #include <set>
 
-#include "common/dds/fastdds.hpp"
+#include "common/dds/release/fastdds.hpp"
 
 namespace prehend::dds {
 

@@ -9,8 +9,8 @@
 #include <string_view>
 #include <vector>
 
-#include "common/dds/admission.hpp"
-#include "common/dds/packet.hpp"
+#include "common/dds/guard/admission.hpp"
+#include "common/dds/guard/packet.hpp"
 
 namespace prehend::dds {
 

@@ -1,4 +1,4 @@
-#include "common/dds/address_book.hpp"
+#include "common/dds/guard/address_book.hpp"
 
 #include <algorithm>
 

@@ -1,8 +1,13 @@
 #pragma once
 
-#include "common/dds/fastdds.hpp"
+#include "common/dds/release/fastdds.hpp"
 
 namespace prehend::dds {
+
+/// Ports of samples are odd, those of discovery even (RTPS 2.2, 9.6.1.1). By TCP all share one.
+inline bool carries_samples(const rtps::Locator_t& locator) {
+  return locator.kind == LOCATOR_KIND_UDPv4 && locator.port % 2 == 1;
+}
 
 /// A transport around another one that changes nothing: what stands between Fast DDS and its
 /// transports begins with this.

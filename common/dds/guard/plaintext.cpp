@@ -1,6 +1,6 @@
-#include "common/dds/plaintext.hpp"
+#include "common/dds/guard/plaintext.hpp"
 
-#include "common/dds/rtps_parts.hpp"
+#include "common/dds/guard/rtps_parts.hpp"
 
 namespace prehend::dds {
 namespace {

@@ -4,8 +4,8 @@
 #include <string>
 #include <string_view>
 
-#include "common/dds/fastdds.hpp"
-#include "common/dds/role.hpp"
+#include "common/dds/release/fastdds.hpp"
+#include "common/dds/release/role.hpp"
 
 namespace prehend::dds {
 

@@ -1,4 +1,4 @@
-#include "common/dds/admission.hpp"
+#include "common/dds/guard/admission.hpp"
 
 #include <algorithm>
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "common/base/time.hpp"
-#include "common/dds/packet.hpp"
+#include "common/dds/guard/packet.hpp"
 
 namespace prehend::dds {
 

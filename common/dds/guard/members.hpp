@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "common/base/time.hpp"
-#include "common/dds/packet.hpp"
-#include "common/dds/plaintext.hpp"
+#include "common/dds/guard/packet.hpp"
+#include "common/dds/guard/plaintext.hpp"
 
 namespace prehend::dds {
 

@@ -1,9 +1,9 @@
-#include "common/dds/announcement_pacer.hpp"
+#include "common/dds/guard/announcement_pacer.hpp"
 
 #include <algorithm>
 
-#include "common/dds/plaintext.hpp"
-#include "common/dds/rtps_parts.hpp"
+#include "common/dds/guard/plaintext.hpp"
+#include "common/dds/guard/rtps_parts.hpp"
 
 namespace prehend::dds {
 namespace {

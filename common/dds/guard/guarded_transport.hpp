@@ -7,10 +7,10 @@
 #include <string>
 #include <vector>
 
-#include "common/dds/address_book.hpp"
-#include "common/dds/announcement_pacer.hpp"
-#include "common/dds/fastdds.hpp"
-#include "common/dds/members.hpp"
+#include "common/dds/guard/address_book.hpp"
+#include "common/dds/guard/announcement_pacer.hpp"
+#include "common/dds/guard/members.hpp"
+#include "common/dds/release/fastdds.hpp"
 
 namespace prehend::dds {
 
