@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "common/base/log.hpp"
-#include "common/dds/fastdds.hpp"
+#include "common/dds/release/fastdds.hpp"
 
 namespace prehend::dds {
 

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "common/dds/user_data.hpp"
+#include "common/dds/release/user_data.hpp"
 
 namespace prehend::dds {
 

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "common/dds/fastdds.hpp"
-#include "common/dds/packet.hpp"
+#include "common/dds/guard/packet.hpp"
+#include "common/dds/release/fastdds.hpp"
 #include "common/dds/topic.hpp"
 
 namespace prehend::dds {

@@ -22,9 +22,9 @@
 #include "common/base/log.hpp"
 #include "common/base/paths.hpp"
 #include "common/dds/dds_log.hpp"
-#include "common/dds/packet.hpp"
+#include "common/dds/guard/packet.hpp"
 #include "common/dds/server_watch.hpp"
-#include "common/dds/wan_transport.hpp"
+#include "common/dds/sites.hpp"
 
 namespace prehend::dds {
 

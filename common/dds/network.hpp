@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "common/base/error.hpp"
-#include "common/dds/fastdds.hpp"
+#include "common/dds/release/fastdds.hpp"
 
 namespace prehend::dds {
 

@@ -13,14 +13,14 @@
 #include <set>
 
 #include "common/base/log.hpp"
-#include "common/dds/guarded_transport.hpp"
-#include "common/dds/handshake_pause.hpp"
+#include "common/dds/guard/guarded_transport.hpp"
+#include "common/dds/guard/handshake_pause.hpp"
+#include "common/dds/guard/serialized_transport.hpp"
+#include "common/dds/guard/within_process.hpp"
 #include "common/dds/peers.hpp"
-#include "common/dds/serialized_transport.hpp"
+#include "common/dds/release/user_data.hpp"
 #include "common/dds/server_watch.hpp"
 #include "common/dds/topics.hpp"
-#include "common/dds/user_data.hpp"
-#include "common/dds/within_process.hpp"
 
 namespace prehend::dds {
 

@@ -16,10 +16,10 @@
 #include "common/base/error.hpp"
 #include "common/base/time.hpp"
 #include "common/dds/discovery_events.hpp"
-#include "common/dds/fastdds.hpp"
+#include "common/dds/guard/packet.hpp"
 #include "common/dds/network.hpp"
-#include "common/dds/packet.hpp"
 #include "common/dds/peers.hpp"
+#include "common/dds/release/fastdds.hpp"
 #include "common/dds/security.hpp"
 #include "common/dds/topics.hpp"
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "common/dds/guarded_transport.hpp"
+#include "common/dds/guard/guarded_transport.hpp"
 
 namespace prehend::dds {
 

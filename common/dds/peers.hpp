@@ -8,7 +8,7 @@
 #include <string>
 
 #include "common/dds/discovery_events.hpp"
-#include "common/dds/packet.hpp"
+#include "common/dds/guard/packet.hpp"
 
 namespace prehend::dds {
 

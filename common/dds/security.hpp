@@ -9,8 +9,8 @@
 
 #include "common/base/error.hpp"
 #include "common/base/time.hpp"
-#include "common/dds/fastdds.hpp"
 #include "common/dds/permissions.hpp"
+#include "common/dds/release/fastdds.hpp"
 
 namespace prehend::dds {
 

@@ -7,8 +7,8 @@
 #include <thread>
 #include <vector>
 
-#include "common/dds/fastdds.hpp"
 #include "common/dds/network.hpp"
+#include "common/dds/release/fastdds.hpp"
 
 namespace prehend::dds {
 

@@ -6,8 +6,8 @@
 #include <string_view>
 #include <utility>
 
-#include "common/dds/fastdds.hpp"
-#include "common/dds/role.hpp"
+#include "common/dds/release/fastdds.hpp"
+#include "common/dds/release/role.hpp"
 
 /// What there is to say of one topic; the topics themselves are in topics.hpp.
 namespace prehend::dds {

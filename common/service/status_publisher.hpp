@@ -4,7 +4,7 @@
 #include <map>
 #include <string>
 
-#include "common/dds/guarded_transport.hpp"
+#include "common/dds/guard/guarded_transport.hpp"
 #include "common/dds/participant.hpp"
 #include "common/service/status.hpp"
 

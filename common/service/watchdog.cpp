@@ -6,8 +6,8 @@
 #include <utility>
 
 #include "common/base/log.hpp"
-#include "common/dds/guarded_transport.hpp"
-#include "common/dds/serialized_transport.hpp"
+#include "common/dds/guard/guarded_transport.hpp"
+#include "common/dds/guard/serialized_transport.hpp"
 
 namespace prehend::service {
 namespace {

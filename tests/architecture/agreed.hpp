@@ -54,8 +54,13 @@ inline constexpr std::array common_edges{
     Edge{"common/convert", "common/model"},
     Edge{"common/convert", "idl"},
     Edge{"common/dds", "common/base"},
+    Edge{"common/dds", "common/dds/guard"},
+    Edge{"common/dds", "common/dds/release"},
     Edge{"common/dds", "common/keys"},
     Edge{"common/dds", "idl"},
+    Edge{"common/dds/guard", "common/base"},
+    Edge{"common/dds/guard", "common/dds/release"},
+    Edge{"common/dds/guard", "common/keys"},
     Edge{"common/gate", "common/base"},
     Edge{"common/gate", "common/model"},
     Edge{"common/grasping", "common/analysis"},
@@ -93,6 +98,7 @@ inline constexpr std::array common_edges{
     Edge{"common/service", "common/base"},
     Edge{"common/service", "common/clock"},
     Edge{"common/service", "common/dds"},
+    Edge{"common/service", "common/dds/guard"},
     Edge{"common/service", "common/tool"},
     Edge{"common/service", "idl"},
     Edge{"common/stage", "common/arm"},
@@ -110,6 +116,7 @@ inline constexpr std::array common_edges{
     Edge{"common/tasks/files", "common/proto"},
     Edge{"common/tasks/files", "common/tasks"},
     Edge{"common/tool", "common/base"},
+    Edge{"common/web", "common/base"},
 };
 
 inline constexpr std::string_view older = "older than the rule";

@@ -10,7 +10,7 @@
 #include <cstdlib>
 
 #include "common/base/clock.hpp"
-#include "common/dds/guarded_transport.hpp"
+#include "common/dds/guard/guarded_transport.hpp"
 #include "tests/support/packets/packets.hpp"
 
 using namespace prehend;

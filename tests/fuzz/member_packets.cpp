@@ -3,7 +3,7 @@
 // heard afterwards as before.
 #include <algorithm>
 
-#include "common/dds/members.hpp"
+#include "common/dds/guard/members.hpp"
 #include "tests/fuzz/fuzz.hpp"
 #include "tests/fuzz/mutation.hpp"
 #include "tests/support/packets/packets.hpp"

@@ -1,7 +1,7 @@
 // Damaged RTPS messages on their way to a lab of two: sent from a stranger's address none of them
 // speaks for a participant of the lab, and what the lab itself sends afterwards passes as before.
 // What passes is its sender's own announcement, or comes from one that was announced there.
-#include "common/dds/address_book.hpp"
+#include "common/dds/guard/address_book.hpp"
 #include "tests/fuzz/fuzz.hpp"
 #include "tests/fuzz/mutation.hpp"
 #include "tests/support/packets/packets.hpp"

@@ -10,7 +10,7 @@
 #include <iostream>
 #include <thread>
 
-#include "common/dds/guarded_transport.hpp"
+#include "common/dds/guard/guarded_transport.hpp"
 #include "services/cli/tools/keys/keystore.hpp"
 #include "tests/integration/rig.hpp"
 #include "tests/support/packets/packets.hpp"

@@ -9,11 +9,11 @@
 #include "common/dds/participant.hpp"
 #include "common/dds/raw.hpp"
 #include "common/service/shell.hpp"
+#include "common/web/server.hpp"
 #include "services/console/service/glove_line.hpp"
 #include "services/console/service/graph.hpp"
 #include "services/console/service/mailbox.hpp"
 #include "services/console/service/show.hpp"
-#include "services/console/service/web/server.hpp"
 
 namespace prehend::console {
 

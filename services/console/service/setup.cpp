@@ -54,12 +54,19 @@ Expected<keys::Identity> identity_of(const service::Config& config) {
   return keys::Identity{std::move(*text), std::move(*key)};
 }
 
+Error with_hint(Error error) {
+  error.hint = "see console.address, console.port, console.certificate and console.key";
+  return error;
+}
+
 }  // namespace
 
 Expected<web::Server::Options> server_options(const service::Config& config) {
   const std::int64_t port = config.integer("console.port");
   if (port < 0 || port > 65535) return wrong_use("is no port", "console.port", "0 to 65535");
   web::Server::Options options;
+  // Sixty pictures a second; twice as many when they are there.
+  options.period = std::chrono::microseconds(16667);
   options.address = config.text("console.address");
   options.port = static_cast<int>(port);
   if (!is_loopback(options.address) &&
@@ -102,7 +109,7 @@ Expected<Served> serve(const service::Config& config, Show& show) {
   const auto options = server_options(config);
   if (!options) return tl::unexpected(options.error());
   auto server = web::Server::listen(*options, show);
-  if (!server) return tl::unexpected(server.error());
+  if (!server) return tl::unexpected(with_hint(server.error()));
   const int port = (*server)->port();
   std::vector<std::string> hosts = names_of(options->address, port);
   for (const std::string& name : config.names("console.hosts")) {

@@ -4,8 +4,8 @@
 #include <string>
 
 #include "common/service/config.hpp"
+#include "common/web/server.hpp"
 #include "services/console/service/show.hpp"
-#include "services/console/service/web/server.hpp"
 
 namespace prehend::console {
 

@@ -55,9 +55,49 @@ std::vector<Parameter> parameters_of(const service::Config& config) {
   return {{"/robot_description", std::move(*urdf)}};
 }
 
-web::Answer plain(int status, std::string text) {
-  return {status, "text/plain; charset=utf-8", std::move(text) + "\n", ""};
+/// Nothing of others runs in the page, nobody frames it, and it speaks to its own server alone.
+/// Hand tracking is WebAssembly.
+constexpr const char* content_policy =
+    "default-src 'none'; script-src 'self' 'wasm-unsafe-eval'; style-src 'self'; "
+    "img-src 'self' data: blob:; "
+    "connect-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
+
+Asked asked_of(const web::Request& request) {
+  return {request.method,
+          request.target,
+          request.field("Host"),
+          request.field("Origin"),
+          request.field("X-Prehend-Token"),
+          request.field("Cookie"),
+          request.upgrade,
+          request.field("Sec-WebSocket-Protocol")};
 }
+
+/// A client of the hub, as long as it is connected.
+class Viewer final : public web::Channel {
+ public:
+  Viewer(Hub& hub, bool orders) : hub_(hub), client_(hub.connect(orders)) {}
+  ~Viewer() override { hub_.disconnect(client_); }
+  Viewer(const Viewer&) = delete;
+  Viewer& operator=(const Viewer&) = delete;
+
+  void hear(std::string_view said, bool binary) override {
+    if (binary)
+      hub_.hear_bytes(client_, said);
+    else
+      hub_.hear(client_, said);
+  }
+  std::optional<web::Frame> next() override {
+    auto frame = hub_.next(client_);
+    if (!frame) return std::nullopt;
+    return web::Frame{frame->binary, std::move(frame->head), std::move(frame->payload)};
+  }
+  bool overflowed() const override { return hub_.overflowed(client_); }
+
+ private:
+  Hub& hub_;
+  Hub::Client client_;
+};
 
 std::string text_of(const dds::Guid& guid) {
   return {guid.begin(), guid.end()};
@@ -128,8 +168,16 @@ void Show::begin() {
   publish(view_.begin(options_.now_ns()));
 }
 
-Verdict Show::judge(const Asked& asked) {
-  return console::judge(asked, options_.policy);
+std::variant<web::Answer, web::Upgrade> Show::answer(const web::Request& request) {
+  const Verdict verdict = judge(asked_of(request), options_.policy);
+  if (verdict.route == Route::socket)
+    return web::Upgrade{verdict.what, std::make_unique<Viewer>(hub_, verdict.orders)};
+  web::Answer made = answer(verdict, request.body);
+  made.fields.insert(made.fields.end(), {{"Content-Security-Policy", content_policy},
+                                         {"X-Content-Type-Options", "nosniff"},
+                                         {"Referrer-Policy", "no-referrer"},
+                                         {"Cross-Origin-Resource-Policy", "same-origin"}});
+  return made;
 }
 
 web::Answer Show::answer(const Verdict& verdict, std::string_view body) {
@@ -137,38 +185,46 @@ web::Answer Show::answer(const Verdict& verdict, std::string_view body) {
   if (verdict.route == Route::hand) return hand(body);
   if (verdict.route == Route::consent) return consent(body);
   if (verdict.route == Route::tracking) return tracking(verdict.what);
-  if (verdict.route == Route::page)
-    return {200, "text/html; charset=utf-8",
-            page::html(options_.give ? options_.policy.order_token : "", options_.no_hand),
-            verdict.set_cookie ? options_.policy.access_token : ""};
+  if (verdict.route == Route::page) return page(verdict.set_cookie);
   if (verdict.route == Route::file) {
     const page::File file = page::file(verdict.what);
-    return {200, std::string(file.type), std::string(file.text), ""};
+    return {200, std::string(file.type), std::string(file.text)};
   }
-  return plain(verdict.status == 0 ? 404 : verdict.status, verdict.what);
+  return web::plain(verdict.status == 0 ? 404 : verdict.status, verdict.what);
+}
+
+web::Answer Show::page(bool set_cookie) const {
+  const Policy& policy = options_.policy;
+  web::Answer made{200, "text/html; charset=utf-8",
+                   page::html(options_.give ? policy.order_token : "", options_.no_hand)};
+  if (set_cookie)
+    made.fields.emplace_back("Set-Cookie", "prehend=" + policy.access_token +
+                                               "; Path=/; HttpOnly; SameSite=Strict" +
+                                               (policy.secure ? "; Secure" : ""));
+  return made;
 }
 
 web::Answer Show::order(std::string_view body) {
   const auto order = read_order(body);
-  if (!order) return plain(400, order.error().message());
-  if (!options_.give) return plain(409, recorded);
+  if (!order) return web::plain(400, order.error().message());
+  if (!options_.give) return web::plain(409, recorded);
   const nlohmann::json said{{"id", options_.give(*order)}};
-  return {202, "application/json", said.dump(), ""};
+  return {202, "application/json", said.dump()};
 }
 
 web::Answer Show::hand(std::string_view body) {
-  if (!options_.hand) return plain(409, options_.no_hand);
+  if (!options_.hand) return web::plain(409, options_.no_hand);
   const auto line = hand_line(body, to_ns(process_now()), options_.X_TW);
-  if (!line) return plain(400, line.error().message());
+  if (!line) return web::plain(400, line.error().message());
   options_.hand(*line);
-  return plain(202, "sent");
+  return web::plain(202, "sent");
 }
 
 web::Answer Show::consent(std::string_view body) {
-  if (!options_.consent) return plain(409, recorded);
+  if (!options_.consent) return web::plain(409, recorded);
   auto said = take_consent(body);
-  if (!said) return plain(400, said.error().message());
-  return {202, "application/json", std::move(*said), ""};
+  if (!said) return web::plain(400, said.error().message());
+  return {202, "application/json", std::move(*said)};
 }
 
 Expected<std::string> Show::take_consent(std::string_view body) {
@@ -195,11 +251,11 @@ void Show::answer(const std::vector<Desk::Answer>& answers) {
 /// Only what was fetched has a name here, so nobody reads another file by it.
 web::Answer Show::tracking(const std::string& name) const {
   const std::string_view type = page::tracking_type(name);
-  if (type.empty()) return plain(404, "belongs to no hand tracking");
+  if (type.empty()) return web::plain(404, "belongs to no hand tracking");
   auto bytes = read_file(options_.tracking / name);
   if (!bytes)
-    return plain(404, "is not installed: services/console/service/page/hand-tracking/fetch");
-  return {200, std::string(type), std::move(*bytes), ""};
+    return web::plain(404, "is not installed: services/console/service/page/hand-tracking/fetch");
+  return {200, std::string(type), std::move(*bytes)};
 }
 
 void Show::tick() {

@@ -7,12 +7,15 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "common/base/error.hpp"
 #include "common/model/hand_model.hpp"
 #include "common/recording/types/type.hpp"
 #include "common/service/config.hpp"
+#include "common/web/site.hpp"
+#include "services/console/core/access.hpp"
 #include "services/console/core/consent.hpp"
 #include "services/console/core/desk.hpp"
 #include "services/console/core/hub.hpp"
@@ -21,7 +24,6 @@
 #include "services/console/core/round.hpp"
 #include "services/console/service/film.hpp"
 #include "services/console/service/mailbox.hpp"
-#include "services/console/service/web/server.hpp"
 
 namespace prehend::console {
 
@@ -51,9 +53,7 @@ class Show : public web::Site {
   };
   static Expected<std::unique_ptr<Show>> create(const service::Config& config, Options options);
 
-  Verdict judge(const Asked& asked) override;
-  web::Answer answer(const Verdict& verdict, std::string_view body) override;
-  Hub& hub() override { return hub_; }
+  std::variant<web::Answer, web::Upgrade> answer(const web::Request& request) override;
   void tick() override;
 
   const Policy& policy() const { return options_.policy; }
@@ -73,6 +73,9 @@ class Show : public web::Site {
 
   Show(Options options, recording::types::Library types, LabView view, Hub hub,
        std::shared_ptr<Hands> hands, std::vector<ServiceInfo> services);
+  /// To anything but a WebSocket.
+  web::Answer answer(const Verdict& verdict, std::string_view body);
+  web::Answer page(bool set_cookie) const;
   web::Answer order(std::string_view body);
   web::Answer hand(std::string_view body);
   web::Answer consent(std::string_view body);

@@ -6,7 +6,7 @@
 #include <variant>
 #include <vector>
 
-#include "common/dds/fastdds.hpp"
+#include "common/dds/release/fastdds.hpp"
 #include "common/recording/types/value.hpp"
 
 namespace prehend::recorder {

@@ -4,7 +4,7 @@
 #include <utility>
 #include <vector>
 
-#include "common/dds/packet.hpp"
+#include "common/dds/guard/packet.hpp"
 
 namespace prehend::test {
 

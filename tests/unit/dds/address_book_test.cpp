@@ -1,6 +1,6 @@
 // Who may speak for a participant: only packets from where it announced itself and from where it
 // said it would be. Times and addresses are told, so the same packets have the same fate each time.
-#include "common/dds/address_book.hpp"
+#include "common/dds/guard/address_book.hpp"
 
 #include <gtest/gtest.h>
 

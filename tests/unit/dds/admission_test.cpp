@@ -1,11 +1,11 @@
 // A flood of invented participants does not keep out those who are there.
-#include "common/dds/admission.hpp"
+#include "common/dds/guard/admission.hpp"
 
 #include <gtest/gtest.h>
 
 #include <map>
 
-#include "common/dds/address_book.hpp"
+#include "common/dds/guard/address_book.hpp"
 #include "tests/support/packets/packets.hpp"
 
 namespace prehend::dds {

@@ -1,6 +1,6 @@
 // Who is told of a participant, and how often: newcomers at once, everybody often enough for a
 // lease, and nobody N times when N others come. Times are told.
-#include "common/dds/announcement_pacer.hpp"
+#include "common/dds/guard/announcement_pacer.hpp"
 
 #include <gtest/gtest.h>
 

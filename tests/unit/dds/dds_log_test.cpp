@@ -4,7 +4,7 @@
 
 #include <fastdds/dds/log/Log.hpp>
 
-#include "common/dds/fastdds.hpp"
+#include "common/dds/release/fastdds.hpp"
 
 namespace prehend::dds {
 namespace {

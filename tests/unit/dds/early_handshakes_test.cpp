@@ -1,5 +1,5 @@
 // Who begins a handshake before it is admitted need not begin again, and a flood takes no memory.
-#include "common/dds/early_handshakes.hpp"
+#include "common/dds/guard/early_handshakes.hpp"
 
 #include <gtest/gtest.h>
 

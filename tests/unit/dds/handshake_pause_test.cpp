@@ -1,10 +1,10 @@
 // Security.ThoseWhoComeAndGoLockNobodyUp locked a process up in every second run until two
 // functions of Fast DDS 2.9.1 were called through ours. Nothing but the loader sees to that.
-#include "common/dds/handshake_pause.hpp"
+#include "common/dds/guard/handshake_pause.hpp"
 
 #include <gtest/gtest.h>
 
-#include "common/dds/fastdds.hpp"
+#include "common/dds/release/fastdds.hpp"
 
 namespace prehend::dds {
 namespace {

@@ -1,6 +1,6 @@
 // What is said in plain text in the name of a member of a lab with keys: nothing of it ends the
 // membership, nor changes what was announced before the handshake. Times are told.
-#include "common/dds/members.hpp"
+#include "common/dds/guard/members.hpp"
 
 #include <gtest/gtest.h>
 

@@ -2,7 +2,7 @@
 // discovery must be lists of parameters, and Fast DDS's statistics part must be the last and 56
 // bytes long, or its library ends the process by an assertion. And whose a message is: what it says
 // of itself must agree in every place, in both orders of bytes.
-#include "common/dds/packet.hpp"
+#include "common/dds/guard/packet.hpp"
 
 #include <gtest/gtest.h>
 

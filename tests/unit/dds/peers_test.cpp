@@ -5,8 +5,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "common/dds/guarded_transport.hpp"
-#include "common/dds/user_data.hpp"
+#include "common/dds/guard/guarded_transport.hpp"
+#include "common/dds/release/user_data.hpp"
 
 namespace prehend::dds {
 namespace {

@@ -1,6 +1,6 @@
 // One at a time: while a packet is in the serializer nobody else is, and after it is closed nobody.
 // A packet that stays there is noticed, a process that is merely busy with ever new ones is not.
-#include "common/dds/serialized_transport.hpp"
+#include "common/dds/guard/serialized_transport.hpp"
 
 #include <gtest/gtest.h>
 

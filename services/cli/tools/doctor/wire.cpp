@@ -13,7 +13,7 @@
 #include <string_view>
 #include <vector>
 
-#include "common/dds/wan_transport.hpp"
+#include "common/dds/sites.hpp"
 
 namespace prehend::cli {
 namespace {

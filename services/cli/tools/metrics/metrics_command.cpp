@@ -12,14 +12,17 @@
 #include "common/service/membership.hpp"
 #include "common/service/supervisor.hpp"
 #include "common/tool/interrupt.hpp"
+#include "common/web/server.hpp"
 #include "services/cli/service/self_reports.hpp"
-#include "services/cli/tools/metrics/http/server.hpp"
 #include "services/cli/tools/metrics/lab_metrics.hpp"
+#include "services/cli/tools/metrics/metrics_site.hpp"
 
 namespace prehend::cli {
 namespace {
 
 constexpr Duration round = std::chrono::milliseconds(50);
+constexpr std::size_t max_clients = 32;
+constexpr Duration patience = std::chrono::seconds(5);
 
 void listen(SelfReports& reports, LabMetrics& metrics, Time now) {
   for (const auto& sample : reports.statuses.take())
@@ -36,7 +39,7 @@ void listen(SelfReports& reports, LabMetrics& metrics, Time now) {
       metrics.hear(sample.data, now);
 }
 
-int serve(const service::Config& config, http::Server& server) {
+int serve(const service::Config& config, LabMetrics& metrics, web::Server& server) {
   auto participant = dds::Participant::create(service::membership(config, "prehend", "viewer"));
   if (!participant) return service::complain(participant.error());
   auto reports = SelfReports::create(*participant);
@@ -48,11 +51,10 @@ int serve(const service::Config& config, http::Server& server) {
                            address.find(':') == std::string::npos ? address : "[" + address + "]",
                            server.port())
             << std::flush;
-  LabMetrics metrics(config.names("lab.services"));
   service::Supervisor supervisor;
   while (!tool::interrupted()) {
     listen(*reports, metrics, process_now());
-    server.serve(round, [&] { return metrics.text(process_now()); });
+    server.run_for(round);
     supervisor.beat(process_now());
   }
   supervisor.stopping();
@@ -75,10 +77,15 @@ int metrics_command(const std::vector<std::string>& arguments) {
   const std::int64_t port = config->integer("metrics.port");
   if (port < 0 || port > 65535)
     return service::complain({"is no port", "metrics.port", "0 to 65535"}, exit_wrong_use);
-  auto server = http::Server::listen(
-      {.address = config->text("metrics.address"), .port = static_cast<int>(port)});
+  LabMetrics metrics(config->names("lab.services"));
+  MetricsSite site([&] { return metrics.text(process_now()); });
+  const auto server = web::Server::listen({.address = config->text("metrics.address"),
+                                           .port = static_cast<int>(port),
+                                           .max_clients = max_clients,
+                                           .patience = patience},
+                                          site);
   if (!server) return service::complain(server.error());
-  return serve(*config, *server);
+  return serve(*config, metrics, **server);
 }
 
 }  // namespace prehend::cli

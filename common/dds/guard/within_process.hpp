@@ -1,0 +1,36 @@
+#pragma once
+
+#include "common/dds/release/fastdds.hpp"
+
+#if PREHEND_FAST_DDS == 2
+#include <fastrtps/xmlparser/XMLProfileManager.h>
+#else
+#include <fastdds/LibrarySettings.hpp>
+#include <fastdds/dds/domain/DomainParticipantFactory.hpp>
+#endif
+
+namespace prehend::dds {
+
+/// Has the participants of this process find each other over the network like those of others, and
+/// hand over by pointers to each other's readers nothing but samples. Fast DDS 2.9.1 ends the
+/// process (StatefulWriter::intraprocess_delivery and _gap on a reader that is gone) when one of
+/// them leaves while another still finds it; a recorder has two. Samples over the network as well
+/// would lock a writer up whose instances end (StatefulWriter::check_acked_status does not come
+/// back; test_lockstep, 1 run in 3). To be called before the first one joins.
+inline void find_over_the_network_within_process() {
+#if PREHEND_FAST_DDS == 2
+  namespace library = eprosima::fastrtps;
+  library::LibrarySettingsAttributes settings;
+#else
+  namespace library = eprosima::fastdds;
+  library::LibrarySettings settings;
+#endif
+  settings.intraprocess_delivery = library::INTRAPROCESS_USER_DATA_ONLY;
+#if PREHEND_FAST_DDS == 2
+  library::xmlparser::XMLProfileManager::library_settings(settings);
+#else
+  library::dds::DomainParticipantFactory::get_instance()->set_library_settings(settings);
+#endif
+}
+
+}  // namespace prehend::dds
