@@ -36,7 +36,7 @@ void read_word(Announcement& said, std::uint16_t parameter, const Numbers& value
   std::size_t at = 0;
   if (parameter == entity_name) {
     said.name = text_at(value, at);
-  } else if (parameter == user_data) {
+  } else if (parameter == participant_user_data) {
     if (UserData told = read_user_data(text_at(value, at, 40)); !told.middleware.empty()) {
       said.middleware = std::move(told.middleware);
       said.role = told.role;

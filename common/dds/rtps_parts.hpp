@@ -34,8 +34,8 @@ constexpr std::uint32_t participants_reader = 0x000100c7;
 constexpr std::uint16_t end_of_list = 0x0001, lease_duration = 0x0002, default_locator = 0x0031,
                         metatraffic_locator = 0x0032, participant_guid = 0x0050,
                         endpoint_guid = 0x005a, key_hash = 0x0070, status_info = 0x0071,
-                        entity_name = 0x0062, user_data = 0x002c, identity_token = 0x1001,
-                        product_version = 0x8000;
+                        entity_name = 0x0062, participant_user_data = 0x002c,
+                        identity_token = 0x1001, product_version = 0x8000;
 
 /// Numbers in one order of bytes. The caller has seen to it that they are there.
 struct Numbers {

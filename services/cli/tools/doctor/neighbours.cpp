@@ -14,6 +14,7 @@
 #include "common/base/printable.hpp"
 #include "common/dds/discovery_events.hpp"
 #include "common/dds/participant.hpp"
+#include "common/dds/user_data.hpp"
 #include "common/service/membership.hpp"
 #include "services/cli/tools/doctor/wire.hpp"
 
