@@ -1,5 +1,5 @@
 // Rules on functions: how long they are, and where those stand that begin a program or add a
-// command to it.
+// command to it; and what else stands beside main().
 #include <algorithm>
 #include <optional>
 
@@ -11,6 +11,7 @@ namespace prehend::architecture {
 namespace {
 
 constexpr int max_function_lines = 60;
+constexpr int max_main_lines = 59;
 
 // A comment of its own that says why a function is long.
 bool is_reason(std::string_view line) {
@@ -74,6 +75,17 @@ bool adds_a_command(std::string_view name, std::string_view arguments) {
          name.ends_with("_command");
 }
 
+// class X {, or struct X final : Y; neither an enum class nor a variable of a struct.
+bool is_a_class(const Word& word) {
+  if (word.text != "class" && word.text != "struct") return false;
+  const std::vector<Word> before = identifiers(word.before), after = identifiers(word.after);
+  if (after.empty() || (!before.empty() && before.back().text == "enum")) return false;
+  if (after.size() > 1 && after[1].text == "final") return true;
+  const std::string_view rest = after.front().after;
+  const auto next = rest.find_first_not_of(' ');
+  return next == std::string_view::npos || rest[next] == '{' || rest[next] == ':';
+}
+
 }  // namespace
 
 Violations broken_functions(const House& house, const Agreed& agreed) {
@@ -81,6 +93,23 @@ Violations broken_functions(const House& house, const Agreed& agreed) {
   Exceptions exceptions(agreed.long_functions);
   for (const File& file : house.sources) check_lengths(file, exceptions, violations);
   exceptions.report_unused(violations);
+  return violations;
+}
+
+Violations overgrown_mains(const House& house, const Agreed&) {
+  Violations violations;
+  for (const File& file : house.sources) {
+    if (!is_main(file)) continue;
+    if (const int lines = static_cast<int>(file.lines.size()); lines > max_main_lines)
+      violations.push_back({file.path, max_main_lines + 1,
+                            "has " + std::to_string(lines) + " lines, at most " +
+                                std::to_string(max_main_lines) + " are a main.cpp"});
+    for (std::size_t i = 0; i < file.code.size(); ++i)
+      for (const Word& word : identifiers(file.code[i]))
+        if (is_a_class(word))
+          violations.push_back({file.path, static_cast<int>(i + 1),
+                                "no test reaches a " + std::string(word.text) + " of a main.cpp"});
+  }
   return violations;
 }
 

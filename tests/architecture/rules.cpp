@@ -22,6 +22,7 @@ constexpr std::array all_rules{
     Rule{"programs", "return an error; only main() ends a program", process_ends_in_libraries},
     Rule{"commands", "a subcommand X is added by X_command.cpp, a program by main.cpp",
          misnamed_commands},
+    Rule{"mains", "main() only calls what lies in the library of its folder", overgrown_mains},
 };
 
 }  // namespace

@@ -45,6 +45,7 @@ Violations broken_pages(const House& house, const Agreed& agreed);
 Violations retired_words(const House& house, const Agreed& agreed);
 Violations process_ends_in_libraries(const House& house, const Agreed& agreed);
 Violations misnamed_commands(const House& house, const Agreed& agreed);
+Violations overgrown_mains(const House& house, const Agreed& agreed);
 
 /// Edges from folder to folder that sources make by what they include, and one place for each.
 std::map<std::pair<std::string, std::string>, Violation> folder_edges(const House& house);

@@ -300,6 +300,27 @@ Breaks code_breaks() {
   };
 }
 
+Breaks main_breaks() {
+  return {
+      {"mains",
+       "a class beside main()",
+       tool_main,
+       {{tool_main, main_includes + "class Session final : public Shell {\n};\n" + main_code}}},
+      {"mains",
+       "a struct beside main()",
+       tool_main,
+       {{tool_main, main_includes + "struct Options\n{\n};\n" + main_code}}},
+      {"mains",
+       "a main.cpp that does more than call",
+       tool_main,
+       {{tool_main, main_includes + main_code + std::string(60, '\n')}}},
+      {"mains",
+       "a class beside the main() of a test",
+       "tests/unit/domains/main.cpp",
+       {{"tests/unit/domains/main.cpp", arm_test_include + "struct Lease {\n};\nint main() {}\n"}}},
+  };
+}
+
 Breaks function_breaks() {
   return {
       {"functions",
@@ -468,6 +489,7 @@ std::vector<Break> breaks() {
   add(all, layer_breaks());
   add(all, target_breaks());
   add(all, code_breaks());
+  add(all, main_breaks());
   add(all, function_breaks());
   add(all, word_breaks());
   add(all, page_breaks());

@@ -3,7 +3,7 @@
 #include <console_bridge/console.h>
 
 #include "common/arm/inverse.hpp"
-#include "services/simulation/tools/arm_import/make_arm.hpp"
+#include "services/planner/tools/arm_import/make_arm.hpp"
 #include "tests/fuzz/arm_files.hpp"
 #include "tests/fuzz/fuzz.hpp"
 #include "tests/fuzz/mutation.hpp"
@@ -19,15 +19,15 @@ bool answers(const std::string& urdf) {
     fuzz::require(arm || !arm.error().what.empty(), "refused without a reason");
     if (arm) fuzz::require_sound(*arm);
   }
-  const auto robot = simulation::read_robot(urdf);
+  const auto robot = planner::read_robot(urdf);
   if (!robot) return false;
-  const auto block = [](const simulation::Solid&) -> Expected<std::vector<Eigen::Vector3d>> {
+  const auto block = [](const planner::Solid&) -> Expected<std::vector<Eigen::Vector3d>> {
     return std::vector<Eigen::Vector3d>{{0, 0, 0}, {0.02, 0.03, 0.04}};
   };
-  for (const simulation::UrdfFinding& finding : simulation::check_arm(*robot, block))
+  for (const planner::UrdfFinding& finding : planner::check_arm(*robot, block))
     fuzz::require(!finding.what.empty() && !finding.repair.empty() && !finding.element.empty(),
                   "a finding that does not say what, where and the mend");
-  const auto made = simulation::make_arm(*robot, "fuzzed", block);
+  const auto made = planner::make_arm(*robot, "fuzzed", block);
   fuzz::require(made || !made.error().what.empty(), "refused without a reason");
   if (!made) return false;
   fuzz::require_sound(made->model);

@@ -4,7 +4,7 @@
 
 #include <numeric>
 
-#include "services/simulation/tools/hand_import/make_hand.hpp"
+#include "services/planner/tools/hand_import/make_hand.hpp"
 #include "tests/fuzz/fuzz.hpp"
 #include "tests/fuzz/hand_files.hpp"
 #include "tests/fuzz/mutation.hpp"
@@ -13,28 +13,27 @@ using namespace prehend;
 
 namespace {
 
-std::size_t solids_of(const simulation::Robot& robot) {
+std::size_t solids_of(const planner::Robot& robot) {
   return std::accumulate(
       robot.links.begin(), robot.links.end(), std::size_t{0},
       [](std::size_t sum, const auto& link) { return sum + link.collision.size(); });
 }
 
 bool make(const std::string& urdf) {
-  const auto robot = simulation::read_robot(urdf);
+  const auto robot = planner::read_robot(urdf);
   if (!robot) {
     fuzz::require(!robot.error().what.empty(), "refused without a reason");
     return false;
   }
-  const auto block = [](const simulation::Solid&) -> Expected<std::vector<Eigen::Vector3d>> {
+  const auto block = [](const planner::Solid&) -> Expected<std::vector<Eigen::Vector3d>> {
     return std::vector<Eigen::Vector3d>{{0, 0, 0}, {0.02, 0.03, 0.04}};
   };
-  for (const simulation::UrdfFinding& finding : simulation::check(*robot, block))
+  for (const planner::UrdfFinding& finding : planner::check(*robot, block))
     fuzz::require(!finding.what.empty() && !finding.repair.empty() && !finding.element.empty(),
                   "a finding that does not say what, where and the mend");
   // The whole search takes a minute under sanitizers.
-  const simulation::SearchEffort effort{
-      .samples = 6, .refinements = 1, .shapings = 2, .step = 0.02};
-  const auto hand = simulation::make_hand(*robot, "fuzzed", block, effort);
+  const planner::SearchEffort effort{.samples = 6, .refinements = 1, .shapings = 2, .step = 0.02};
+  const auto hand = planner::make_hand(*robot, "fuzzed", block, effort);
   if (!hand) return false;
   fuzz::require_sound(hand->model);
   std::size_t made = 0;

@@ -1,41 +1,12 @@
-#include <fmt/format.h>
-
 #include <CLI/CLI.hpp>
-#include <iostream>
 
-#include "common/base/clock.hpp"
 #include "common/base/log.hpp"
 #include "common/ros2/nodes/nodes.hpp"
 #include "common/service/arguments.hpp"
-#include "common/service/supervisor.hpp"
-#include "common/tool/interrupt.hpp"
-#include "services/ros/service/teller.hpp"
-
-namespace {
-
-using namespace prehend;
-
-constexpr Duration beat = std::chrono::milliseconds(100);
-
-int run(const service::Config& config, const ros::Teller::Options& options) {
-  auto teller = ros::Teller::create(config, options);
-  if (!teller) return service::complain(teller.error());
-  tool::note_interrupts();
-  std::cout << fmt::format("domain {} of ROS 2: /joint_states /robot_description /tf /tf_static\n",
-                           options.domain)
-            << std::flush;
-  service::Supervisor supervisor;
-  while (!tool::interrupted()) {
-    (*teller)->tell(beat);
-    supervisor.beat(process_now());
-  }
-  supervisor.stopping();
-  return exit_done;
-}
-
-}  // namespace
+#include "services/ros/service/tell_nodes.hpp"
 
 int main(int argc, char** argv) {
+  using namespace prehend;
   CLI::App app{
       "Tells nodes of ROS 2 in the domain ROS_DOMAIN_ID, without a bridge, what the robot hand "
       "and\n"
@@ -56,5 +27,5 @@ int main(int argc, char** argv) {
   options.domain = *domain;
   const auto config = lab.load();
   if (!config) return service::complain(config.error(), exit_wrong_use);
-  return run(*config, options);
+  return ros::tell_nodes(*config, options);
 }

@@ -11,7 +11,7 @@
 #include <fstream>
 
 #include "common/base/file_text.hpp"
-#include "services/simulation/tools/hand_import/make_hand.hpp"
+#include "services/planner/tools/hand_import/make_hand.hpp"
 #include "tests/support/hands.hpp"
 #include "tests/support/paths/paths.hpp"
 #include "tests/support/popular_hands/popular_hands.hpp"
@@ -33,9 +33,9 @@ model::HandModel untold(const std::string& name) {
 
 /// Imported with so short a search as does for the sense in which fingers close.
 model::HandModel imported(const popular_hands::PopularHand& hand) {
-  const auto robot = simulation::read_robot(hand.urdf);
-  return simulation::make_hand(robot.value(), hand.name, simulation::mesh_files("."),
-                               {.samples = 150, .refinements = 5, .shapings = 20, .step = 0.004})
+  const auto robot = planner::read_robot(hand.urdf);
+  return planner::make_hand(robot.value(), hand.name, planner::mesh_files("."),
+                            {.samples = 150, .refinements = 5, .shapings = 20, .step = 0.004})
       .value()
       .model;
 }

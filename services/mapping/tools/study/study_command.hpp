@@ -1,0 +1,11 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace prehend::mapping {
+
+/// `prehend study`; returns the exit code.
+int study_command(const std::vector<std::string>& arguments);
+
+}  // namespace prehend::mapping

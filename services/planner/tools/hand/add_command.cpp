@@ -1,0 +1,168 @@
+// `prehend hand add`: a URDF becomes a hand of the lab, with a report of how well it fits.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cctype>
+#include <fstream>
+#include <iostream>
+#include <memory>
+
+#include "common/base/log.hpp"
+#include "common/grasping/candidates.hpp"
+#include "services/planner/tools/hand/commands.hpp"
+#include "services/planner/tools/hand/fit.hpp"
+#include "services/planner/tools/hand_import/finding_report.hpp"
+#include "services/planner/tools/hand_import/make_hand.hpp"
+#include "services/planner/tools/planning/planning_task.hpp"
+
+namespace prehend::planner {
+namespace {
+
+struct AddArguments {
+  std::string file, name, output;
+  int candidates = 60;
+  bool json = false;
+};
+
+Expected<void> write_folder(const MadeHand& hand, const std::filesystem::path& folder) {
+  std::error_code failed;
+  std::filesystem::create_directories(folder, failed);
+  for (const auto& [name, text] :
+       {std::pair("hand.urdf", &hand.urdf), std::pair("hand.toml", &hand.toml)}) {
+    std::ofstream stream(folder / name, std::ios::binary);
+    if (!(stream << *text) || !stream.flush())
+      return fail("cannot be written", (folder / name).string(), "is there room, and may you?");
+  }
+  return {};
+}
+
+/// One object of the trial: the best planned grasp and whether it survived lift, shake and turn.
+nlohmann::ordered_json trial(const MadeHand& hand, const grasping::Body& body, int candidates) {
+  const auto plan = planner::plan_in_batches(hand.model, body, candidates, 0);
+  nlohmann::ordered_json document{{"object", body.name},
+                                  {"width_m", grasping::narrowest_width(body.shape)},
+                                  {"held", plan && plan->held()},
+                                  {"epsilon", nullptr},
+                                  {"reason", nullptr}};
+  if (!plan)
+    document["reason"] = plan.error().message();
+  else if (!plan->held())
+    document["reason"] = plan->reason;
+  if (plan && !plan->grasps.empty()) document["epsilon"] = plan->grasps.front().quality.epsilon;
+  return document;
+}
+
+nlohmann::ordered_json report(const MadeHand& hand, const std::vector<grasping::Body>& bodies,
+                              const AddArguments& arguments) {
+  nlohmann::ordered_json document{{"name", arguments.name}, {"folder", arguments.output}};
+  document["dofs"] = nlohmann::ordered_json::array();
+  for (const model::HandDof& dof : hand.model.dofs())
+    document["dofs"].push_back(
+        {{"name", dof.name}, {"closing", dof.closing}, {"lower", dof.lower}, {"upper", dof.upper}});
+  document["fingertips"] = nlohmann::ordered_json::array();
+  for (const model::HandFingertip& tip : hand.model.fingertips())
+    document["fingertips"].push_back(
+        {{"name", tip.name},
+         {"link", hand.model.links()[static_cast<std::size_t>(tip.link)].name},
+         {"position_m", std::vector<double>(tip.p_LT.begin(), tip.p_LT.end())}});
+  document["changes"] = hand.changes;
+  document["findings"] = nlohmann::ordered_json::array();
+  document["self_collision"] = nlohmann::ordered_json::array();
+  for (const UrdfFinding& finding : hand.findings)
+    document[finding.code == "self-collision" ? "self_collision" : "findings"].push_back(
+        to_json(finding));
+  const Span span = fingertip_span(hand.model);
+  document["fingertip_span_m"] = {span.least, span.greatest};
+  document["opening_m"] = hand.model.reach().opening;
+  document["opposed"] = hand.opposed;
+  document["trial_grasps"] = nlohmann::ordered_json::array();
+  for (const grasping::Body& body : trial_bodies(bodies, hand.model.reach().opening))
+    document["trial_grasps"].push_back(trial(hand, body, arguments.candidates));
+  return document;
+}
+
+/// What other commands call the hand: by its name, if that leads to its folder.
+std::string called(const std::string& name, const std::string& folder) {
+  std::error_code none;
+  if (std::filesystem::equivalent(model::hand_directory(name), folder, none)) return name;
+  return folder.find('/') == std::string::npos ? "./" + folder : folder;
+}
+
+void print(const nlohmann::ordered_json& document) {
+  for (const auto& change : document["changes"]) fmt::print("{}\n", change.get<std::string>());
+  fmt::print("\n{:<24} {:>7}\n", "DoF", "closing");
+  for (const auto& dof : document["dofs"])
+    fmt::print("{:<24} {:>7}\n", dof["name"].get<std::string>(), dof["closing"].get<int>());
+  fmt::print("\n{} fingertips, {:.0f} to {:.0f} mm apart; takes objects up to {:.0f} mm\n",
+             document["fingertips"].size(), 1e3 * document["fingertip_span_m"][0].get<double>(),
+             1e3 * document["fingertip_span_m"][1].get<double>(),
+             1e3 * document["opening_m"].get<double>());
+  for (const auto& pair : document["self_collision"])
+    fmt::print("self-collision at rest: {} {}\n", pair["element"].get<std::string>(),
+               pair["what"].get<std::string>());
+  if (document["self_collision"].empty()) fmt::print("no self-collision at rest\n");
+  for (const auto& trial : document["trial_grasps"])
+    fmt::print("{:<12} ({:.0f} mm) {}\n", trial["object"].get<std::string>(),
+               1e3 * trial["width_m"].get<double>(),
+               trial["held"].get<bool>()
+                   ? fmt::format("held, epsilon {:.3f}", trial["epsilon"].get<double>())
+                   : "not held: " + trial["reason"].get<std::string>());
+  const auto folder = document["folder"].get<std::string>();
+  fmt::print("\nthe hand is in {}; correct hand.toml there where it guessed wrong\n", folder);
+  const std::string hand = called(document["name"].get<std::string>(), folder);
+  fmt::print("then: prehend train --hand {0}; prehend demo --hand {0}\n", hand);
+}
+
+int run_add(AddArguments arguments) {
+  for (const char c : arguments.name)
+    if (!std::isalnum(static_cast<unsigned char>(c)) && c != '_' && c != '-')
+      return tool::complain({"a name has letters, digits, _ and - only", arguments.name, {}},
+                            exit_wrong_use);
+  if (arguments.output.empty()) arguments.output = "./" + arguments.name;
+  std::error_code ignored;
+  if (!std::filesystem::is_regular_file(arguments.file, ignored))
+    return tool::complain({"there is no such file", arguments.file, {}}, exit_wrong_use);
+  if (std::filesystem::exists(std::filesystem::path(arguments.output) / "hand.urdf", ignored))
+    return tool::complain(
+        {"there is a hand already", arguments.output, "remove it, or use --output"},
+        exit_wrong_use);
+  const auto robot = read_robot_file(arguments.file);
+  if (!robot) return tool::complain(robot.error(), exit_no);
+  const auto hand = make_hand(*robot, arguments.name, mesh_files(arguments.file), {.trials = true});
+  if (!hand) {
+    log::error("{}: {}; `prehend hand check` lists everything", arguments.file,
+               hand.error().message());
+    return 1;
+  }
+  const auto bodies = planner::catalogue_bodies();
+  if (!bodies) return tool::complain(bodies.error(), exit_broken);
+  if (const auto written = write_folder(*hand, arguments.output); !written)
+    return tool::complain(written.error(), exit_broken);
+  const nlohmann::ordered_json document = report(*hand, *bodies, arguments);
+  if (arguments.json)
+    std::cout << document.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) << "\n";
+  else
+    print(document);
+  return 0;
+}
+
+}  // namespace
+
+void add_add(tool::Program& program) {
+  auto arguments = std::make_shared<AddArguments>();
+  CLI::App* command = program.app().add_subcommand(
+      "add",
+      "Makes a hand of the lab from a URDF, a folder with hand.urdf and hand.toml, and tries it "
+      "on\n"
+      "three objects. Exit code 0: made, 1: the URDF is not usable, 2: wrong use.");
+  command->add_option("FILE", arguments->file, "a URDF")->required();
+  command->add_option("--name", arguments->name, "of the hand")->required();
+  command->add_option("--output,-o", arguments->output, "folder for the hand (./NAME)");
+  command->add_option("--candidates", arguments->candidates, "grasps that are tried an object")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 100000));
+  command->add_flag("--json", arguments->json, "one JSON document on standard output");
+  program.on(*command, [arguments] { return run_add(*arguments); });
+}
+
+}  // namespace prehend::planner

@@ -1,0 +1,64 @@
+// `prehend hand check`: what is missing or suspicious in a URDF.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <iostream>
+#include <memory>
+
+#include "common/base/log.hpp"
+#include "services/planner/tools/hand/commands.hpp"
+#include "services/planner/tools/hand_import/finding_report.hpp"
+#include "services/planner/tools/hand_import/make_hand.hpp"
+
+namespace prehend::planner {
+namespace {
+
+int run_check(const std::string& file, bool json) {
+  if (std::error_code ignored; !std::filesystem::is_regular_file(file, ignored)) {
+    log::error("{}: there is no such file", file);
+    return 2;
+  }
+  std::vector<UrdfFinding> findings;
+  const auto robot = read_robot_file(file);
+  if (robot) {
+    const MeshReader meshes = mesh_files(file);
+    findings = check(*robot, meshes);
+    // What only shows when a hand is made of it: too many DoFs, no fingers.
+    if (is_usable(findings))
+      if (const auto hand = make_hand(*robot, robot->name.empty() ? "hand" : robot->name, meshes);
+          !hand)
+        findings.insert(findings.begin(), {Severity::error, "no-hand", "robot " + robot->name, 0,
+                                           hand.error().message(), hand.error().hint});
+  } else {
+    findings.push_back(
+        {Severity::error, "not-urdf", "file", 0, robot.error().message(), robot.error().hint});
+  }
+  const bool usable = is_usable(findings);
+  if (json) {
+    nlohmann::ordered_json document{{"file", file}, {"usable", usable}};
+    document["findings"] = nlohmann::ordered_json::array();
+    for (const UrdfFinding& finding : findings) document["findings"].push_back(to_json(finding));
+    std::cout << document.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) << "\n";
+  } else {
+    for (const UrdfFinding& finding : findings) print(finding);
+    fmt::print("{}: {}, {} finding{}\n", file, usable ? "usable" : "not usable", findings.size(),
+               findings.size() == 1 ? "" : "s");
+  }
+  return usable ? 0 : 1;
+}
+
+}  // namespace
+
+void add_check(tool::Program& program) {
+  auto file = std::make_shared<std::string>();
+  auto json = std::make_shared<bool>(false);
+  CLI::App* command = program.app().add_subcommand(
+      "check",
+      "Lists what is missing or suspicious in a URDF that shall be a hand, each with its mend.\n"
+      "Exit code 0: usable, perhaps with warnings, 1: not usable, 2: wrong use.");
+  command->add_option("FILE", *file, "a URDF")->required();
+  command->add_flag("--json", *json, "one JSON document on standard output");
+  program.on(*command, [file, json] { return run_check(*file, *json); });
+}
+
+}  // namespace prehend::planner

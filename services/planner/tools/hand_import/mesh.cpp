@@ -1,0 +1,132 @@
+#include "services/planner/tools/hand_import/mesh.hpp"
+
+#include <assimp/postprocess.h>
+#include <assimp/scene.h>
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <assimp/Importer.hpp>
+#include <cstdlib>
+#include <numbers>
+#include <sstream>
+
+namespace prehend::planner {
+namespace {
+
+using Eigen::Vector3d;
+using std::filesystem::path;
+
+constexpr double thinnest = 0.001;  // m
+
+/// Places where a file of a package may lie.
+std::vector<path> candidates(const std::string& name, const path& urdf) {
+  const path folder = std::filesystem::absolute(urdf).parent_path();
+  const std::string package = "package://", file = "file://";
+  if (name.starts_with(file)) return {path(name.substr(file.size()))};
+  if (!name.starts_with(package)) return {folder / name};
+  const std::string rest = name.substr(package.size());
+  const std::string inside = rest.substr(std::min(rest.find('/') + 1, rest.size()));
+  std::vector<path> places;
+  for (path at = folder;; at = at.parent_path()) {
+    places.push_back(at / rest);
+    places.push_back(at / inside);
+    if (at == at.parent_path()) break;
+  }
+  if (const char* roots = std::getenv("ROS_PACKAGE_PATH")) {
+    std::istringstream stream(roots);
+    for (std::string root; std::getline(stream, root, ':');) places.push_back(path(root) / rest);
+  }
+  return places;
+}
+
+void collect(const aiScene& scene, const aiNode& node, const aiMatrix4x4& above,
+             std::vector<Vector3d>& points) {
+  const aiMatrix4x4 X = above * node.mTransformation;
+  for (unsigned m = 0; m < node.mNumMeshes; ++m) {
+    const aiMesh& mesh = *scene.mMeshes[node.mMeshes[m]];
+    for (unsigned v = 0; v < mesh.mNumVertices; ++v) {
+      const aiVector3D p = X * mesh.mVertices[v];
+      points.emplace_back(p.x, p.y, p.z);
+    }
+  }
+  for (unsigned c = 0; c < node.mNumChildren; ++c) collect(scene, *node.mChildren[c], X, points);
+}
+
+Expected<std::vector<Vector3d>> read_mesh(const path& file) {
+  Assimp::Importer importer;
+  const aiScene* scene =
+      importer.ReadFile(file.string(), aiProcess_JoinIdenticalVertices | aiProcess_Triangulate);
+  if (!scene || !scene->mRootNode)
+    return fail("is no mesh that can be read", file.string(), importer.GetErrorString());
+  std::vector<Vector3d> points;
+  collect(*scene, *scene->mRootNode, aiMatrix4x4(), points);
+  if (points.empty() ||
+      !std::all_of(points.begin(), points.end(), [](const Vector3d& p) { return p.allFinite(); }))
+    return fail("has no vertices, or some that are not finite", file.string());
+  return points;
+}
+
+/// A rotation whose columns are the principal axes of the points.
+Eigen::Matrix3d principal_axes(const std::vector<Vector3d>& points) {
+  Vector3d mean = Vector3d::Zero();
+  for (const Vector3d& p : points) mean += p / static_cast<double>(points.size());
+  Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
+  for (const Vector3d& p : points) spread += (p - mean) * (p - mean).transpose();
+  Eigen::Matrix3d R = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(spread).eigenvectors();
+  if (R.determinant() < 0) R.col(0) = -R.col(0);
+  return R;
+}
+
+}  // namespace
+
+MeshReader mesh_files(const path& urdf) {
+  return [urdf](const Solid& solid) -> Expected<std::vector<Vector3d>> {
+    for (const path& place : candidates(solid.mesh, urdf)) {
+      std::error_code ignored;
+      if (!std::filesystem::is_regular_file(place, ignored)) continue;
+      auto points = read_mesh(place);
+      if (points)
+        for (Vector3d& p : *points) p = p.cwiseProduct(solid.scale);
+      return points;
+    }
+    return fail("is not there", solid.mesh, "put the file where the URDF says");
+  };
+}
+
+Solid fit_primitive(const std::vector<Vector3d>& points) {
+  Solid best;
+  double least = std::numeric_limits<double>::infinity();
+  const auto offer = [&](const model::Shape& shape, const Pose& X_SF) {
+    // A box is preferred unless another is clearly smaller.
+    const double size = model::volume(shape) * (shape.kind == model::ShapeKind::box ? 1.0 : 1.02);
+    if (!(size < least)) return;
+    least = size;
+    best.shape = shape;
+    best.X_LS = X_SF;
+  };
+  const Eigen::Matrix3d own = Eigen::Matrix3d::Identity();
+  for (const Eigen::Matrix3d& R : {own, principal_axes(points)}) {
+    Vector3d low = R.transpose() * points[0], high = low;
+    for (const Vector3d& p : points) {
+      low = low.cwiseMin(R.transpose() * p);
+      high = high.cwiseMax(R.transpose() * p);
+    }
+    const Vector3d size = (high - low).cwiseMax(thinnest), middle = 0.5 * (high + low);
+    offer({model::ShapeKind::box, size}, make_pose(R * middle, R));
+    double sphere = 0.5 * thinnest;
+    for (const Vector3d& p : points) sphere = std::max(sphere, (p - R * middle).norm());
+    offer({model::ShapeKind::sphere, Vector3d::Constant(sphere)}, make_pose(R * middle));
+    for (int axis = 0; axis < 3; ++axis) {
+      Eigen::Matrix3d turned;  // z along the axis
+      for (int k = 0; k < 3; ++k) turned.col(k) = R.col((axis + 1 + k) % 3);
+      double radius = 0.5 * thinnest;
+      for (const Vector3d& p : points)
+        radius = std::max(radius, (turned.transpose() * (p - R * middle)).head<2>().norm());
+      offer({model::ShapeKind::cylinder, {radius, radius, size[axis]}},
+            make_pose(R * middle, turned));
+    }
+  }
+  return best;
+}
+
+}  // namespace prehend::planner

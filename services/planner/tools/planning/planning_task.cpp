@@ -1,0 +1,82 @@
+#include "services/planner/tools/planning/planning_task.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+#include "common/base/paths.hpp"
+#include "common/base/progress.hpp"
+#include "common/base/workers.hpp"
+#include "common/model/catalogue.hpp"
+
+namespace prehend::planner {
+
+using grasping::Body;
+
+Expected<model::HandModel> find_hand(const std::string& name) {
+  const auto folder = model::hand_directory(name);
+  std::error_code none;
+  if (name.find('/') == std::string::npos && !std::filesystem::exists(folder / "hand.toml", none))
+    return fail("there is no such hand", name, model::hand_hint());
+  return model::HandModel::load(folder);
+}
+
+Expected<std::vector<Body>> catalogue_bodies() {
+  const auto catalogue =
+      model::Catalogue::load(share_directory() / "models" / "objects" / "catalogue.toml");
+  if (!catalogue) return tl::unexpected(catalogue.error());
+  std::vector<Body> bodies;
+  for (const model::CatalogueObject& object : catalogue->objects())
+    bodies.push_back({object.name, object.shape, object.mass, object.material, {}});
+  return bodies;
+}
+
+Expected<Body> find_body(const std::string& name) {
+  const auto bodies = catalogue_bodies();
+  if (!bodies) return tl::unexpected(bodies.error());
+  std::vector<std::string> names;
+  for (const Body& body : *bodies) {
+    if (body.name == name) return body;
+    names.push_back(body.name);
+  }
+  return fail("there is no such object", name, fmt::format("one of {}", fmt::join(names, ", ")));
+}
+
+Expected<grasping::Plan> plan_with_progress(const model::HandModel& hand, const Body& object,
+                                            const grasping::PlanOptions& options,
+                                            unsigned threads) {
+  int round = 0;
+  return grasping::plan_grasps(hand, object, options, [&](std::size_t count, const auto& work) {
+    Progress progress(fmt::format("{} on {}: {}", hand.name(), object.name,
+                                  round++ == 0 ? "closing" : "lifting"));
+    share_work(count, threads, work, [&](std::size_t done) { progress.show(done, count); });
+  });
+}
+
+Expected<grasping::Plan> plan_in_batches(const model::HandModel& hand, const Body& object,
+                                         int candidates, unsigned threads) {
+  constexpr int batch = 12;
+  grasping::PlanOptions options;
+  options.tested = options.max_tested = 3;
+  options.off_posture = 0.35;
+  Expected<grasping::Plan> best = fail("there are no candidates", object.name);
+  for (int left = candidates; left > 0; left -= batch, ++options.seed) {
+    options.candidates = std::min(left, batch);
+    auto next = plan_with_progress(hand, object, options, threads);
+    const bool better = !best || (next && (next->held() || next->closed > best->closed));
+    if (better) best = std::move(next);
+    if (!best || best->held()) break;
+  }
+  return best;
+}
+
+std::string describe(const grasping::HoldResult& hold) {
+  if (hold.held) return "lift, shake, turn";
+  std::string survived;
+  if (hold.lift.value_or(false)) survived = "lift";
+  if (hold.shake.value_or(false)) survived += ", shake";
+  return (survived.empty() ? "no: " : survived + "; then ") + hold.reason;
+}
+
+}  // namespace prehend::planner

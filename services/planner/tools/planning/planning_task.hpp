@@ -1,0 +1,34 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "common/base/error.hpp"
+#include "common/grasping/planner.hpp"
+#include "common/model/hand_model.hpp"
+
+namespace prehend::planner {
+
+/// A hand of the lab by name, or of the folder of that path. The error lists those that there are.
+Expected<model::HandModel> find_hand(const std::string& name);
+
+/// The catalogue's objects as bodies, all or one by name. The error lists those that there are.
+Expected<std::vector<grasping::Body>> catalogue_bodies();
+Expected<grasping::Body> find_body(const std::string& name);
+
+/// plan_grasps() in so many threads (0: one a core), with progress on standard error.
+Expected<grasping::Plan> plan_with_progress(const model::HandModel& hand,
+                                            const grasping::Body& object,
+                                            const grasping::PlanOptions& options, unsigned threads);
+
+/// Plans with a few candidates at a time, up to so many, until a grasp has held: most hands hold
+/// most things within the first. For hands whose postures were searched, so that most candidates
+/// keep to them. The last plan, or the one in which most candidates closed.
+Expected<grasping::Plan> plan_in_batches(const model::HandModel& hand, const grasping::Body& object,
+                                         int candidates, unsigned threads);
+
+/// «lift, shake, turn» as far as it was survived, or «no: » and why.
+std::string describe(const grasping::HoldResult& hold);
+
+}  // namespace prehend::planner

@@ -1,9 +1,0 @@
-#include "services/simulation/tools/hand/commands.hpp"
-
-int main(int argc, char** argv) {
-  using namespace prehend::simulation;
-  prehend::tool::Program program("hand", "Any URDF as a hand of the lab.");
-  add_check(program);
-  add_add(program);
-  return program.run(argc, argv);
-}

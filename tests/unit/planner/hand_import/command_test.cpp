@@ -1,0 +1,109 @@
+// `prehend hand` as a user calls it: exit codes, JSON alone on standard output, and the example of
+// services/planner/README.md line by line.
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "tests/support/paths/paths.hpp"
+#include "tests/unit/planner/hand_import/made_hands.hpp"
+
+namespace {
+
+using Json = nlohmann::json;
+using std::filesystem::path;
+
+std::string read(const path& file) {
+  std::ifstream stream(file);
+  std::ostringstream text;
+  text << stream.rdbuf();
+  return text.str();
+}
+
+/// A new folder for one test.
+path scratch(const std::string& name) {
+  const path folder = path(testing::TempDir()) / (std::to_string(getpid()) + name);
+  std::filesystem::remove_all(folder);
+  std::filesystem::create_directories(folder);
+  return folder;
+}
+
+struct Answer {
+  int code = -1;
+  std::string output, complaint;
+};
+
+/// Runs shell text in the source folder, with the programs of this build.
+Answer run(const std::string& text, const path& folder) {
+  const std::string command = "cd " + prehend::test::in_sources("") +
+                              " && PATH=" + prehend::test::in_programs("") + ":$PATH && (" + text +
+                              "\n) >" + (folder / "out").string() + " 2>" +
+                              (folder / "err").string();
+  const int status = std::system(command.c_str());
+  return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read(folder / "out"), read(folder / "err")};
+}
+
+TEST(HandCommand, ExitCodesOfCheck) {
+  const path folder = scratch("check");
+  const std::string file = (folder / "hand.urdf").string();
+  std::ofstream(folder / "palm.obj") << made_hands::palm_mesh();
+  std::ofstream(file) << made_hands::gripper();
+  EXPECT_EQ(run("prehend hand check " + file, folder).code, 0);
+  std::ofstream(file) << "\x7f"
+                         "ELF no hand";
+  const Answer broken = run("prehend hand check --json " + file, folder);
+  EXPECT_EQ(broken.code, 1) << broken.complaint;
+  const Json document = Json::parse(broken.output);
+  EXPECT_FALSE(document["usable"]);
+  EXPECT_EQ(document["findings"][0]["code"], "not-urdf");
+  EXPECT_EQ(run("prehend hand check /nowhere.urdf", folder).code, 2);
+  EXPECT_EQ(run("prehend hand check", folder).code, 2);
+  EXPECT_EQ(run("prehend hand add " + file + " --name a --output " + folder.string(), folder).code,
+            2);  // a hand.urdf is there already
+  const path other = folder / "other";
+  EXPECT_EQ(run("prehend hand add " + file + " --name a --output " + other.string(), folder).code,
+            1);
+  EXPECT_FALSE(std::filesystem::exists(other));
+}
+
+// The mesh is in a package whose folder has another name than the package, as after a checkout.
+TEST(HandCommand, AddsAForeignGripper) {
+  const path folder = scratch("add");
+  std::filesystem::create_directories(folder / "urdf");
+  std::ofstream(folder / "palm.obj") << made_hands::palm_mesh();
+  std::ofstream(folder / "urdf" / "gripper.urdf") << made_hands::gripper();
+  const Answer answer =
+      run("prehend hand add " + (folder / "urdf/gripper.urdf").string() +
+              " --name foreign --candidates 12 --json --output " + (folder / "made").string(),
+          folder);
+  ASSERT_EQ(answer.code, 0) << answer.complaint;
+  const Json document = Json::parse(answer.output);
+  EXPECT_EQ(document["fingertips"].size(), 2u);
+  EXPECT_EQ(document["dofs"][0]["closing"], -1);
+  EXPECT_TRUE(document["opposed"]);
+  ASSERT_EQ(document["trial_grasps"].size(), 3u);
+  EXPECT_TRUE(document["trial_grasps"][0]["held"]) << answer.output;
+  EXPECT_TRUE(std::filesystem::exists(folder / "made" / "hand.toml"));
+}
+
+TEST(HandCommand, TheExampleOfTheReadmeRuns) {
+  const std::string page = read(prehend::test::in_sources("services/planner/README.md"));
+  const std::string fence = "```sh\n";
+  const std::size_t begin = page.find(fence) + fence.size(), end = page.find("```", begin);
+  ASSERT_NE(end, std::string::npos);
+  std::string example = "set -e\n" + page.substr(begin, end - begin);
+  const path folder = scratch("readme");
+  const std::string written = "/tmp/my_gripper";
+  for (std::size_t at; (at = example.find(written)) != std::string::npos;)
+    example.replace(at, written.size(), (folder / "hand").string());
+  const Answer answer = run(example, folder);
+  EXPECT_EQ(answer.code, 0) << answer.output << answer.complaint;
+  EXPECT_TRUE(std::filesystem::exists(folder / "hand" / "hand.toml"));
+}
+
+}  // namespace
