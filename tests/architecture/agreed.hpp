@@ -32,6 +32,7 @@ struct Agreed {
   std::span<const Exception> ends;            // what: the function that ends the process
   std::span<const Exception> commands;        // what: the function that adds a subcommand
   std::span<const Exception> raw_targets;     // what: the name of the target
+  std::span<const Exception> long_pages;      // what: «the page», or the heading of a section
   std::span<const Retired> retired;           // those of the glossary, and functions
 };
 
@@ -134,7 +135,73 @@ inline constexpr std::array raw_targets{
               "generated sources, compiled without our warnings"},
 };
 
-// «(was X)» in the glossary of ARCHITECTURE.md.
+// Sections of at most 250 words, pages of at most 1,600.
+inline constexpr std::array long_pages{
+    Exception{"README.md", "## Two commands", older},
+    Exception{"REFERENCES.md", "## Grasping, kinematics, human hands", older},
+    Exception{"common/analysis/README.md", "## ε without the whole hull", older},
+    Exception{"common/models/arms/README.md", "## An arm in the lab", older},
+    Exception{"common/models/hands/README.md", "# Robot hands", older},
+    Exception{"common/models/hands/README.md", "## hand.toml", older},
+    Exception{"deploy/containers.md", "# A rack of containers", older},
+    Exception{"deploy/containers.md", "## Kubernetes", older},
+    Exception{"deploy/dds/README.md", "## What keys protect on Fast DDS 2.9.1", older},
+    Exception{"deploy/metrics.md", "# Metrics for Prometheus", older},
+    Exception{"deploy/sites.md", "# Two sites", older},
+    Exception{"docs/grasp-recognition.md", "## How it works", older},
+    Exception{"docs/grasp-recognition.md", "### Takes", older},
+    Exception{"docs/hand-as-glove.md", "# Your hand as glove", older},
+    Exception{"docs/keys.md", "# Keys of a secured lab", older},
+    Exception{"docs/results/arm.md", "## Tasks", older},
+    Exception{"docs/results/build-times.md", "# Times of the first command and of the tests",
+              older},
+    Exception{"docs/results/build-times.md", "## What was done", older},
+    Exception{"docs/results/console.md", "## What clients cost", older},
+    Exception{"docs/results/demonstration.md",
+              "## Ten of Cutkosky's kinds, by people who do not exist", older},
+    Exception{"docs/results/demonstration.md", "## Which grasp does a real hand show?", older},
+    Exception{"docs/results/glove-filter.md", "# Glove: noise, lag and extreme points", older},
+    Exception{"docs/results/grasp-benchmark.md", "## Direct and intelligent mapping", older},
+    Exception{"docs/results/grasp-benchmark.md", "## Method", older},
+    Exception{"docs/results/hand-import.md", "## From a URDF to a demonstration", older},
+    Exception{"docs/results/hand-import.md", "## Hands as published", older},
+    Exception{"docs/results/mapping-training.md", "## How a training set is made", older},
+    Exception{"docs/results/network.md", "## Discovery", older},
+    Exception{"docs/results/network.md", "## Faults", older},
+    Exception{"docs/results/network.md", "## Latency: glove to simulation", older},
+    Exception{"docs/results/network.md", "the page", older},
+    Exception{"docs/results/recognition.md", "## Rendered scenes", older},
+    Exception{"docs/results/recognition.md", "### What each choice is worth", older},
+    Exception{"docs/results/recorder.md", "## Speed of recording", older},
+    Exception{"docs/results/safety.md",
+              "# Ways to lead the hand that were found, and what became of them", older},
+    Exception{"docs/results/safety.md", "## A second round, 2026-11-25", older},
+    Exception{"docs/results/safety.md", "## What it costs", older},
+    Exception{"docs/results/safety.md", "the page", older},
+    Exception{"docs/results/study.md", "## Findings", older},
+    Exception{"docs/results/study.md", "## Table", older},
+    Exception{"docs/results/study.md", "the page", older},
+    Exception{"docs/safety.md", "## Stop and release", older},
+    Exception{"docs/safety.md", "## What the gate does", older},
+    Exception{"idl/README.md", "# The contract", older},
+    Exception{"services/cli/README.md", "## How to use it", older},
+    Exception{"services/console/README.md", "## How it works", older},
+    Exception{"services/demonstration/README.md", "## How to use it", older},
+    Exception{"services/demonstration/README.md", "### Doing it again", older},
+    Exception{"services/glove/README.md", "## How it works", older},
+    Exception{"services/glove/README.md", "## How to use it", older},
+    Exception{"services/mapping/README.md", "## How it works", older},
+    Exception{"services/mapping/README.md", "## How to use it", older},
+    Exception{"services/recognition/README.md", "## How it works", older},
+    Exception{"services/recorder/README.md", "## How to use it", older},
+    Exception{"services/robot/README.md", "## How to use it", older},
+    Exception{"services/robot/core/README.md", "## BarrettHand BH8-262", older},
+    Exception{"services/robot/core/README.md", "## DYNAMIXEL protocol 2.0", older},
+    Exception{"services/ros/README.md", "## Lead the hand", older},
+    Exception{"services/simulation/README.md", "## How it works", older},
+};
+
+// «(was X)» in docs/glossary.md.
 inline constexpr std::array retired{
     Retired{"Arrival", "FingerDistances", "mapping"},
     Retired{"BetweenSites", "WanTransport"},
@@ -153,6 +220,6 @@ inline constexpr std::array retired{
 
 /// What this house has agreed on.
 inline constexpr Agreed agreed_here{common_edges, {},          long_functions, process_ends,
-                                    {},           raw_targets, retired};
+                                    {},           raw_targets, long_pages,     retired};
 
 }  // namespace prehend::architecture
