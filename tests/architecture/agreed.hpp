@@ -135,28 +135,6 @@ inline constexpr std::array raw_targets{
               "generated sources, compiled without our warnings"},
 };
 
-// Sections of at most 250 words, pages of at most 1,600.
-inline constexpr std::array long_pages{
-    Exception{"README.md", "## Two commands", older},
-    Exception{"deploy/dds/README.md", "## What keys protect on Fast DDS 2.9.1", older},
-    Exception{"docs/safety.md", "## Stop and release", older},
-    Exception{"docs/safety.md", "## What the gate does", older},
-    Exception{"idl/README.md", "# The contract", older},
-    Exception{"services/cli/README.md", "## How to use it", older},
-    Exception{"services/console/README.md", "## How it works", older},
-    Exception{"services/demonstration/README.md", "## How to use it", older},
-    Exception{"services/demonstration/README.md", "### Doing it again", older},
-    Exception{"services/glove/README.md", "## How it works", older},
-    Exception{"services/glove/README.md", "## How to use it", older},
-    Exception{"services/mapping/README.md", "## How it works", older},
-    Exception{"services/mapping/README.md", "## How to use it", older},
-    Exception{"services/recognition/README.md", "## How it works", older},
-    Exception{"services/recorder/README.md", "## How to use it", older},
-    Exception{"services/robot/README.md", "## How to use it", older},
-    Exception{"services/ros/README.md", "## Lead the hand", older},
-    Exception{"services/simulation/README.md", "## How it works", older},
-};
-
 // «(was X)» in docs/glossary.md.
 inline constexpr std::array retired{
     Retired{"Arrival", "FingerDistances", "mapping"},
@@ -175,7 +153,7 @@ inline constexpr std::array retired{
 };
 
 /// What this house has agreed on.
-inline constexpr Agreed agreed_here{common_edges, {},          long_functions, process_ends,
-                                    {},           raw_targets, long_pages,     retired};
+inline constexpr Agreed agreed_here{common_edges, {}, long_functions, process_ends, {},
+                                    raw_targets,  {}, retired};
 
 }  // namespace prehend::architecture
