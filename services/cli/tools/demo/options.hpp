@@ -13,8 +13,8 @@ namespace prehend::cli {
 
 /// What is demonstrated, and with what.
 struct DemoOptions {
-  service::LabArguments lab;
-  std::uint64_t seed = 1;
+  service::LabArguments lab;         // configuration, overrides and domain
+  std::uint64_t seed = 1;            // of scene, person and noise
   std::string object;                // empty: drawn by the seed
   std::string hand;                  // empty: the configuration's
   std::vector<std::string> without;  // services that are left out

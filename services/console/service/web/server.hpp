@@ -38,16 +38,22 @@ class Site {
 class Server {
  public:
   struct Options {
+    /// Of this host, at which it listens.
     std::string address = "127.0.0.1";
-    int port = 0;                  // 0: any that is free
-    std::string certificate, key;  // texts, PEM; empty: without TLS
+    /// 0: any that is free.
+    int port = 0;
+    /// Texts, PEM; empty: without TLS.
+    std::string certificate, key;
+    /// At once; further ones are not let in.
     std::size_t max_clients = 64;
-    Duration patience =
-        std::chrono::seconds(10);  // until a request is there, six times of it for a pong
-    // Of Site::tick(), when nothing is new; after wake() it comes as soon as what arrives together
-    // is there, but not more often than that.
+    /// Until a request is there; a client has six times of it for a pong.
+    Duration patience = std::chrono::seconds(10);
+    /// Between two calls of Site::tick() when nothing is new.
     Duration period = std::chrono::microseconds(16667);
-    Duration together = std::chrono::milliseconds(2), soonest = std::chrono::microseconds(8333);
+    /// After wake() a tick comes so much later, so that what arrives together is there.
+    Duration together = std::chrono::milliseconds(2);
+    /// But it comes no sooner than this after the one before.
+    Duration soonest = std::chrono::microseconds(8333);
   };
   /// The site must outlive it.
   static Expected<std::unique_ptr<Server>> listen(const Options& options, Site& site);

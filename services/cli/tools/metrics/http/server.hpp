@@ -16,10 +16,10 @@ namespace prehend::cli::http {
 class Server {
  public:
   struct Options {
-    std::string address = "127.0.0.1";  // of this host, IPv4 or IPv6
-    int port = 0;                       // 0: any that is free
-    std::string path = "/metrics";
-    std::size_t max_clients = 32;
+    std::string address = "127.0.0.1";            // of this host, IPv4 or IPv6
+    int port = 0;                                 // 0: any that is free
+    std::string path = "/metrics";                // of the page; all else is not found
+    std::size_t max_clients = 32;                 // at once; who is silent gives way to who comes
     Duration patience = std::chrono::seconds(5);  // with one client, from its coming to its end
   };
   static Expected<Server> listen(const Options& options);
