@@ -25,7 +25,7 @@ struct DemoOptions {
   bool direct = false;  // recognition runs, but the mapping does not use it
   bool attach = false;  // starts nothing, judges a lab that runs
   bool keep = false;    // keeps the folder with scene and logs
-  double timeout = 45;  // s
+  double timeout = 45;  // s, until a grasp must have been judged
   std::string record;   // file that takes all topics; empty: none
   bool watch = false;   // with a console, and it goes on until it is interrupted
   /// Told the outcome before it goes on, where it does.
