@@ -10,7 +10,7 @@ namespace prehend::grasping {
 /// What is done with the object after it was lifted and held still.
 struct HoldOptions {
   double lift = 0.10;                // m, by which the hand is lifted
-  double lift_speed = 0.1;           // m/s, on average
+  double lift_speed = 0.1;           // m/s, at which it is lifted
   double hold = 3.0;                 // s, that the object is held up there
   double max_slip = 0.020;           // m, relative to the palm
   double max_turn = 0.261799387799;  // rad (15°)
