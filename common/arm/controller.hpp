@@ -36,14 +36,22 @@ struct Guidance {
 };
 
 struct ControllerOptions {
-  Pose X_WA = Pose::Identity();  // where the arm stands
-  Pose X_EB = Pose::Identity();  // how the hand is held
-  Surroundings surroundings;     // table and hand: nothing comes nearer to them than
-  double clearance = 0.01;       // m
-  double slowing = 0.06;         // m, at which it begins to become slower
-  double lever = 0.15;           // m: 1 rad off is as bad as so much
-  double singular = 0.06;        // from this singular value down the joints are damped
-  double max_damping = 0.08;     // at the singularity itself
+  /// Where the arm's base A stands on the table W.
+  Pose X_WA = Pose::Identity();
+  /// How the arm's end E holds the hand's base B.
+  Pose X_EB = Pose::Identity();
+  /// The table, and the shapes of the hand that the arm carries.
+  Surroundings surroundings;
+  /// m. No link comes nearer than this to the table, to the hand or to another link.
+  double clearance = 0.01;
+  /// m. A link that is nearer than this to something moves the slower towards it the nearer it is.
+  double slowing = 0.06;
+  /// m. How turns are weighed against distances: 1 rad off the wish is as bad as this many metres.
+  double lever = 0.15;
+  /// The joints are damped where the smallest singular value of the Jacobian is below this.
+  double singular = 0.06;
+  /// The damping at the singularity itself; it grows from 0 to this as the singular value falls.
+  double max_damping = 0.08;
 };
 
 /// Leads an arm after a moving hand, at the rate of the commands. It goes from posture to posture

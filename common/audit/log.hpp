@@ -11,7 +11,7 @@
 namespace prehend::audit {
 
 struct LogOptions {
-  std::filesystem::path folder;
+  std::filesystem::path folder;                  // where the files lie; it is made
   std::string name;                              // of the file: NAME.jsonl
   std::uintmax_t max_bytes = 8 << 20;            // of a file, before the next one is begun
   int max_files = 16;                            // kept, the oldest go

@@ -36,8 +36,8 @@ class Peers {
   /// What to send now. step: how far the system's clock has left ours since the start.
   v1::ClockBeacon beacon(Time now, Duration step);
 
-  /// By how much stamps of this writer are ahead of our clock: zero where that is not known, or not
-  /// known to be more than its uncertainty.
+  /// By how much stamps of this writer are ahead of our clock. Zero where we do not know, and where
+  /// what we know of it is no larger than its uncertainty.
   Duration ahead(const Participant& writer, Time now) const;
   /// The same for the times that DDS itself notes, which follow steps of the system's clock.
   Duration system_ahead(const Participant& writer, Time now) const;

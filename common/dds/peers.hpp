@@ -28,20 +28,22 @@ class Peers : public DiscoveryEvents {
     std::string name, middleware;
   };
   std::map<GuidPrefix, Presented> present() const;
-  /// In a secured lab that of its certificate, otherwise what it announces; nothing: it is not
-  /// known, or has none.
+  /// The role of a peer: in a secured lab that of its certificate, otherwise what it announces.
+  /// Nothing: the peer is not known, or has no role of ours.
   std::optional<Role> role_of(const GuidPrefix& whose) const;
-  /// With the reason, and how often; at most 32 different ones.
+  /// Peers that were refused, or that refuse us: with the reason, and how often. At most 32
+  /// different ones.
   std::map<std::string, std::uint64_t> refused() const;
 
-  /// Waits until nobody new has come for a moment and all handshakes have ended. A handshake of
-  /// Fast DDS 2.9.1 sometimes never does when several processes join at once, and then the two
-  /// stay strangers for good: such a peer. Of two that wait for each other the one with
-  /// the greater identity gives up sooner.
+  /// A peer whose handshake with us does not end. When several processes join at once, a handshake
+  /// of Fast DDS 2.9.1 sometimes never ends, and the two stay strangers for good.
   struct Undecided {
     Guid guid;
     std::string name;
   };
+  /// Waits until nobody new has come for a moment and all handshakes have ended. Returns a peer
+  /// whose handshake has taken too long. Two peers that wait for each other do not give up at the
+  /// same time: the one with the greater identity does so sooner.
   std::optional<Undecided> wait_until_decided(const Guid& own) const;
 
   /// Of the packet guard: what a peer says before Fast DDS is told. Of Fast DDS 3 we hear of a

@@ -18,7 +18,7 @@
 
 /// All topics, and the only place that lists them: readers, writers, permissions of keys, `check`,
 /// `doctor` and `replay` take from here, and tests/unit/dds/topics_test.cpp compares the table of
-/// idl/README.md and the calls of the services with it. How to add one: idl/README.md.
+/// idl/README.md and the calls of the services with it. How to add one: docs/recipes.md.
 namespace prehend::dds {
 
 inline constexpr Topic<v1::GloveFramePubSubType> glove_frame{

@@ -45,10 +45,15 @@ enum class Refusal {
 std::string_view to_string(Refusal refusal);
 
 struct GateOptions {
-  std::string hand;                                   // key of its topics
-  Duration max_age = std::chrono::milliseconds(200);  // of a command, and how far ahead it may be
-  Duration max_silence = std::chrono::milliseconds(300);  // after which a leader leads no more
-  bool deadman = false;                                   // nothing is obeyed without consent
+  /// Key of the hand's topics: commands for another hand are refused.
+  std::string hand;
+  /// A command is refused that is older than this, or as far ahead of now.
+  Duration max_age = std::chrono::milliseconds(200);
+  /// A leader that has been silent for so long leads no more.
+  Duration max_silence = std::chrono::milliseconds(300);
+  /// Nothing is obeyed without consent.
+  bool deadman = false;
+  /// Consent counts for so long after it was given.
   Duration max_consent_age = std::chrono::milliseconds(100);
 };
 

@@ -15,12 +15,18 @@ struct MotionLimit {
 /// What no command that leaves the gate passes. Defaults of the base stand above what mapping asks
 /// for (1 m/s, 3 rad/s), so that the gate cuts nothing of a sound stream.
 struct Limits {
-  Eigen::VectorXd lower, upper;                                // of the DoFs, rad or m
-  std::vector<MotionLimit> joint;                              // of the DoFs
-  Eigen::VectorXd effort;                                      // of the DoFs, N m or N
-  MotionLimit base{1.2, 300};                                  // of the base's place
-  MotionLimit turn{3.6, 900};                                  // of its orientation
-  Eigen::Vector3d box_lower = Eigen::Vector3d::Constant(-10);  // m, of the base in W
+  /// Range of each DoF, rad or m.
+  Eigen::VectorXd lower, upper;
+  /// Speed and acceleration of each DoF.
+  std::vector<MotionLimit> joint;
+  /// What each DoF may push with, N m or N.
+  Eigen::VectorXd effort;
+  /// Speed and acceleration of the base's place, m/s and m/s².
+  MotionLimit base{1.2, 300};
+  /// Those of its orientation, rad/s and rad/s².
+  MotionLimit turn{3.6, 900};
+  /// Where the base may be in W, m: from the lowest corner of the box to the highest.
+  Eigen::Vector3d box_lower = Eigen::Vector3d::Constant(-10);
   Eigen::Vector3d box_upper = Eigen::Vector3d::Constant(10);
 };
 

@@ -6,16 +6,16 @@ namespace prehend::grasping {
 
 /// What carries the hand: limits of its base.
 struct ArmLimits {
-  double speed = 1.0;               // m/s
-  double turn_speed = 3.0;          // rad/s
-  double acceleration = 10.0;       // m/s²
-  double turn_acceleration = 50.0;  // rad/s²
+  double speed = 1.0;               // m/s, at which the base moves at most
+  double turn_speed = 3.0;          // rad/s, at which it turns at most
+  double acceleration = 10.0;       // m/s², by which it becomes faster or slower at most
+  double turn_acceleration = 50.0;  // rad/s², by which its turn does
 };
 
 /// How hard it may brake when it is told to stop at once: harder than on its way.
 struct BrakeLimits {
-  double acceleration = 20.0;        // m/s²
-  double turn_acceleration = 100.0;  // rad/s²
+  double acceleration = 20.0;        // m/s², by which the base brakes
+  double turn_acceleration = 100.0;  // rad/s², by which its turn does
 };
 
 /// The hand's base as a body. As heavy as this, whatever the hand touches is lost in its inertia.

@@ -12,6 +12,7 @@ struct PartsOptions {
   /// Share of the solid's volume by which all parts together may exceed it. A mesh whose own hull
   /// exceeds it by less is taken as that hull.
   double max_excess = 0.03;
+  /// At most so many parts, however much they exceed it then.
   int max_parts = 16;
 };
 

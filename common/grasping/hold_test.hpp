@@ -9,9 +9,9 @@ namespace prehend::grasping {
 
 /// What is done with the object after it was lifted and held still.
 struct HoldOptions {
-  double lift = 0.10;                // m
-  double lift_speed = 0.1;           // m/s
-  double hold = 3.0;                 // s
+  double lift = 0.10;                // m, by which the hand is lifted
+  double lift_speed = 0.1;           // m/s, at which it is lifted
+  double hold = 3.0;                 // s, that the object is held up there
   double max_slip = 0.020;           // m, relative to the palm
   double max_turn = 0.261799387799;  // rad (15°)
   /// The long form: shaken along ±x, ±y, ±z of B, then turned upside down and held there.
@@ -19,8 +19,8 @@ struct HoldOptions {
   double shake_acceleration = 0.5 * 9.81;  // m/s², at most the arm's
   double shake_stroke = 0.02;              // m: there and back, once in each direction
   bool turn_over = false;    // by half a turn about the horizontal axis nearest x of B
-  double turn_rate = 1.0;    // rad/s
-  double turned_hold = 1.0;  // s
+  double turn_rate = 1.0;    // rad/s, at which it is turned over
+  double turned_hold = 1.0;  // s, that the object is held upside down
 
   static HoldOptions long_form() { return {.shake = true, .turn_over = true}; }
 };

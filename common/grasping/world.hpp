@@ -46,9 +46,9 @@ struct WorldOptions {
   Eigen::Vector3d gravity_W = {0, 0, -9.81};  // m/s², of the objects; the hand is compensated
   /// 1/s: damps free objects; for closing without gravity.
   double object_damping = 0;
-  ArmLimits arm;
-  BrakeLimits brake;
-  BaseBody base;  // heavy as it is by itself, the base gives way to nothing
+  ArmLimits arm;      // how fast the hand's base is moved
+  BrakeLimits brake;  // how hard it is braked at a stop
+  BaseBody base;      // heavy as it is by itself, the base gives way to nothing
 };
 
 /// rad and N m; m and N of what slides.

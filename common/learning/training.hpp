@@ -27,7 +27,7 @@ struct Samples {
 };
 
 struct TrainingOptions {
-  TrainingMethod method = TrainingMethod::rprop;
+  TrainingMethod method = TrainingMethod::rprop;  // rprop is ours, the others are FANN's
   int hidden = 8;              // neurons of the one hidden layer; cascade grows so many at most
   int epochs = 2000;           // at most
   double learning_rate = 0.7;  // of the methods that have one

@@ -47,10 +47,10 @@ class Ground {
 };
 
 struct SearchOptions {
-  int max_iterations = 2000;
-  int shortcuts = 60;
-  double step = 0.8;  // m, by which a tree grows at most
-  std::uint64_t seed = 1;
+  int max_iterations = 2000;  // of the growing trees, then there is no path
+  int shortcuts = 60;         // tries to make a path shorter
+  double step = 0.8;          // m, by which a tree grows at most
+  std::uint64_t seed = 1;     // of where trees grow to; the same gives the same path
 };
 
 /// A path to one of the goals: straight where that is free, else by two trees that grow towards

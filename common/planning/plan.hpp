@@ -21,10 +21,15 @@ struct Query {
 };
 
 struct PlanOptions {
+  /// How near arm, hand and what it holds may come to things.
   RoomOptions room;
-  double contact_clearance = 0.001;      // m, of the hand on ways that come after
-  double arm_contact_clearance = 0.012;  // m, of the arm on these, if not less before
+  /// m, that the hand keeps from things on the ways that come after.
+  double contact_clearance = 0.001;
+  /// m, that the arm keeps on these, if it was not nearer before.
+  double arm_contact_clearance = 0.012;
+  /// How long a way is searched.
   SearchOptions search;
+  /// How fast the arm goes along it.
   Pace pace;
 };
 

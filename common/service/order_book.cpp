@@ -28,7 +28,7 @@ Expected<void> meant_now(const v1::OperatorCommand& order, const std::string& by
   if (!means(role, dds::operator_command))
     return fail(fmt::format("an order of {} is not obeyed",
                             role ? "a " + std::string(dds::name_of(*role)) : "somebody unknown"),
-                by, "operators and consoles give orders: `prehend stop`, `release`, `lead`");
+                by, "operators and consoles give orders: `prehend stop`, `release`, `takeover`");
   return {};
 }
 

@@ -13,15 +13,17 @@
 
 namespace prehend::service {
 
-/// Who gave it, for those who read of it: who does so as soon as it has come is not yet known by
-/// its name, writer.
+/// Names who gave an order, for people: the writer's name, as mapping@host/1. A writer that gives
+/// an order as soon as it has joined is not known by its name yet; then the order's id stands for
+/// it.
 std::string given_by(const v1::OperatorCommand& order, const std::string& writer);
 
-/// Does a writer of this role mean what it says on the topic? Nobody does who is not known, whose
-/// role may not write there, or who plays a recording.
+/// May this writer be believed to mean what it says on the topic? Its role must be known, must be
+/// one that writes the topic, and must not be that of a replayer, which only repeats.
 bool means(std::optional<dds::Role> role, const dds::TopicInfo& topic);
 
-/// What moves a robot, or lets it move, must be meant now, and by somebody. by: for the message.
+/// Succeeds for an order that may move a robot, or let it move: it was given less than 10 s ago, by
+/// a writer whose role gives orders. by: who gave it, for the message.
 Expected<void> meant_now(const v1::OperatorCommand& order, const std::string& by,
                          std::optional<dds::Role> role, Time now);
 

@@ -20,7 +20,7 @@ class Watchdog {
     std::function<void()> on_stop;      // a signal came
     std::function<void()> on_deadlock;  // does not return: the process restarts or ends
     std::function<void()> on_stranded;  // a peer is met again only by who joins anew
-    bool looks_for_deadlock = true;
+    bool looks_for_deadlock = true;     // not in lockstep
   };
   explicit Watchdog(Options options);
   ~Watchdog();

@@ -32,6 +32,7 @@ struct Agreed {
   std::span<const Exception> ends;            // what: the function that ends the process
   std::span<const Exception> commands;        // what: the function that adds a subcommand
   std::span<const Exception> raw_targets;     // what: the name of the target
+  std::span<const Exception> long_pages;      // what: «the page», or the heading of a section
   std::span<const Retired> retired;           // those of the glossary, and functions
 };
 
@@ -154,7 +155,7 @@ inline constexpr std::array raw_targets{
               "generated sources, compiled without our warnings"},
 };
 
-// «(was X)» in the glossary of ARCHITECTURE.md.
+// «(was X)» in docs/glossary.md.
 inline constexpr std::array retired{
     Retired{"Arrival", "FingerDistances", "mapping"},
     Retired{"BetweenSites", "WanTransport"},
@@ -172,7 +173,7 @@ inline constexpr std::array retired{
 };
 
 /// What this house has agreed on.
-inline constexpr Agreed agreed_here{common_edges, {},          long_functions, process_ends,
-                                    {},           raw_targets, retired};
+inline constexpr Agreed agreed_here{common_edges, {}, long_functions, process_ends, {},
+                                    raw_targets,  {}, retired};
 
 }  // namespace prehend::architecture

@@ -63,12 +63,15 @@ TEST(Architecture, TheIndexOfDecisionsSaysWhatHolds) {
   add("0001-one.md", {"# 0001: It stands", "", "**Decision.** So."});
   add("0002-two.md", {"# 0002 It fell", "", "**Overtaken:** by", "0001.", "", "more"});
   add("0003-three.md", {"# 0003: It leans", "**Changed:** since 2026."});
+  add("0050-four.md", {"# 0050: 60 steps"});
   add("README.md", {"# Decisions"});
   const std::string page = decisions(house);
   EXPECT_THAT(page, testing::HasSubstr("| [0001](0001-one.md) It stands | yes |\n"));
   EXPECT_THAT(page, testing::HasSubstr("| [0002](0002-two.md) It fell | **no**: by 0001. |\n"));
   EXPECT_THAT(page,
               testing::HasSubstr("| [0003](0003-three.md) It leans | in part: since 2026. |\n"));
+  EXPECT_THAT(page, testing::HasSubstr("## Recognition and DDS\n| decision | holds |\n|---|---|\n"
+                                       "| [0050](0050-four.md) 60 steps | yes |\n"));
   EXPECT_THAT(page, testing::Not(testing::HasSubstr("README")));
 }
 

@@ -18,7 +18,7 @@ constexpr std::array all_rules{
          broken_functions},
     Rule{"services", "make it like the other services", unlike_services},
     Rule{"pages", "mend the page", broken_pages},
-    Rule{"words", "use the word of the glossary in ARCHITECTURE.md", retired_words},
+    Rule{"words", "use the word of docs/glossary.md", retired_words},
     Rule{"programs", "return an error; only main() ends a program", process_ends_in_libraries},
     Rule{"commands", "a subcommand X is added by X_command.cpp, a program by main.cpp",
          misnamed_commands},

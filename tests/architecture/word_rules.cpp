@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::array retired_prefixes{"most_", "least_", "longest_"};
 
-constexpr std::string_view glossary = "ARCHITECTURE.md";
+constexpr std::string_view glossary = "docs/glossary.md";
 
 // right_of_way of RightOfWay.
 std::string snake_case(std::string_view name) {

@@ -8,11 +8,10 @@
 
 namespace prehend::dds {
 
-/// Who may come next. A few are admitted at once; in a crowd, whoever announces itself again. Those
-/// who are there do so twice a second, a flood of invented ones does not. Fast DDS
-/// shakes hands with a hundred at a time, and invented ones stay among these for their lease.
-/// Pure; takes memory only
-/// in a crowd.
+/// Decides which newcomers Fast DDS may hear of. It has room for a hundred handshakes at a time,
+/// and an invented newcomer keeps its place until its lease ends. So the first few are admitted at
+/// once. In a crowd a newcomer must announce itself a second time: real ones do so twice a second,
+/// a flood of invented ones does not. Pure. Takes memory only in a crowd.
 class Admission {
  public:
   bool admits(const GuidPrefix& newcomer, Time now);

@@ -15,22 +15,35 @@ namespace prehend::recording::mcap {
 
 /// What of the specification's optional parts a file gets. The defaults are what readers like best.
 struct WriterOptions {
+  /// The profile that the header names; empty: none.
   std::string profile;
+  /// Who wrote the file, as the header says.
   std::string library = "prehend";
+  /// Of chunks; files without chunks are not compressed.
   Compression compression = Compression::zstd;
+  /// Messages stand in chunks, which can be compressed and found by time.
   bool chunks = true;
   /// A chunk is closed by the message with which it reaches this size, ...
   std::uint64_t chunk_bytes = 1024 * 1024;
   /// ... or spans this much log time. What is in an open chunk is lost when the process is killed.
   Duration chunk_duration = std::chrono::milliseconds(500);
+  /// Behind each chunk stands where in it the messages of each channel are.
   bool message_index = true;
+  /// The summary says where each chunk is, and of which time.
   bool chunk_index = true;
+  /// The summary says how many messages there are.
   bool statistics = true;
+  /// The summary repeats all schemas, so that a reader needs no other part of the file for them.
   bool repeated_schemas = true;
+  /// The same of the channels.
   bool repeated_channels = true;
+  /// The summary says where attachments are.
   bool attachment_index = true;
+  /// The same of metadata.
   bool metadata_index = true;
+  /// Behind the summary stands where each kind of record begins in it.
   bool summary_offsets = true;
+  /// Check sums of chunks, of the data and of the summary; without, they are 0.
   bool crcs = true;
   /// Bytes behind the fields of every record that may have such outside chunks. Readers pass them
   /// by; the specification's conformance tests want them.

@@ -37,15 +37,16 @@ class Hub {
     std::string opening, closing;
   };
   struct Options {
+    /// What clients are told of this server; the session tells them whether it is still the same.
     std::string name = "prehend", session;
-    std::vector<Channel> channels;  // numbered by their place
-    std::vector<Parameter> parameters;
-    std::optional<Span> recording;      // that clients may lead
-    std::vector<ServiceInfo> services;  // numbered by their place
-    std::size_t max_queued = 256;       // messages of a queued channel, kept and on their way
-    std::size_t max_control = 64;       // answers that a client has not taken; more: it is let go
-    std::size_t max_subscriptions = 256;
-    std::size_t max_calls = 8;  // of a client that wait for their answer
+    std::vector<Channel> channels;        // numbered by their place
+    std::vector<Parameter> parameters;    // that clients may read
+    std::optional<Span> recording;        // that clients may lead
+    std::vector<ServiceInfo> services;    // numbered by their place
+    std::size_t max_queued = 256;         // messages of a queued channel, kept and on their way
+    std::size_t max_control = 64;         // answers that a client has not taken; more: it is let go
+    std::size_t max_subscriptions = 256;  // of a client
+    std::size_t max_calls = 8;            // of a client that wait for their answer
   };
   using Client = std::uint64_t;
   struct Call {

@@ -33,8 +33,8 @@ class LabView {
  public:
   struct Options {
     std::vector<std::string> services;  // that a whole lab has
-    std::string camera = "camera";
-    Pose X_WC = Pose::Identity();
+    std::string camera = "camera";      // key of the camera whose picture is drawn
+    Pose X_WC = Pose::Identity();       // where that camera stands on the table
     /// The hand of a model's name; nullptr: not known. What it points to stays.
     std::function<const model::HandModel*(const std::string& model)> hand = [](const std::string&) {
       return nullptr;

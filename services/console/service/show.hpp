@@ -31,6 +31,7 @@ namespace prehend::console {
 class Show : public web::Site {
  public:
   struct Options {
+    /// Who may look, and who may give orders.
     Policy policy;
     /// Called at each tick; gives what has come.
     std::function<std::vector<Letter>()> letters;

@@ -29,27 +29,27 @@ struct DeviceSink {
 
 /// Everything a device may need; each takes what concerns it.
 struct DeviceOptions {
-  Pose X_WT = Pose::Identity();
-  std::string port;                  // a path, or host:port of datagrams
-  std::vector<std::string> senders;  // of datagrams, by address; empty: on this machine
-  std::string token;                 // before each of them; empty: none
-  bool secured = false;              // the lab has keys
-  int baud = 115200;
+  Pose X_WT = Pose::Identity();             // where the tracker stands on the table
+  std::string port;                         // a path, or host:port of datagrams
+  std::vector<std::string> senders;         // of datagrams, by address; empty: on this machine
+  std::string token;                        // before each of them; empty: none
+  bool secured = false;                     // the lab has keys
+  int baud = 115200;                        // bits per second on that port
   std::vector<Site> sites = usual_sites();  // of a tracker's sensors, by address
-  std::string format = "position_matrix";
-  std::string mode = "stream";
-  int range = 72;  // inches
-  std::string hemisphere = "left";
-  bool buttons = false;    // the tracker has a mouse whose buttons are told
-  JointGains joint_gains;  // of a joint-angle glove; empty: not calibrated
-  std::string wrist_port;  // of a tracker on the back of that glove; empty: none
-  std::filesystem::path file;
-  double rate = 30;        // Hz
-  std::uint64_t seed = 0;  // of a synthetic hand's noise, beside the scene's own
-  bool left = false;       // the hand that wears the glove
-  double hand_scale = 1;
-  model::Scene scene;
-  model::Catalogue catalogue;
+  std::string format = "position_matrix";   // of the records that the tracker is asked for
+  std::string mode = "stream";              // or point: the tracker is asked for each frame
+  int range = 72;                           // inches, of the tracker: 36, 72 or 144
+  std::string hemisphere = "left";          // side of the transmitter where the hand is
+  bool buttons = false;                     // the tracker has a mouse whose buttons are told
+  JointGains joint_gains;                   // of a joint-angle glove; empty: not calibrated
+  std::string wrist_port;                   // of a tracker on the back of that glove; empty: none
+  std::filesystem::path file;               // recording to play
+  double rate = 30;                         // Hz, of what measures when it is asked
+  std::uint64_t seed = 0;                   // of a synthetic hand's noise, beside the scene's own
+  bool left = false;                        // the hand that wears the glove
+  double hand_scale = 1;                    // length of the user's hand, 1: of an average adult
+  model::Scene scene;                       // what a computed hand reaches for
+  model::Catalogue catalogue;               // the objects in it
 };
 
 /// A source of glove frames in real time. Made by find_device(...)->create, which fails where the

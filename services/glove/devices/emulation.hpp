@@ -13,10 +13,11 @@ namespace prehend::glove {
 struct EmulationOptions {
   std::function<std::unique_ptr<Emulator>()> device;  // as it is when switched on
   std::function<Expected<std::unique_ptr<serial::Plug>>()>
-      plug_in;       // asked again after an unplugging
-  double rate = 30;  // Hz, measurements
-  int baud = 0;      // 8N1; bytes take their time on the line. 0: they take none
-  FaultOptions faults;
+      plug_in;          // asked again after an unplugging
+  double rate = 30;     // Hz, measurements
+  int baud = 0;         // 8N1; bytes take their time on the line. 0: they take none
+  FaultOptions faults;  // that it makes
+  /// Told where the host finds it, each time that it is plugged in.
   std::function<void(const std::string& where)> on_plugged = {};
 };
 

@@ -10,7 +10,7 @@ namespace prehend::glove::joint {
 struct EmulatorOptions {
   JointGains gains;       // of the person who wears it
   double hand_scale = 1;  // of that person
-  bool right = true;
+  bool right = true;      // a glove for the right hand
 };
 
 /// A joint-angle glove with as many sensors as gains. What it feels are the joint angles of the

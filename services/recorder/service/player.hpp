@@ -19,9 +19,9 @@ namespace prehend::recorder {
 
 struct PlayerOptions {
   std::optional<Time> from, to;  // range of log time; none: all
-  bool loop = false;
-  double rate = 1;
-  bool paused = false;  // at first
+  bool loop = false;             // from the end it goes on at the beginning
+  double rate = 1;               // so many times as fast as recorded
+  bool paused = false;           // at first
   /// Time stamps, inside and beside the messages, are moved as log time is: each to when the tape
   /// is there. So stamps that were equal stay equal, as long as it is not paused, sought or given
   /// another rate in between.

@@ -14,15 +14,15 @@
 namespace prehend::recorder {
 
 struct RecorderOptions {
-  std::filesystem::path file;  // the second one of NAME.mcap is NAME_1.mcap
-  std::uint64_t split_bytes = 4'000'000'000;
+  std::filesystem::path file;                   // the second one of NAME.mcap is NAME_1.mcap
+  std::uint64_t split_bytes = 4'000'000'000;    // of a file, then the next one begins
   Duration split_time = std::chrono::hours(6);  // an index of the file is kept in memory
   int keep_files = 0;                           // of a split recording, the newest; 0: all
   std::uint64_t keep_free = 200'000'000;        // bytes of the disk
   /// More than 0: a ring of so much time is kept in memory and written on request.
   Duration snapshot{};
   std::uint64_t snapshot_bytes = 512'000'000;  // of the ring, at most
-  recording::mcap::Compression compression = recording::mcap::Compression::zstd;
+  recording::mcap::Compression compression = recording::mcap::Compression::zstd;  // of the files
 };
 
 /// What a recorder does with samples: files, splits, snapshots, losses. Knows no DDS, thread or

@@ -20,7 +20,7 @@ class TopicListener {
  public:
   struct Options {
     dds::ParticipantOptions lab;  // its rig may be a pattern, * for all
-    TopicFilter topics;
+    TopicFilter topics;           // which of them it hands on
     /// Held for a disk that is slower than the topics for a while; what is more is lost and
     /// counted.
     std::uint64_t queue_bytes = 48'000'000;

@@ -14,8 +14,8 @@ namespace prehend::robot {
 class Parting {
  public:
   struct Options {
-    double within = 0.1;  // rad, or what stands for it (radian_of)
-    Duration patience = std::chrono::milliseconds(300);
+    double within = 0.1;                                 // rad, or what stands for it (radian_of)
+    Duration patience = std::chrono::milliseconds(300);  // that it may differ by more
   };
   struct Dof {
     double worst = 0;                // rad or m, of the difference

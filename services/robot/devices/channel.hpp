@@ -26,9 +26,9 @@ Opener serial_channel(const std::string& port, int baud);
 
 /// Joint states and trajectories of nodes of ROS 2.
 struct NodesOptions {
-  std::string controller;  // its name, with namespace
-  int domain = 0;
-  std::string network = "laptop";  // or lan
+  std::string controller;          // its name, with namespace
+  int domain = 0;                  // of DDS, as ROS_DOMAIN_ID
+  std::string network = "laptop";  // nodes of this machine; lan: of the network
 };
 Opener nodes_channel(const NodesOptions& options);
 

@@ -83,14 +83,12 @@ std::string row_of(const TopicInfo& topic) {
   return row;
 }
 
-/// Rows of the page's first table that are about a topic.
+/// Rows of the page that are about a topic: those that say from where to where it goes.
 std::vector<std::string> documented_rows() {
   std::ifstream file(test::in_sources("idl/README.md"));
   std::vector<std::string> rows;
-  for (std::string line; std::getline(file, line);) {
-    if (!rows.empty() && !line.starts_with("|")) break;
-    if (line.starts_with("| `")) rows.push_back(line);
-  }
+  for (std::string line; std::getline(file, line);)
+    if (line.starts_with("| `") && line.find(" → ") != std::string::npos) rows.push_back(line);
   return rows;
 }
 

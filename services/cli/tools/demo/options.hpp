@@ -13,8 +13,8 @@ namespace prehend::cli {
 
 /// What is demonstrated, and with what.
 struct DemoOptions {
-  service::LabArguments lab;
-  std::uint64_t seed = 1;
+  service::LabArguments lab;         // configuration, overrides and domain
+  std::uint64_t seed = 1;            // of scene, person and noise
   std::string object;                // empty: drawn by the seed
   std::string hand;                  // empty: the configuration's
   std::vector<std::string> without;  // services that are left out
@@ -25,7 +25,7 @@ struct DemoOptions {
   bool direct = false;  // recognition runs, but the mapping does not use it
   bool attach = false;  // starts nothing, judges a lab that runs
   bool keep = false;    // keeps the folder with scene and logs
-  double timeout = 45;  // s
+  double timeout = 45;  // s, until a grasp must have been judged
   std::string record;   // file that takes all topics; empty: none
   bool watch = false;   // with a console, and it goes on until it is interrupted
   /// Told the outcome before it goes on, where it does.

@@ -11,10 +11,10 @@ namespace prehend::cli {
 
 /// What a demonstration's scene is drawn from.
 struct SettingOptions {
-  std::uint64_t seed = 1;
+  std::uint64_t seed = 1;      // the same gives the same scene
   std::string object;          // what is reached for; empty: drawn among what the hand can hold
   std::filesystem::path hand;  // folder of the robot hand
-  std::filesystem::path catalogue;
+  std::filesystem::path catalogue;  // file of the known objects
 };
 
 /// Draws the scene; its person reaches where the robot hand has room. A recording of a bare hand,

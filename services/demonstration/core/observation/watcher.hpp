@@ -11,14 +11,20 @@
 namespace prehend::demonstration {
 
 struct WatcherOptions {
+  /// What phases look like.
   SegmenterOptions segmenter;
+  /// How phases become steps.
   StepOptions steps;
-  Duration stale = std::chrono::milliseconds(300);    // an object is not seen any more
-  Duration max_gap = std::chrono::milliseconds(500);  // without the hand
-  Duration max_length = std::chrono::minutes(10);     // of a demonstration
-  Duration settled =
-      std::chrono::milliseconds(1000);  // a phase is over for so long when it is told
-  double near = 0.25;                   // m: a hand so near is at an object
+  /// An object of which nothing was heard for so long is not seen any more.
+  Duration stale = std::chrono::milliseconds(300);
+  /// A demonstration in which the hand was away for longer is refused.
+  Duration max_gap = std::chrono::milliseconds(500);
+  /// A demonstration takes no longer.
+  Duration max_length = std::chrono::minutes(10);
+  /// A phase is told when it has been over for so long.
+  Duration settled = std::chrono::milliseconds(1000);
+  /// m. A hand that is so near to an object is at it.
+  double near = 0.25;
 };
 
 /// A phase of a demonstration.

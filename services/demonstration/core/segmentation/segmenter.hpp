@@ -28,8 +28,9 @@ struct SegmenterOptions {
   double near = 0.08;          // m, about how near the grasped object is
   double far = 0.3;            // m, about how near an object is otherwise
   double window = 0.2;         // s, over which speeds are taken
-  /// s, of each phase.
+  /// s, that each phase lasts at least.
   std::array<double, phase_count> min_duration{0.25, 0.25, 0.12, 0.25, 0.12, 0.2};
+  /// s, that each phase lasts at most.
   std::array<double, phase_count> max_duration{120, 6, 2.5, 120, 2.5, 6};
 };
 

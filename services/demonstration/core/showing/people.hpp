@@ -18,9 +18,9 @@ inline constexpr std::array<std::string_view, 10> measured_kinds{
     "lateral pinch",  "precision sphere", "tripod",         "thumb-4 finger", "thumb-index finger"};
 
 struct DrawOptions {
-  int people = 20;
-  int trials = 6;  // of each kind
-  std::uint64_t seed = 1;
+  int people = 20;         // that are drawn
+  int trials = 6;          // of each kind, by each of them
+  std::uint64_t seed = 1;  // the same draws the same people
 };
 
 /// Takes of people who do not exist. Each has a hand of a size that hands have, habits of his own,

@@ -16,9 +16,9 @@ struct TrainerOptions {
   int epochs = 80;        // at most
   int patience = 25;      // epochs without a better answer
   int copies = 1;         // of each grasp, turned about the vertical and stretched a little
-  double max_turn = 0.2;  // rad
-  double max_stretch = 0.08;
-  std::uint32_t seed = 1;
+  double max_turn = 0.2;  // rad, of a copy about the vertical
+  double max_stretch = 0.08;  // share by which a copy is larger or smaller
+  std::uint32_t seed = 1;     // of first weights and copies
 };
 
 /// Trains recognisers of one task, in the order of `wanted`. Whatever is chosen (when to stop,

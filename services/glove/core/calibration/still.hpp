@@ -11,10 +11,10 @@ namespace prehend::glove {
 
 /// Lengths are in the unit of the points.
 struct StillOptions {
-  Duration still_for = std::chrono::milliseconds(500);
-  double still_within = 0.004;  // of every point from its mean meanwhile
-  double apart = 0.015;         // that some point must have moved since the last taken
-  int min_samples = 8;          // in that time
+  Duration still_for = std::chrono::milliseconds(500);  // that the hand must keep still
+  double still_within = 0.004;                          // of every point from its mean meanwhile
+  double apart = 0.015;  // that some point must have moved since the last taken
+  int min_samples = 8;   // in that time
 };
 
 /// Points of a hand that kept still.

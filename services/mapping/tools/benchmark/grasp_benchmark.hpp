@@ -37,10 +37,12 @@ struct BenchmarkedMode {
 std::vector<int> first_takes(int count);
 
 struct GraspBenchmarkOptions {
+  /// Each answers all takes.
   std::vector<BenchmarkedMode> modes{{BenchmarkMode::direct}, {BenchmarkMode::intelligent, true}};
   std::vector<int> takes = first_takes(24);  // with each mode; grasps take turns
   /// People and takes; those of training sets are others (their seeds are small).
   std::uint64_t seed = 1'000'000'000;
+  /// How people reach, and how the camera errs.
   TakeOptions take;
 };
 

@@ -13,7 +13,7 @@ namespace prehend::mapping {
 
 /// How a person reaches for an object, and how the camera errs about it.
 struct TakeOptions {
-  DemonstratorOptions demonstrator;
+  DemonstratorOptions demonstrator;  // how people and their sensors differ
   /// A hand at rest gets ready while it reaches, as people's do; late: not before it closes.
   bool late = false;
   double size_error = 0;       // the object is seen larger or smaller by this share of its size

@@ -19,7 +19,7 @@ struct ExternalOptions {
   std::filesystem::path log;  // takes what the command says
   /// Time is the topic lab/clock, which the mapping answers as `service`; else it is the time here.
   bool lockstep = false;
-  std::string service = "mapping";
+  std::string service = "mapping";  // its name in lab/progress
 };
 
 /// Any process that reads hand/posture, and object/detection and robot/state if it likes, and

@@ -13,13 +13,13 @@ namespace prehend::mapping {
 
 /// The way to train of [Thesis, 5.2], unless an experiment asks for another.
 struct ImitationOptions {
-  learning::TrainingMethod method = learning::TrainingMethod::rprop;
-  learning::ScalingKind scaling = learning::ScalingKind::whole_matrix;
-  double size_unit = 1;  // sizes are multiplied by it before scaling; 10: mm beside tips in cm
-  int hidden = 4;
-  int epochs = 1000;  // all of them: [Thesis] stops at none of its errors
-  bool curve = false;
-  std::uint64_t seed = 1;
+  learning::TrainingMethod method = learning::TrainingMethod::rprop;    // of the network
+  learning::ScalingKind scaling = learning::ScalingKind::whole_matrix;  // of its inputs
+  double size_unit = 1;    // sizes are multiplied by it before scaling; 10: mm beside tips in cm
+  int hidden = 4;          // neurons of the one hidden layer
+  int epochs = 1000;       // all of them: [Thesis] stops at none of its errors
+  bool curve = false;      // keep the errors of every look
+  std::uint64_t seed = 1;  // of the first weights
 };
 
 /// A network with its scalings, fitted to pairs (a column a pair): nine features, and sizes after

@@ -12,10 +12,10 @@
 namespace prehend::mapping {
 
 struct StudyOptions {
-  bool quick = false;
-  std::uint64_t seed = 1;
-  TakeOptions take;  // how people reach in the grasp benchmark, and how the camera errs
-  int trials = 0;    // of the grasp benchmark for each hand and mode; 0: 24 or 270
+  bool quick = false;      // few repetitions
+  std::uint64_t seed = 1;  // of people and first weights
+  TakeOptions take;        // how people reach in the grasp benchmark, and how the camera errs
+  int trials = 0;          // of the grasp benchmark for each hand and mode; 0: 24 or 270
   std::vector<BenchmarkMode> modes;  // that it judges, with and without placement; none: see there
   std::vector<std::string> hands{thesis_hands.begin(), thesis_hands.end()};  // that it uses
 };

@@ -37,7 +37,7 @@ struct SetOptions {
   /// rad, past the contact posture, that a grasp is trained to: the squeeze, and as much again so
   /// that an imprecise network still reaches the object.
   double past_contact = 0.30;
-  DemonstratorOptions demonstrator;
+  DemonstratorOptions demonstrator;  // how people and their sensors differ
 };
 
 /// What synthetic people show: in each take some grasps, and with each some of the scheme's
@@ -58,9 +58,10 @@ Eigen::VectorXd precision_discriminant(const model::Catalogue& catalogue, const 
 std::vector<PalmOffset> palm_offsets(const std::vector<RobotGrasp>& grasps);
 
 struct TrainerOptions {
+  /// Of each network.
   learning::TrainingOptions network{
       .hidden = 16, .epochs = 1200, .patience = 150, .restarts = 3, .heat = 150};
-  SizeInput size_input = SizeInput::seen;
+  SizeInput size_input = SizeInput::seen;  // what intelligent networks are told of the object
   learning::ScalingKind scaling = learning::ScalingKind::each_feature;  // of the inputs
   Eigen::VectorXd precision;                                            // see ModelTraits
   std::vector<PalmOffset> places;                                       // see palm_offsets()

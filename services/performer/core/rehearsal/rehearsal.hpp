@@ -19,9 +19,9 @@ struct Thing {
 };
 
 struct RehearsalOptions {
-  int max_tries = 24;  // of each step; a grasp to which the arm has no way does not count
-  PerformerOptions performer;
-  VerdictOptions verdict;
+  int max_tries = 24;          // of each step; a grasp to which the arm has no way does not count
+  PerformerOptions performer;  // how the hand goes
+  VerdictOptions verdict;      // what counts as done
   std::optional<planning::Robot> robot;  // an arm that carries the hand; none: it flies
   arm::Joints posture;                   // of that arm
   /// Told before each try: which step of the task, which try of it, both from 0.

@@ -48,16 +48,26 @@ struct StepOrder {
 };
 
 struct PerformerOptions {
-  double speed = 0.3, turn_speed = 1.2;  // m/s, rad/s, on average, of the base
-  double careful = 0.12;                 // m/s, near the object and with it
-  double stand_off = 0.12;               // m, from where the hand goes straight in
-  double min_lift = 0.08;                // m
-  double finger_speed = 0.8;             // rad/s, or what stands for it (radian_of)
-  double still = 0.03;                   // rad/s, of a finger that stands
-  double patience = 2;                   // s, for what takes longer than it should
-  double lost = 0.04;                    // m, that an object is from where the hand should have it
-  double pushed = 0.03;  // m, over the table: fingers that close have not met around the object
-  int retries = 2;       // of a grasp that pushed the object away or did not lift it
+  /// m/s and rad/s. How fast the base moves and turns on long ways, on average.
+  double speed = 0.3, turn_speed = 1.2;
+  /// m/s. How fast it moves near the object, and while it holds it.
+  double careful = 0.12;
+  /// m. How far before the grasp the hand stops, to go straight in from there.
+  double stand_off = 0.12;
+  /// m. How high an object is lifted at least, whatever the task says.
+  double min_lift = 0.08;
+  /// rad/s, or what stands for it (radian_of). How fast fingers close and open.
+  double finger_speed = 0.8;
+  /// rad/s. A finger that is slower stands.
+  double still = 0.03;
+  /// s. How long the hand waits for what takes longer than it should.
+  double patience = 2;
+  /// m. An object that is farther from where the hand should have it is lost.
+  double lost = 0.04;
+  /// m. Fingers that have shifted the object so far over the table have not met around it.
+  double pushed = 0.03;
+  /// How often a grasp is begun again that pushed the object away or did not lift it.
+  int retries = 2;
 };
 
 /// Does one step with a hand: approach, close, lift, carry, put down, release, retract; lets go and

@@ -16,7 +16,7 @@ using Shapes = std::map<std::string, model::Shape>;
 
 /// What a step must be to count as done.
 struct VerdictOptions {
-  double max_error = 0.02;         // m
+  double max_error = 0.02;         // m, of the object from its place
   double max_turn = 0.1745;        // rad (10°), see visible_turn()
   double max_tilt = 0.2618;        // rad (15°), of what stays upright
   double max_moved = 0.01;         // m, of any other object

@@ -14,13 +14,13 @@
 namespace prehend::performer {
 
 struct TaskPlayOptions {
-  service::LabArguments lab;
+  service::LabArguments lab;            // configuration, overrides and domain
   std::string task = "pick-and-place";  // or a file NAME.task, which needs not be shown
   std::string object = "Talc", hand;    // empty: the lab's
   std::string arm;                      // that carries the hand; empty: the lab's, mostly none
-  std::uint64_t seed = 1;
-  double timeout = 120;  // s
-  bool keep = false;     // scenes, tasks and logs
+  std::uint64_t seed = 1;               // of scene and person
+  double timeout = 120;                 // s, for all of it
+  bool keep = false;                    // scenes, tasks and logs
   stage::Progress tell = [](const std::string&) {};
 };
 

@@ -38,7 +38,7 @@ struct Sighting {
 };
 
 struct DetectorOptions {
-  ScanOptions scan;
+  ScanOptions scan;      // how pictures are searched
   double accept = 0.5;   // least probability of what is taken for true, and reported
   double doubtful = 1;   // least probability of what is reported although it is not accepted
   int max_objects = 12;  // in a picture

@@ -7,7 +7,7 @@
 namespace prehend::recognition {
 
 struct MovementOptions {
-  int cell_size = 10;      // px
+  int cell_size = 10;      // px, side of the cells in which pixels are counted
   double threshold = 20;   // grey levels of 255 by which a pixel must differ from the background
   double min_share = 0.1;  // of a cell's pixels, for the cell to differ
   double relearn_share = 0.5;  // of the cells: more that differ are no movement but another light

@@ -12,8 +12,8 @@
 namespace prehend::recognition {
 
 struct WatcherOptions {
-  MovementOptions movement;
-  TrackerOptions tracker;
+  MovementOptions movement;  // what counts as moving
+  TrackerOptions tracker;    // what counts as the same object
   /// Places examined in a picture at most; the others have their turn in the next ones. A picture
   /// that is new as a whole is examined wholly.
   int places = 2;

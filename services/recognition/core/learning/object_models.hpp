@@ -23,16 +23,16 @@ enum class Weighting {
 /// always used as it was made. The defaults are for objects cut out by masks, which are looked for
 /// on a table; photos_of_objects() did best on photos of single objects (README.md has the table).
 struct DescriptorOptions {
-  ColourSpace space;
+  ColourSpace space;                           // in which the palette is made
   int colours = 64;                            // of the palette, at most Palette::max_colours
   int coarse_colours = 20;                     // of the scan's palette, merged from the fine one
   std::vector<int> distances = {1, 3, 6, 10};  // px between the pixels of a pair, four directions
   double same_pairs = 1;                       // weight of pairs of one colour, 0..1
-  Weighting weighting = Weighting::idf_hellinger;
-  int varied = 0;         // copies of each view under another light, size and place
-  int parts = 1;          // copies of each view of which a part is hidden
-  int views_a_class = 6;  // prototypes that the scan compares with
-  std::uint64_t seed = 1;
+  Weighting weighting = Weighting::idf_hellinger;  // how histograms are compared
+  int varied = 0;          // copies of each view under another light, size and place
+  int parts = 1;           // copies of each view of which a part is hidden
+  int views_a_class = 6;   // prototypes that the scan compares with
+  std::uint64_t seed = 1;  // of the palette and of varied copies
 };
 DescriptorOptions photos_of_objects();
 

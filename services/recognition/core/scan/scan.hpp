@@ -7,7 +7,7 @@
 namespace prehend::recognition {
 
 struct ScanOptions {
-  int cell_size = 10;                     // px
+  int cell_size = 10;                     // px, side of the cells of which windows are made
   int step = 2;                           // every step-th pixel starts a pair
   std::vector<int> windows = {3, 6, 10};  // sides of the sub-windows, cells
   /// Sizes at which an object may be seen, as shares of that in training: the pairs' distances and

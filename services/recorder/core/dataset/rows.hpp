@@ -41,8 +41,8 @@ struct Rows {
 };
 
 struct RowOptions {
-  double rate = 30;  // Hz
-  Turns turns = Turns::quaternion;
+  double rate = 30;                        // Hz, of the rows
+  Turns turns = Turns::quaternion;         // how orientations are written
   const model::HandModel* hand = nullptr;  // where it is known: names, fingertips
 };
 

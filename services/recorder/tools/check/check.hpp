@@ -20,7 +20,7 @@ inline constexpr std::array checkable{dds::Role::glove, dds::Role::recognition, 
                                       dds::Role::simulation, dds::Role::demonstration};
 
 struct CheckOptions {
-  std::filesystem::path file;
+  std::filesystem::path file;         // the recording
   std::vector<std::string> services;  // those to run; empty: all whose answers were recorded
   service::LabArguments lab;          // overrides of the recorded configuration
   std::filesystem::path log_folder;   // what the services say

@@ -16,13 +16,13 @@ namespace prehend::recorder {
 /// Of `prehend recording export` where training data are written; prehend-dataset does it.
 struct DatasetOptions {
   std::vector<std::string> sources;  // recordings, and folders of them
-  std::string format;
-  std::string output;
-  double rate = 30;  // Hz
-  std::string turns = "quaternion";
-  std::string size;  // of pictures, as 84x84; empty: as recorded
-  std::string hand;  // empty: the only one
-  std::string task;  // its words; empty: as recorded
+  std::string format;                // one of dataset_formats()
+  std::string output;                // file or folder that is made
+  double rate = 30;                  // Hz, of the rows
+  std::string turns = "quaternion";  // how orientations are written
+  std::string size;                  // of pictures, as 84x84; empty: as recorded
+  std::string hand;                  // empty: the only one
+  std::string task;                  // its words; empty: as recorded
 };
 
 /// The formats that are training data.

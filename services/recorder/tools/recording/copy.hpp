@@ -12,8 +12,8 @@ namespace prehend::recorder {
 
 /// What a new recording takes from others.
 struct CopyOptions {
-  recording::mcap::Selection selection;
-  recording::mcap::WriterOptions writer;
+  recording::mcap::Selection selection;   // topics and times
+  recording::mcap::WriterOptions writer;  // how the new file is written
   /// Called now and then with the share that is done, 0 to 1.
   std::function<void(double)> progress;
 };
