@@ -116,7 +116,6 @@ inline constexpr std::array long_functions{
     Exception{"tests/unit/dds/raw_test.cpp", "BytesKeysEndsAndStampsPassThrough)", older},
     Exception{"tests/unit/hand_model/hand_file_test.cpp", "RefusesWhatIsNoHandAndSaysWhere)",
               older},
-    Exception{"tests/unit/planner/hand_import/broken_urdf_test.cpp", "NamesWhatIsBroken)", older},
     Exception{"tests/unit/mapping/wild_input_test.cpp", "NeverMovesFasterThanTheLimits)", older},
     Exception{"tests/unit/service/lockstep_test.cpp", "play(", older},
 };
