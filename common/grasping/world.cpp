@@ -5,7 +5,6 @@
 #include <btBulletCollisionCommon.h>
 #include <btBulletDynamicsCommon.h>
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <deque>
@@ -18,6 +17,7 @@
 #include "common/grasping/carrier.hpp"
 #include "common/grasping/closest.hpp"
 #include "common/grasping/hand_body.hpp"
+#include "common/grasping/placed_body.hpp"
 #include "common/grasping/surface.hpp"
 
 namespace prehend::grasping {
@@ -51,15 +51,6 @@ double torque_scale(const Body& body) {
 }
 
 struct World::State {
-  struct Placed {
-    Body body;
-    Pose X_OC = Pose::Identity();  // C: principal axes of inertia, which Bullet wants
-    std::vector<std::unique_ptr<btCollisionShape>> shapes;  // the last one is the whole
-    std::unique_ptr<btRigidBody> rigid;
-
-    explicit Placed(const Body& placed) : body(placed) {}
-  };
-
   const model::HandModel& hand;
   WorldOptions options;
 
@@ -73,7 +64,7 @@ struct World::State {
   btStaticPlaneShape plane{btVector3(0, 0, 1), 0.0};
   std::unique_ptr<btRigidBody> table;
   std::unique_ptr<HandBody> fingers;
-  std::vector<Placed> bodies;
+  std::vector<PlacedBody> bodies;
 
   Pose X_WB_command;
   Vector3d velocity_command = Vector3d::Zero();
@@ -98,7 +89,7 @@ struct World::State {
   }
 
   ~State() {
-    for (Placed& placed : bodies) bullet.removeRigidBody(placed.rigid.get());
+    for (PlacedBody& placed : bodies) bullet.removeRigidBody(placed.rigid.get());
     fingers.reset();
     if (table) bullet.removeRigidBody(table.get());
   }
@@ -160,35 +151,6 @@ struct World::State {
   }
 };
 
-namespace {
-
-/// Makes the shapes of a body and its frame C, and returns its moments of inertia there.
-template <class Placed>
-btVector3 build_shape(Placed& placed) {
-  const double mass = placed.body.mass;
-  btVector3 inertia(0, 0, 0);
-  if (!placed.body.mesh) {
-    placed.shapes.push_back(make_shape(placed.body.shape));
-    if (mass > 0) placed.shapes.back()->calculateLocalInertia(mass, inertia);
-    return inertia;
-  }
-  const SolidMesh& mesh = *placed.body.mesh;
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> principal(mesh.inertia_O);
-  Eigen::Matrix3d R_OC = principal.eigenvectors();
-  if (R_OC.determinant() < 0) R_OC.col(0) *= -1;
-  placed.X_OC.linear() = R_OC;
-  auto compound = std::make_unique<btCompoundShape>();
-  for (const auto& corners : mesh.parts.parts) {
-    placed.shapes.push_back(make_shape(corners));
-    compound->addChildShape(to_bullet(placed.X_OC.inverse()), placed.shapes.back().get());
-  }
-  placed.shapes.push_back(std::move(compound));
-  if (mass > 0) inertia = to_bullet(Vector3d(mass * principal.eigenvalues()));
-  return inertia;
-}
-
-}  // namespace
-
 World::World(std::unique_ptr<State> state) : state_(std::move(state)) {}
 World::~World() = default;
 
@@ -239,25 +201,13 @@ std::unique_ptr<World> World::clone() const {
 }
 
 Expected<int> World::add_body(const Body& body, const Pose& X_WO) {
-  if (!model::is_valid(body.shape)) return fail("shape is not valid", body.name);
-  if (body.mesh && (body.mesh->parts.parts.empty() || !body.mesh->inertia_O.allFinite()))
-    return fail("mesh is not valid", body.name, "see load_body");
   if (body_count() >= max_bodies)
     return fail("too many bodies", body.name, "at most " + std::to_string(max_bodies));
-  if (!std::isfinite(body.mass) || body.mass < 0) return fail("mass must be 0 or more", body.name);
-  if (!is_finite(X_WO)) return fail("pose must be finite", body.name);
-  if (body.friction && !(*body.friction >= 0 && std::isfinite(*body.friction)))
-    return fail("friction must be 0 or more", body.name);
+  if (auto valid = check_body(body, X_WO); !valid) return tl::unexpected(valid.error());
   const auto material = analysis::material_from_string(body.material);
   if (!material) return fail("unknown material " + body.material, body.name);
 
-  State::Placed placed(body);
-  const btVector3 inertia = build_shape(placed);
-  btRigidBody::btRigidBodyConstructionInfo info(body.mass, nullptr, placed.shapes.back().get(),
-                                                inertia);
-  info.m_startWorldTransform = to_bullet(X_WO * placed.X_OC);
-  info.m_linearDamping = info.m_angularDamping = 0;
-  placed.rigid = std::make_unique<btRigidBody>(info);
+  PlacedBody placed(body, X_WO);
   const int index = body_count();
   make_touchable(*placed.rigid,
                  state_->surfaces.emplace_back(Surface{*material, body.friction, index, -1}));
@@ -269,19 +219,14 @@ Expected<int> World::add_body(const Body& body, const Pose& X_WO) {
 }
 
 void World::move_body(int body, const Pose& X_WO) {
-  State::Placed& placed = state_->bodies[static_cast<std::size_t>(body)];
-  btRigidBody& rigid = *placed.rigid;
-  rigid.setWorldTransform(to_bullet(X_WO * placed.X_OC));
-  rigid.setInterpolationWorldTransform(rigid.getWorldTransform());
-  rigid.setLinearVelocity(btVector3(0, 0, 0));
-  rigid.setAngularVelocity(btVector3(0, 0, 0));
-  rigid.clearForces();
-  state_->bullet.updateSingleAabb(&rigid);
+  PlacedBody& placed = state_->bodies[static_cast<std::size_t>(body)];
+  placed.move_to(X_WO);
+  state_->bullet.updateSingleAabb(placed.rigid.get());
 }
 
 void World::set_gravity(const Eigen::Vector3d& gravity_W) {
   state_->options.gravity_W = gravity_W;
-  for (State::Placed& placed : state_->bodies) placed.rigid->setGravity(to_bullet(gravity_W));
+  for (PlacedBody& placed : state_->bodies) placed.rigid->setGravity(to_bullet(gravity_W));
 }
 
 const Eigen::Vector3d& World::gravity() const {
@@ -292,7 +237,7 @@ void World::set_object_damping(double per_second) {
   state_->options.object_damping = per_second;
   // Bullet takes the share of its velocity that a body loses in a second.
   const double share = 1 - std::exp(-per_second);
-  for (State::Placed& placed : state_->bodies) placed.rigid->setDamping(share, share);
+  for (PlacedBody& placed : state_->bodies) placed.rigid->setDamping(share, share);
 }
 
 Expected<void> World::place_hand(const Pose& X_WB, const Eigen::VectorXd& dof) {
@@ -402,10 +347,7 @@ const Body& World::body(int index) const {
 }
 
 BodyMotion World::body_motion(int index) const {
-  const State::Placed& placed = state_->bodies[static_cast<std::size_t>(index)];
-  const btRigidBody& rigid = *placed.rigid;
-  return {from_bullet(rigid.getWorldTransform()) * placed.X_OC.inverse(),
-          from_bullet(rigid.getLinearVelocity()), from_bullet(rigid.getAngularVelocity())};
+  return state_->bodies[static_cast<std::size_t>(index)].motion();
 }
 
 std::vector<analysis::Contact> World::contacts(int body) const {

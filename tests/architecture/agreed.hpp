@@ -137,13 +137,12 @@ inline constexpr std::array long_functions{
     Exception{"tests/unit/dds/raw_test.cpp", "BytesKeysEndsAndStampsPassThrough)", older},
     Exception{"tests/unit/hand_model/hand_file_test.cpp", "RefusesWhatIsNoHandAndSaysWhere)",
               older},
-    Exception{"tests/unit/planner/hand_import/broken_urdf_test.cpp", "NamesWhatIsBroken)", older},
     Exception{"tests/unit/mapping/wild_input_test.cpp", "NeverMovesFasterThanTheLimits)", older},
     Exception{"tests/unit/service/lockstep_test.cpp", "play(", older},
 };
 
 inline constexpr std::array process_ends{
-    Exception{"common/service/process.cpp", "_exit",
+    Exception{"common/stage/process.cpp", "_exit",
               "the child between fork and exec, which must not run the parent's destructors"},
     Exception{"common/service/restart.cpp", "_Exit",
               "exec failed, and nothing is left to return to"},

@@ -2,7 +2,7 @@
 // all modes and stay within the errors that are drawn, and the results do not depend on how the
 // work is divided. Everything is deterministic, so equality is exact; tolerances are those of the
 // errors' definitions.
-#include "services/mapping/tools/benchmark/grasp_benchmark.hpp"
+#include "services/mapping/tools/judging/grasp_benchmark.hpp"
 
 #include <gtest/gtest.h>
 

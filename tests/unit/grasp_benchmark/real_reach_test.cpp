@@ -1,7 +1,7 @@
 // Takes of real people: an object is put where fingers of a recording close. On a made hand whose
 // fingertips are known it must stand between them; on recordings, where nobody knows, the doubt is
 // stated and bounded.
-#include "services/mapping/tools/benchmark/real_reach.hpp"
+#include "services/mapping/tools/judging/real_reach.hpp"
 
 #include <gtest/gtest.h>
 

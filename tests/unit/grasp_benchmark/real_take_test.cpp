@@ -1,7 +1,7 @@
 // Recordings of real hands. The reader is held against the glove service's own, which was written
 // for another purpose: the same fingertips in H to 1e-6 m, what rounding of angles leaves. Bad
 // files are refused by name.
-#include "services/mapping/tools/benchmark/real_take.hpp"
+#include "services/mapping/tools/judging/real_take.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

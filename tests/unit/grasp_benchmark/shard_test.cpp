@@ -7,8 +7,8 @@
 #include <limits>
 
 #include "common/base/file_text.hpp"
-#include "services/mapping/tools/benchmark/benchmark_shard.hpp"
-#include "services/mapping/tools/benchmark/benchmark_summary.hpp"
+#include "services/mapping/tools/judging/benchmark_shard.hpp"
+#include "services/mapping/tools/judging/benchmark_summary.hpp"
 
 namespace prehend::mapping {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "services/mapping/tools/benchmark/benchmark_summary.hpp"
+#include "services/mapping/tools/judging/benchmark_summary.hpp"
 
 namespace prehend::mapping {
 namespace {

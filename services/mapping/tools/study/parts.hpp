@@ -9,7 +9,7 @@
 #include "common/model/catalogue.hpp"
 #include "common/model/hand_model.hpp"
 #include "services/mapping/core/mapping_model.hpp"
-#include "services/mapping/tools/benchmark/real_take.hpp"
+#include "services/mapping/tools/judging/real_take.hpp"
 #include "services/mapping/tools/training/robot_grasps.hpp"
 #include "services/mapping/tools/training/scheme.hpp"
 

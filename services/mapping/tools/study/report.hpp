@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "common/base/error.hpp"
-#include "services/mapping/tools/benchmark/benchmark_summary.hpp"
+#include "services/mapping/tools/judging/benchmark_summary.hpp"
 #include "services/mapping/tools/study/study.hpp"
 
 namespace prehend::mapping {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "common/grasping/planner.hpp"
-#include "services/mapping/tools/benchmark/sharded_benchmark.hpp"
+#include "services/mapping/tools/judging/sharded_benchmark.hpp"
 #include "services/mapping/tools/study/experiment.hpp"
 
 namespace prehend::mapping {

@@ -15,7 +15,7 @@
 #include "common/base/progress.hpp"
 #include "common/base/workers.hpp"
 #include "common/tool/program.hpp"
-#include "services/mapping/tools/benchmark/summary_json.hpp"
+#include "services/mapping/tools/judging/summary_json.hpp"
 #include "services/mapping/tools/study/report.hpp"
 
 namespace prehend::mapping {

@@ -36,11 +36,8 @@ struct Anatomy {
 /// How much is held by a hand of which this is said. Less than `needed` need not be exact.
 using AnatomyJudge = std::function<double(const Anatomy&, double needed)>;
 
-/// Fingers are the chains that end in a leaf; of several leaves that the same DoFs move, those that
-/// reach almost as far as the farthest. A tip is the end of the last link along its bone. A DoF
-/// closes if its joints turn about nearly the same axis as the last joint of a finger (else it is
-/// abduction), towards the side on which the tips come nearer to the palm, or slides tips towards
-/// each other. robot: as repair() made it.
+/// Tells fingers and palm apart (skeleton.hpp), which way they close (closing.hpp), where they
+/// grasp (grasp_frame.hpp) and what they can hold (opposition.hpp). robot: as repair() made it.
 Expected<Anatomy> find_anatomy(const Robot& robot, const SearchEffort& effort = {},
                                const AnatomyJudge& judge = {});
 

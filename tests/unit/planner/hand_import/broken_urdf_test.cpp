@@ -42,6 +42,57 @@ struct Broken {
   bool usable;
 };
 
+constexpr const char* sound_limit =
+    "<limit lower=\"0\" upper=\"0.04\" effort=\"40\" velocity=\"0.1\"/>";
+
+const Broken broken_urdfs[] = {
+    {"<box size=\"0.02 0.01 0.05\"/>", "<capsule radius=\"0.01\" length=\"0.05\"/>",
+     "unknown-geometry", "link left_finger", false},
+    {"<box size=\"0.02 0.01 0.05\"/>", "<box size=\"0.02 nan 0.05\"/>", "bad-number",
+     "link left_finger", false},
+    {"<box size=\"0.02 0.01 0.05\"/>", "<box size=\"0.02 0.01\"/>", "bad-number",
+     "link left_finger", false},
+    {"<box size=\"0.02 0.01 0.05\"/>", "<box size=\"0.02 0 0.05\"/>", "bad-size",
+     "link left_finger", false},
+    {"<box size=\"0.02 0.01 0.05\"/>", "<box size=\"20 10 50\"/>", "units", "link left_finger",
+     false},
+    {"<geometry><box size=\"0.02 0.01 0.05\"/></geometry>", "", "no-geometry", "link left_finger",
+     false},
+    {"scale=\"0.001 0.001 0.001\"", "", "units", "link body", false},
+    {sound_limit, "", "no-limits", "joint left_finger_slide", false},
+    {"upper=\"0.04\"", "upper=\"-0.04\"", "no-limits", "joint left_finger_slide", false},
+    {"upper=\"0.04\"", "upper=\"40\"", "units", "joint left_finger_slide", false},
+    {"effort=\"40\"", "effort=\"0\"", "no-effort", "joint left_finger_slide", true},
+    {"velocity=\"0.1\"", "", "no-velocity", "joint left_finger_slide", true},
+    {"<axis xyz=\"0 1 0\"/>", "<axis xyz=\"0 0 0\"/>", "zero-axis", "joint left_finger_slide",
+     false},
+    {"type=\"prismatic\"", "type=\"planar\"", "joint-type", "joint left_finger_slide", false},
+    {"type=\"prismatic\"", "type=\"continuous\"", "continuous", "joint left_finger_slide", true},
+    {"mimic joint=\"left_finger_slide\"", "mimic joint=\"nobody\"", "mimic-missing",
+     "joint right_finger_slide", false},
+    {"mimic joint=\"left_finger_slide\"", "mimic joint=\"right_finger_slide\"", "mimic-loop",
+     "joint right_finger_slide", false},
+    {"mimic joint=\"left_finger_slide\"", "mimic multiplier=\"0\" joint=\"left_finger_slide\"",
+     "mimic-zero", "joint right_finger_slide", false},
+    {"<mass value=\"0.1\"/>", "<mass value=\"0\"/>", "no-mass", "link left_finger", false},
+    {"<mass value=\"0.1\"/>", "<mass value=\"100\"/>", "units", "link left_finger", false},
+    {"ixx=\"2e-05\"", "ixx=\"1\"", "impossible-inertia", "link left_finger", true},
+    {"ixx=\"2e-05\"", "ixx=\"-1\"", "impossible-inertia", "link left_finger", true},
+    {"<child link=\"left_pad\"/>", "<child link=\"nobody\"/>", "missing-link",
+     "joint left_pad_screw", false},
+    {"<child link=\"left_pad\"/>", "<child link=\"left_pad\"/><limit lower=\"x\"/>", "bad-number",
+     "joint left_pad_screw", false},
+    {"<child link=\"left_pad\"/>", "<child link=\"right_pad\"/>", "two-parents", "link right_pad",
+     false},
+    {"<child link=\"left_pad\"/>", "<child link=\"right_pad\"/>", "several-roots", "robot gripper",
+     false},
+    {"<parent link=\"mount\"/>", "<parent link=\"left_pad\"/>", "joint-loop", "link body", false},
+    {"<link name=\"left_pad\">", "<link name=\"left_finger\">", "duplicate-name",
+     "link left_finger", false},
+    {"<link name=\"left_pad\">", "<link>", "no-name", "link ", false},
+    {"xyz=\"0 0.009 0.02\"", "xyz=\"0 9 20\"", "units", "joint left_finger_slide", false},
+    {"xyz=\"0 0.009 0.02\"", "xyz=\"0 -0.009 0.02\"", "self-collision", "link right_pad", true}};
+
 TEST(HandCheck, FindsNothingWrongInASoundGripper) {
   for (const planner::UrdfFinding& finding : findings_of(made_hands::gripper())) {
     EXPECT_EQ(finding.severity, planner::Severity::warning) << finding.what;
@@ -51,59 +102,7 @@ TEST(HandCheck, FindsNothingWrongInASoundGripper) {
 
 TEST(HandCheck, NamesWhatIsBroken) {
   const std::string sound = made_hands::gripper();
-  const std::string limit = "<limit lower=\"0\" upper=\"0.04\" effort=\"40\" velocity=\"0.1\"/>";
-  for (const Broken& broken : std::initializer_list<Broken>{
-           {"<box size=\"0.02 0.01 0.05\"/>", "<capsule radius=\"0.01\" length=\"0.05\"/>",
-            "unknown-geometry", "link left_finger", false},
-           {"<box size=\"0.02 0.01 0.05\"/>", "<box size=\"0.02 nan 0.05\"/>", "bad-number",
-            "link left_finger", false},
-           {"<box size=\"0.02 0.01 0.05\"/>", "<box size=\"0.02 0.01\"/>", "bad-number",
-            "link left_finger", false},
-           {"<box size=\"0.02 0.01 0.05\"/>", "<box size=\"0.02 0 0.05\"/>", "bad-size",
-            "link left_finger", false},
-           {"<box size=\"0.02 0.01 0.05\"/>", "<box size=\"20 10 50\"/>", "units",
-            "link left_finger", false},
-           {"<geometry><box size=\"0.02 0.01 0.05\"/></geometry>", "", "no-geometry",
-            "link left_finger", false},
-           {"scale=\"0.001 0.001 0.001\"", "", "units", "link body", false},
-           {limit.c_str(), "", "no-limits", "joint left_finger_slide", false},
-           {"upper=\"0.04\"", "upper=\"-0.04\"", "no-limits", "joint left_finger_slide", false},
-           {"upper=\"0.04\"", "upper=\"40\"", "units", "joint left_finger_slide", false},
-           {"effort=\"40\"", "effort=\"0\"", "no-effort", "joint left_finger_slide", true},
-           {"velocity=\"0.1\"", "", "no-velocity", "joint left_finger_slide", true},
-           {"<axis xyz=\"0 1 0\"/>", "<axis xyz=\"0 0 0\"/>", "zero-axis",
-            "joint left_finger_slide", false},
-           {"type=\"prismatic\"", "type=\"planar\"", "joint-type", "joint left_finger_slide",
-            false},
-           {"type=\"prismatic\"", "type=\"continuous\"", "continuous", "joint left_finger_slide",
-            true},
-           {"mimic joint=\"left_finger_slide\"", "mimic joint=\"nobody\"", "mimic-missing",
-            "joint right_finger_slide", false},
-           {"mimic joint=\"left_finger_slide\"", "mimic joint=\"right_finger_slide\"", "mimic-loop",
-            "joint right_finger_slide", false},
-           {"mimic joint=\"left_finger_slide\"",
-            "mimic multiplier=\"0\" joint=\"left_finger_slide\"", "mimic-zero",
-            "joint right_finger_slide", false},
-           {"<mass value=\"0.1\"/>", "<mass value=\"0\"/>", "no-mass", "link left_finger", false},
-           {"<mass value=\"0.1\"/>", "<mass value=\"100\"/>", "units", "link left_finger", false},
-           {"ixx=\"2e-05\"", "ixx=\"1\"", "impossible-inertia", "link left_finger", true},
-           {"ixx=\"2e-05\"", "ixx=\"-1\"", "impossible-inertia", "link left_finger", true},
-           {"<child link=\"left_pad\"/>", "<child link=\"nobody\"/>", "missing-link",
-            "joint left_pad_screw", false},
-           {"<child link=\"left_pad\"/>", "<child link=\"left_pad\"/><limit lower=\"x\"/>",
-            "bad-number", "joint left_pad_screw", false},
-           {"<child link=\"left_pad\"/>", "<child link=\"right_pad\"/>", "two-parents",
-            "link right_pad", false},
-           {"<child link=\"left_pad\"/>", "<child link=\"right_pad\"/>", "several-roots",
-            "robot gripper", false},
-           {"<parent link=\"mount\"/>", "<parent link=\"left_pad\"/>", "joint-loop", "link body",
-            false},
-           {"<link name=\"left_pad\">", "<link name=\"left_finger\">", "duplicate-name",
-            "link left_finger", false},
-           {"<link name=\"left_pad\">", "<link>", "no-name", "link ", false},
-           {"xyz=\"0 0.009 0.02\"", "xyz=\"0 9 20\"", "units", "joint left_finger_slide", false},
-           {"xyz=\"0 0.009 0.02\"", "xyz=\"0 -0.009 0.02\"", "self-collision", "link right_pad",
-            true}}) {
+  for (const Broken& broken : broken_urdfs) {
     const std::string urdf = replaced(sound, broken.from, broken.to);
     const auto findings = findings_of(urdf);
     const bool named = std::any_of(findings.begin(), findings.end(), [&](const auto& finding) {

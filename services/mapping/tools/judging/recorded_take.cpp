@@ -1,4 +1,4 @@
-#include "services/mapping/tools/benchmark/recorded_take.hpp"
+#include "services/mapping/tools/judging/recorded_take.hpp"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "services/mapping/tools/benchmark/grasp_benchmark.hpp"
+#include "services/mapping/tools/judging/grasp_benchmark.hpp"
 
 #include <algorithm>
 #include <array>

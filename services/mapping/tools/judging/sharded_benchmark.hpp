@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "common/grasping/planner.hpp"
-#include "services/mapping/tools/benchmark/benchmark_shard.hpp"
-#include "services/mapping/tools/benchmark/grasp_benchmark.hpp"
+#include "services/mapping/tools/judging/benchmark_shard.hpp"
+#include "services/mapping/tools/judging/grasp_benchmark.hpp"
 
 namespace prehend::mapping {
 

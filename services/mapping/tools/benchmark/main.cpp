@@ -1,4 +1,4 @@
-#include "services/mapping/tools/judge/benchmark_command.hpp"
+#include "services/mapping/tools/benchmark/benchmark_command.hpp"
 
 int main(int argc, char** argv) {
   return prehend::mapping::benchmark_command({argv + 1, argv + argc});

@@ -1,4 +1,4 @@
-#include "services/mapping/tools/benchmark/summary_json.hpp"
+#include "services/mapping/tools/judging/summary_json.hpp"
 
 #include <nlohmann/json.hpp>
 

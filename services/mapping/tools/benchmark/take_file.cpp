@@ -1,4 +1,4 @@
-#include "services/mapping/tools/judge/take_file.hpp"
+#include "services/mapping/tools/benchmark/take_file.hpp"
 
 #include <fmt/format.h>
 
@@ -14,8 +14,8 @@
 #include "common/recording/types/idl.hpp"
 #include "common/recording/types/schema_text.hpp"
 #include "services/mapping/service/messages.hpp"
-#include "services/mapping/tools/judge/lab_messages.hpp"
-#include "services/mapping/tools/judge/own_by_messages.hpp"
+#include "services/mapping/tools/benchmark/lab_messages.hpp"
+#include "services/mapping/tools/benchmark/own_by_messages.hpp"
 
 namespace prehend::mapping {
 

@@ -2,7 +2,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 
-#include "services/mapping/tools/benchmark/benchmark_summary.hpp"
+#include "services/mapping/tools/judging/benchmark_summary.hpp"
 
 namespace prehend::mapping {
 

@@ -1,10 +1,10 @@
-#include "services/mapping/tools/judge/lab_messages.hpp"
+#include "services/mapping/tools/benchmark/lab_messages.hpp"
 
 #include <algorithm>
 
 #include "common/convert/convert.hpp"
 #include "services/mapping/service/messages.hpp"
-#include "services/mapping/tools/benchmark/answerer.hpp"
+#include "services/mapping/tools/judging/answerer.hpp"
 
 namespace prehend::mapping {
 

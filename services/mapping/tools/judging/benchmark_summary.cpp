@@ -1,4 +1,4 @@
-#include "services/mapping/tools/benchmark/benchmark_summary.hpp"
+#include "services/mapping/tools/judging/benchmark_summary.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

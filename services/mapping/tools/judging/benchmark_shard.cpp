@@ -1,4 +1,4 @@
-#include "services/mapping/tools/benchmark/benchmark_shard.hpp"
+#include "services/mapping/tools/judging/benchmark_shard.hpp"
 
 #include <fmt/format.h>
 

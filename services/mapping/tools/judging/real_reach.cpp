@@ -1,4 +1,4 @@
-#include "services/mapping/tools/benchmark/real_reach.hpp"
+#include "services/mapping/tools/judging/real_reach.hpp"
 
 #include <fmt/format.h>
 

@@ -1,5 +1,5 @@
 // prehend-benchmark: judges mappings, ours and others', by the same takes.
-#include "services/mapping/tools/judge/benchmark_command.hpp"
+#include "services/mapping/tools/benchmark/benchmark_command.hpp"
 
 #include <fmt/format.h>
 
@@ -22,12 +22,12 @@
 #include "common/stage/temporary_folder.hpp"
 #include "services/mapping/files/mapping_model_file.hpp"
 #include "services/mapping/files/model_places.hpp"
-#include "services/mapping/tools/benchmark/real_reach.hpp"
-#include "services/mapping/tools/benchmark/summary_json.hpp"
-#include "services/mapping/tools/judge/external_mapping.hpp"
-#include "services/mapping/tools/judge/own_by_messages.hpp"
-#include "services/mapping/tools/judge/people.hpp"
-#include "services/mapping/tools/judge/take_file.hpp"
+#include "services/mapping/tools/benchmark/external_mapping.hpp"
+#include "services/mapping/tools/benchmark/own_by_messages.hpp"
+#include "services/mapping/tools/benchmark/people.hpp"
+#include "services/mapping/tools/benchmark/take_file.hpp"
+#include "services/mapping/tools/judging/real_reach.hpp"
+#include "services/mapping/tools/judging/summary_json.hpp"
 
 namespace prehend::mapping {
 namespace {

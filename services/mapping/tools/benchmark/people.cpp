@@ -1,9 +1,9 @@
-#include "services/mapping/tools/judge/people.hpp"
+#include "services/mapping/tools/benchmark/people.hpp"
 
 #include <algorithm>
 #include <system_error>
 
-#include "services/mapping/tools/judge/take_file.hpp"
+#include "services/mapping/tools/benchmark/take_file.hpp"
 
 namespace prehend::mapping {
 

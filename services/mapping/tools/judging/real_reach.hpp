@@ -3,8 +3,8 @@
 #include <optional>
 #include <vector>
 
-#include "services/mapping/tools/benchmark/grasp_benchmark.hpp"
-#include "services/mapping/tools/benchmark/real_take.hpp"
+#include "services/mapping/tools/judging/grasp_benchmark.hpp"
+#include "services/mapping/tools/judging/real_take.hpp"
 
 /// Takes of real people, who were recorded without an object: it is put where their fingers close.
 namespace prehend::mapping {

@@ -5,7 +5,7 @@
 
 #include "common/base/error.hpp"
 #include "common/model/hand_model.hpp"
-#include "services/mapping/tools/benchmark/grasp_benchmark.hpp"
+#include "services/mapping/tools/judging/grasp_benchmark.hpp"
 
 namespace prehend::mapping {
 

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "common/statistics/intervals.hpp"
-#include "services/mapping/tools/benchmark/grasp_benchmark.hpp"
+#include "services/mapping/tools/judging/grasp_benchmark.hpp"
 
 namespace prehend::mapping {
 

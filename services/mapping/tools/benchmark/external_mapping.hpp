@@ -5,7 +5,7 @@
 #include <string>
 
 #include "common/service/config.hpp"
-#include "services/mapping/tools/benchmark/answerer.hpp"
+#include "services/mapping/tools/judging/answerer.hpp"
 
 namespace prehend::mapping {
 

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "common/base/error.hpp"
-#include "services/mapping/tools/benchmark/real_take.hpp"
+#include "services/mapping/tools/judging/real_take.hpp"
 
 namespace prehend::mapping {
 

@@ -1,4 +1,4 @@
-#include "services/mapping/tools/judge/external_mapping.hpp"
+#include "services/mapping/tools/benchmark/external_mapping.hpp"
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -16,8 +16,8 @@
 #include "common/service/membership.hpp"
 #include "common/stage/conductor.hpp"
 #include "common/stage/process.hpp"
-#include "services/mapping/tools/judge/lab_messages.hpp"
-#include "services/mapping/tools/judge/own_by_messages.hpp"
+#include "services/mapping/tools/benchmark/lab_messages.hpp"
+#include "services/mapping/tools/benchmark/own_by_messages.hpp"
 
 namespace prehend::mapping {
 

@@ -1,6 +1,6 @@
-#include "services/mapping/tools/judge/own_by_messages.hpp"
+#include "services/mapping/tools/benchmark/own_by_messages.hpp"
 
-#include "services/mapping/tools/judge/lab_messages.hpp"
+#include "services/mapping/tools/benchmark/lab_messages.hpp"
 
 namespace prehend::mapping {
 

@@ -9,8 +9,8 @@
 #include "common/base/named_values.hpp"
 #include "common/grasping/planner.hpp"
 #include "common/model/catalogue.hpp"
-#include "services/mapping/tools/benchmark/answerer.hpp"
-#include "services/mapping/tools/benchmark/recorded_take.hpp"
+#include "services/mapping/tools/judging/answerer.hpp"
+#include "services/mapping/tools/judging/recorded_take.hpp"
 
 namespace prehend::mapping {
 

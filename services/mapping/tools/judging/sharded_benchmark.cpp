@@ -1,4 +1,4 @@
-#include "services/mapping/tools/benchmark/sharded_benchmark.hpp"
+#include "services/mapping/tools/judging/sharded_benchmark.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

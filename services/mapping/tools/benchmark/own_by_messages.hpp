@@ -1,6 +1,6 @@
 #pragma once
 
-#include "services/mapping/tools/benchmark/answerer.hpp"
+#include "services/mapping/tools/judging/answerer.hpp"
 
 namespace prehend::mapping {
 

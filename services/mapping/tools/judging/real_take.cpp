@@ -1,4 +1,4 @@
-#include "services/mapping/tools/benchmark/real_take.hpp"
+#include "services/mapping/tools/judging/real_take.hpp"
 
 #include <fmt/format.h>
 
