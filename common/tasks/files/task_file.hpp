@@ -7,8 +7,8 @@
 
 #include "common/base/error.hpp"
 #include "common/base/time.hpp"
+#include "common/tasks/shown_task.hpp"
 #include "common/tasks/task_model.hpp"
-#include "services/demonstration/core/tasks/learn_task.hpp"
 
 namespace prehend::tasks {
 

@@ -82,7 +82,8 @@ void add_choices(CLI::App& app) {
   app.add_option("--task",
                  "a task (pick-and-place), or a file of one: it is shown, and done again "
                  "elsewhere;\nprehend demo --task pick-and-place --help tells more");
-  app.add_flag_callback("--targets", [] {}, "only say what `cmake --build` must make for this");
+  app.add_flag_callback(
+      "--targets", [] {}, "only say what `cmake --build` must make for this");
 }
 
 }  // namespace

@@ -19,8 +19,8 @@ Eigen::VectorXd task_prior(const std::vector<std::string>& kinds,
   for (std::size_t k = 0; k < kinds.size(); ++k) {
     double& own = made[static_cast<Eigen::Index>(k)];
     for (const tasks::ShownTask& task : shown)
-      own +=
-          static_cast<double>(std::count_if(task.begin(), task.end(), [&](const tasks::ShownStep& step) {
+      own += static_cast<double>(
+          std::count_if(task.begin(), task.end(), [&](const tasks::ShownStep& step) {
             return step.object == object && step.grasp == kinds[k];
           }));
     const model::GraspClass* known = taxonomy.find(kinds[k]);
