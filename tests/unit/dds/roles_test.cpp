@@ -38,6 +38,8 @@ const std::map<std::string, Roles> roles_of_path{
     {"services/performer/tools", Role::viewer},
     {"services/performer/tools/tasks/order_command.cpp", Role::operator_},
     {"services/recorder", Role::recorder | Role::replayer},
+    {"services/recorder/service/player_service.cpp", Role::replayer},
+    {"services/recorder/service/recorder_service.cpp", Role::recorder},
     {"services/recorder/tools/record", Role::recorder},
     {"services/recorder/tools/replay", Role::replayer},
     {"services/recorder/tools/check", Role::replayer},

@@ -5,13 +5,13 @@
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
-#include <numbers>
 
 #include "common/arm/mounting.hpp"
 #include "common/base/paths.hpp"
 #include "common/model/arm_choice.hpp"
 #include "common/model/catalogue.hpp"
 #include "common/model/scene.hpp"
+#include "common/service/arguments.hpp"
 #include "common/stage/process.hpp"
 #include "common/stage/temporary_folder.hpp"
 #include "common/tasks/files/task_file.hpp"
@@ -30,12 +30,13 @@ struct EvaluateArguments {
   bool json = false;
 };
 
-/// Where the configuration's defaults have it.
-planning::Robot standing(const model::ArmModel& arm, const model::HandModel& hand) {
-  constexpr double before = 0.7, bracket = 0.7;  // m, rad
-  const Eigen::AngleAxisd turn(std::numbers::pi / 2, Eigen::Vector3d::UnitZ());
-  return {&arm, &hand, make_pose({0, -before, 0}, turn.toRotationMatrix()),
-          arm.X_EF * arm::mounted(hand, bracket)};
+/// Where the configuration that comes with the programs has it.
+planning::Robot standing(const model::ArmModel& arm, const model::HandModel& hand,
+                         const service::Config& config) {
+  const std::vector<double>& at = config.numbers("robot.X_WA");
+  const Eigen::Quaterniond turn(at[3], at[4], at[5], at[6]);
+  return {&arm, &hand, make_pose({at[0], at[1], at[2]}, turn.toRotationMatrix()),
+          arm.X_EF * arm::mounted(hand, config.number("robot.bracket"))};
 }
 
 /// One task that was shown, and what came of it.
@@ -108,7 +109,9 @@ int evaluate(const EvaluateArguments& arguments) {
     if (const auto fits = arm::check_fit(*loaded, *hand); !fits)
       return tool::complain(fits.error());
     arm = std::move(*loaded);
-    robot = standing(*arm, *hand);
+    const auto config = service::LabArguments{}.load();
+    if (!config) return tool::complain(config.error());
+    robot = standing(*arm, *hand, *config);
   }
   Json document{{"hand", hand->name()},
                 {"arm", arm ? Json(arm->name) : Json(nullptr)},
