@@ -10,7 +10,7 @@
 #include "tests/fuzz/sealed.hpp"
 
 using namespace prehend;
-using namespace prehend::demonstration;
+using namespace prehend::tasks;
 
 int main(int argc, char** argv) {
   const auto path = std::filesystem::temp_directory_path() /
@@ -19,16 +19,16 @@ int main(int argc, char** argv) {
   fuzz::Fuzzer fuzzer;
   fuzzer.long_round = 10000;
   for (const std::size_t steps : {1, 2, 5}) {
-    tasks::TaskModel task{"lay the table", 3, std::vector<tasks::Step>(steps)};
+    TaskModel task{"lay the table", 3, std::vector<Step>(steps)};
     for (std::size_t i = 0; i < steps; ++i) {
       task.steps[i].object = "object " + std::to_string(i);
       task.steps[i].X_RO = make_pose({0.1, 0.2, 0.05});
       if (i > 0) task.steps[i].after = {i - 1};
     }
-    tasks::ShownStep shown{.object = "object 0", .grasp = "tripod"};
+    ShownStep shown{.object = "object 0", .grasp = "tripod"};
     shown.X_WR["object 1"] = make_pose({0.3, 0.2, 0.05});
-    const tasks::TaskRecord record{task, {{shown, shown}}, {{from_ns(7), "barrett", true, ""}}};
-    fuzz::require(tasks::save_record(path, record).has_value(), "no seed");
+    const TaskRecord record{task, {{shown, shown}}, {{from_ns(7), "barrett", true, ""}}};
+    fuzz::require(save_record(path, record).has_value(), "no seed");
     fuzzer.seeds.push_back(fuzz::read_file(path.string()));
   }
   fuzzer.mutate = [](Random& random, std::string file) {
@@ -36,11 +36,11 @@ int main(int argc, char** argv) {
   };
   fuzzer.target = [&](const std::string& bytes) {
     std::ofstream(path, std::ios::binary) << bytes;
-    const auto task = tasks::load_task(path);
+    const auto task = load_task(path);
     fuzz::require(task || !task.error().what.empty(), "refused without a reason");
     if (!task) return false;
     fuzz::require_intact(bytes, "task");
-    fuzz::require(check(*task).has_value() && tasks::order_of(*task)->size() == task->steps.size(),
+    fuzz::require(check(*task).has_value() && order_of(*task)->size() == task->steps.size(),
                   "accepted, and yet not good");
     fuzz::require(to_toml(*task).find("[[step]]") != std::string::npos, "cannot be shown");
     return true;
