@@ -98,7 +98,8 @@ TEST_F(Attacks, AReleaseThatWasGivenBeforeTheStopDoesNotEndIt) {
 // Guards against who is known by no name yet: a replayer plays what was recorded as soon as it has
 // come, before its status or beacon is heard, and so does who never tells of itself.
 TEST_F(Attacks, WhatIsPlayedOrSaidByNobodyKnownReleasesNothingAndIsNoConsent) {
-  start_hand({"safety.deadman=true"});
+  simulation_.emplace(start("simulation", {"safety.deadman=true"}));
+  ASSERT_TRUE(wait(30, [&] { return heard_ > 0 && gate_.deadman(); }));
   ASSERT_TRUE(give(made("stop", v1::ACTION_STOP)));
   ASSERT_TRUE(wait(20, [&] { return gate_.stopped(); }));
   const auto consent = [&](bool held) {

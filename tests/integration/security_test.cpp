@@ -167,9 +167,17 @@ TEST_F(Security, IntrudersGetNothingBringNothingAndTheOthersGoOn) {
     ears.push_back(*intruders.back().reader(dds::object_detection));
   }
   // A viewer of ours that permits itself to write, which its own library then believes.
-  ASSERT_TRUE(foreign.add("viewer", dds::Role::recognition, year, true, now(), {}));
+  const auto authority = [&](const char* file) { return *read_file(foreign.folder() / file); };
+  dds::Permissions wished = dds::min_permissions(dds::Role::recognition);
+  wished.subject = "CN=viewer";
+  wished.from = "2020-01-01T00:00:00";
+  wished.until = "2040-01-01T00:00:00";
+  const auto forged = keys::sign(
+      {authority(dds::key_files::authority), authority("authority-key.pem")}, dds::text(wished));
+  ASSERT_TRUE(forged &&
+              write_file(foreign.folder() / "viewer" / dds::key_files::permissions, *forged));
   Forger forger(domain_, name_, copy_of("viewer", "forger"), foreign.folder() / "viewer");
-  EXPECT_TRUE(forger.at_work());
+  ASSERT_TRUE(forger.at_work());
 
   const std::map<std::string, std::string> reasons{
       {"stranger", "no keys"}, {"foreigner", "another authority"}, {"thief", "revoked"}};
@@ -356,6 +364,24 @@ TEST_F(Security, ThoseWhoComeAndGoLockNobodyUp) {
   EXPECT_FALSE(simulation.exit());
   const std::string log = stage::last_lines(folder_ / "prehend-simulation.log", 1000);
   EXPECT_EQ(log.find("locked itself up"), std::string::npos) << log;
+}
+
+// A key may have any name; who holds it may announce itself as anything.
+TEST_F(Security, TheRoleIsThatOfTheCertificateWhateverIsAnnounced) {
+  ASSERT_TRUE(store_.add("laptop", dds::Role::viewer, year, false, now(), {name_, domain_}));
+  const auto judge = member("mapping", store_.folder());
+  const auto recognition = member("recognition", store_.folder());
+  const auto laptop = dds::Participant::create({.name = "laptop",
+                                                .domain = domain_,
+                                                .rig = name_,
+                                                .network = {.keys = store_.folder() / "laptop"},
+                                                .role = "operator"});
+  ASSERT_TRUE(laptop) << laptop.error().message();
+  EXPECT_TRUE(eventually(20, [&] {
+    return judge.role_of(laptop->identity()) == dds::Role::viewer &&
+           judge.role_of(recognition.identity()) == dds::Role::recognition;
+  }));
+  EXPECT_EQ(judge.role_of({}), std::nullopt);
 }
 
 // The authority is on another machine: only requests and what it grants travel.
