@@ -113,6 +113,46 @@ struct Participant::State {
     fdds::DomainParticipantFactory::get_instance()->delete_participant(participant);
   }
 
+  /// What stands between Fast DDS and the wire, and hears who is there.
+  void guard(fdds::DomainParticipantQos& qos) {
+    PacketGuard::Hear hear;
+    if constexpr (hides_secured_peers)
+      hear = [this](const Announcement& said) { peers->hear(said); };
+    const bool paces =
+        qos.wire_protocol().builtin.discovery_config.discoveryProtocol == DiscoveryProtocol::SIMPLE;
+    packets.emplace(!options.serves.empty(), keys.has_value(), paces, std::move(hear));
+    peers.emplace(options.listener, keys ? std::optional(keys->authority) : std::nullopt, *packets);
+    // Who listens to the whole domain is a recorder: pictures that come while it has no processor
+    // wait in the socket (as far as net.core.rmem_max allows), for on best effort topics nothing
+    // else holds them.
+    if (options.listener)
+      for (auto& transport : qos.transport().user_transports)
+        if (auto* socket = dynamic_cast<transport::SocketTransportDescriptor*>(transport.get()))
+          socket->receiveBufferSize = 1 << 24;
+    // Over TCP Fast DDS does not tell who sent a packet; there TLS decides who connects.
+    for (auto& transport : qos.transport().user_transports)
+      if (dynamic_cast<transport::UDPv4TransportDescriptor*>(transport.get()))
+        transport = guarded(transport, *packets);
+    for (auto& transport : qos.transport().user_transports)
+      transport = serialized(transport, serializer);
+    for (const auto& locator : servers_of(qos))
+      packets->add_server(prefix_of(server_prefix(static_cast<std::uint16_t>(locator.port))),
+                          ip_of(locator));
+  }
+
+  Expected<void> enter_rig() {
+    fdds::PublisherQos publisher_qos = fdds::PUBLISHER_QOS_DEFAULT;
+    fdds::SubscriberQos subscriber_qos = fdds::SUBSCRIBER_QOS_DEFAULT;
+    if (!options.rig.empty()) {
+      publisher_qos.partition().push_back(options.rig.c_str());
+      subscriber_qos.partition().push_back(options.rig.c_str());
+    }
+    publisher = participant->create_publisher(publisher_qos);
+    subscriber = participant->create_subscriber(subscriber_qos);
+    if (!publisher || !subscriber) return fail("cannot join the rig", options.rig);
+    return {};
+  }
+
   /// Told of a discovery server's address, new or known.
   void server_is_at(const Address& address) {
     fdds::DomainParticipantQos qos = participant->get_qos();
@@ -209,31 +249,7 @@ Expected<Participant> Participant::join(const ParticipantOptions& options) {
     if (PREHEND_FAST_DDS == 2 && !handshakes_pause_for_removals())
       log::warning("this release of Fast DDS may lock itself up when others leave");
   }
-  PacketGuard::Hear hear;
-  if constexpr (hides_secured_peers)
-    hear = [at = state.get()](const Announcement& said) { at->peers->hear(said); };
-  const bool paces =
-      qos->wire_protocol().builtin.discovery_config.discoveryProtocol == DiscoveryProtocol::SIMPLE;
-  state->packets.emplace(!options.serves.empty(), state->keys.has_value(), paces, std::move(hear));
-  state->peers.emplace(options.listener,
-                       state->keys ? std::optional(state->keys->authority) : std::nullopt,
-                       *state->packets);
-  // Who listens to the whole domain is a recorder: pictures that come while it has no processor
-  // wait in the socket (as far as net.core.rmem_max allows), for on best effort topics nothing else
-  // holds them.
-  if (options.listener)
-    for (auto& transport : qos->transport().user_transports)
-      if (auto* socket = dynamic_cast<transport::SocketTransportDescriptor*>(transport.get()))
-        socket->receiveBufferSize = 1 << 24;
-  // Over TCP Fast DDS does not tell who sent a packet; there TLS decides who connects.
-  for (auto& transport : qos->transport().user_transports)
-    if (dynamic_cast<transport::UDPv4TransportDescriptor*>(transport.get()))
-      transport = guarded(transport, *state->packets);
-  for (auto& transport : qos->transport().user_transports)
-    transport = serialized(transport, state->serializer);
-  for (const auto& locator : servers_of(*qos))
-    state->packets->add_server(prefix_of(server_prefix(static_cast<std::uint16_t>(locator.port))),
-                               ip_of(locator));
+  state->guard(*qos);
   auto* factory = fdds::DomainParticipantFactory::get_instance();
   state->participant =
       factory->create_participant(options.domain, *qos, &*state->peers, fdds::StatusMask::none());
@@ -250,16 +266,7 @@ Expected<Participant> Participant::join(const ParticipantOptions& options) {
   if (state->keys)
     if (const auto effective = confirm(*state->participant, *state->keys); !effective)
       return tl::unexpected(effective.error());
-
-  fdds::PublisherQos publisher_qos = fdds::PUBLISHER_QOS_DEFAULT;
-  fdds::SubscriberQos subscriber_qos = fdds::SUBSCRIBER_QOS_DEFAULT;
-  if (!options.rig.empty()) {
-    publisher_qos.partition().push_back(options.rig.c_str());
-    subscriber_qos.partition().push_back(options.rig.c_str());
-  }
-  state->publisher = state->participant->create_publisher(publisher_qos);
-  state->subscriber = state->participant->create_subscriber(subscriber_qos);
-  if (!state->publisher || !state->subscriber) return fail("cannot join the rig", options.rig);
+  if (auto entered = state->enter_rig(); !entered) return tl::unexpected(entered.error());
   return Participant(std::move(state));
 }
 

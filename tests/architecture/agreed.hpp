@@ -123,7 +123,6 @@ inline constexpr std::array common_edges{
 inline constexpr std::string_view older = "older than the rule";
 
 inline constexpr std::array long_functions{
-    Exception{"common/dds/participant.cpp", "Participant::join(", older},
     Exception{"common/service/config_keys.cpp", "config_keys(", "a table: a row a key"},
     Exception{"tests/benchmark/glove_driver.cpp", "measure(", older},
     Exception{"tests/integration/flood_test.cpp", "Flood::flood(", older},
