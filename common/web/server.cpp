@@ -106,7 +106,7 @@ class BeastServer final : public Server {
 
   /// Who has not said what it wants goes first. False: all are open WebSockets.
   bool make_room() {
-    for (const Phase phase : {Phase::asks, Phase::is_answered}) {
+    for (const Phase phase : {Phase::asks, Phase::leaves, Phase::is_answered}) {
       const auto oldest = std::ranges::find(connections_.all, phase, &Connection::phase);
       if (oldest == connections_.all.end()) continue;
       (*oldest)->close();

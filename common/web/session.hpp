@@ -35,7 +35,8 @@ inline constexpr std::size_t max_head = 8192, max_body = 2048, max_message = 655
 inline constexpr auto farewell = std::chrono::seconds(1);
 inline constexpr std::size_t max_thrown_away = 65536;
 
-enum class Phase : std::uint8_t { asks, is_answered, is_open };
+/// It asks, is sent its answer, has got it and is to hang up; or it is an open WebSocket.
+enum class Phase : std::uint8_t { asks, is_answered, leaves, is_open };
 
 /// Someone who is connected.
 class Connection {
@@ -150,6 +151,7 @@ class Session : public Connection, public std::enable_shared_from_this<Session<S
   }
 
   void finish() {
+    phase_ = Phase::leaves;
     response_ = {};
     beast::get_lowest_layer(stream_).expires_at(std::min(deadline_, Clock::now() + farewell));
     if constexpr (secure) {
