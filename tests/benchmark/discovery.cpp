@@ -74,6 +74,7 @@ struct Role {
     if (*words[3]) role.network.servers = {words[3]};
     if (*words[4]) role.network.peers = {words[4]};
     role.network.keys = words[5];
+    role.network.insecure = role.network.keys.empty();
     return role;
   }
 };
