@@ -17,7 +17,7 @@ constexpr milliseconds quiet{400};
 // Fast DDS 3.1 goes on with it for as long as it takes, so nobody need give up sooner there.
 constexpr milliseconds longer_patience{3000},
     patience = PREHEND_FAST_DDS == 2 ? milliseconds(1500) : longer_patience;
-constexpr std::size_t max_peers = 1024, max_reasons = 32;
+constexpr std::size_t max_peers = 1024, max_reasons = 32, max_rigs = 8;
 // So many that only announce themselves and never shake hands are no lab that starts: nobody waits
 // for them.
 constexpr int max_mute = 16;
@@ -28,7 +28,8 @@ std::map<GuidPrefix, Peers::Presented> Peers::present() const {
   const std::scoped_lock lock(mutex_);
   std::map<GuidPrefix, Presented> all;
   for (const auto& [guid, peer] : peers_)
-    all.emplace(prefix_of(guid.guidPrefix), Presented{peer.name, peer.middleware});
+    all.emplace(prefix_of(guid.guidPrefix),
+                Presented{peer.name, peer.middleware, peer.is(), peer.rigs});
   return all;
 }
 
@@ -38,10 +39,7 @@ std::optional<Role> Peers::role_of(const GuidPrefix& whose) const {
   guid.entityId = rtps::c_EntityId_RTPSParticipant;
   const std::scoped_lock lock(mutex_);
   const auto found = peers_.find(guid);
-  if (found == peers_.end()) return std::nullopt;
-  const Peer& peer = found->second;
-  // Over TCP nobody is told of the certificates of Fast DDS 3.
-  return peer.certificate.empty() ? peer.role : role_of_certificate(peer.certificate);
+  return found == peers_.end() ? std::nullopt : found->second.is();
 }
 
 std::map<std::string, std::uint64_t> Peers::refused() const {
@@ -112,6 +110,14 @@ void Peers::on_participant(const FoundParticipant& found) {
 }
 
 void Peers::on_endpoint(const FoundEndpoint& found) {
+  if (found.news == News::found) {
+    Guid whose = found.guid;
+    whose.entityId = rtps::c_EntityId_RTPSParticipant;
+    const std::scoped_lock lock(mutex_);
+    if (const auto peer = peers_.find(whose); peer != peers_.end())
+      for (const std::string& rig : found.rigs)
+        if (peer->second.rigs.size() < max_rigs) peer->second.rigs.insert(rig);
+  }
   if (next_) next_->on_endpoint(found);
 }
 

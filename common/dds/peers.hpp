@@ -5,6 +5,7 @@
 #include <map>
 #include <mutex>
 #include <optional>
+#include <set>
 #include <string>
 
 #include "common/dds/discovery_events.hpp"
@@ -26,6 +27,8 @@ class Peers : public DiscoveryEvents {
   /// A peer as it presents itself: «mapping», «Fast DDS 3.1.2».
   struct Presented {
     std::string name, middleware;
+    std::optional<Role> role;    // as role_of() has it
+    std::set<std::string> rigs;  // of its endpoints, as far as we heard of any
   };
   std::map<GuidPrefix, Presented> present() const;
   /// The role of a peer: in a secured lab that of its certificate, otherwise what it announces.
@@ -61,6 +64,12 @@ class Peers : public DiscoveryEvents {
     bool secured = false;
     bool decided = false;
     Clock::time_point met = Clock::now();
+    std::set<std::string> rigs;
+
+    /// Over TCP nobody is told of the certificates of Fast DDS 3.
+    std::optional<Role> is() const {
+      return certificate.empty() ? role : role_of_certificate(certificate);
+    }
   };
 
   bool is_flooded() const;

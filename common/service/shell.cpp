@@ -276,6 +276,9 @@ std::string Shell::writer_of(const dds::SampleInfo& info) const {
 std::optional<dds::Role> Shell::role_of(const dds::SampleInfo& info) const {
   return state_->participant->role_of(info.participant);
 }
+std::map<dds::GuidPrefix, dds::Peers::Presented> Shell::present() const {
+  return state_->participant->present();
+}
 dds::Participant& Shell::participant() {
   return *state_->participant;
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -57,6 +58,8 @@ class Shell {
   std::string writer_of(const dds::SampleInfo& info) const;
   /// What the writer of a sample is (dds::Participant::role_of).
   std::optional<dds::Role> role_of(const dds::SampleInfo& info) const;
+  /// Peers that are here (dds::Participant::present).
+  std::map<dds::GuidPrefix, dds::Peers::Presented> present() const;
 
   /// A function that publishes a sample on the topic, and one that disposes an instance by its key.
   /// A topic that cannot be joined makes run() fail, as it does for subscribe().

@@ -53,6 +53,24 @@ TEST(Peers, WhoIsLetInAfterItWasHeardOfIsDecided) {
                                testing::Field(&Peers::Presented::name, "mapping"))));
 }
 
+// A stop of one rig waits for the robots of that rig alone.
+TEST(Peers, TellsOfTheRoleAndTheRigsOfAPeer) {
+  PacketGuard guard(false, false);
+  Peers peers(nullptr, std::nullopt, guard);
+  peers.on_participant({News::found, guid(1), "hand", own, Role::simulation});
+  EXPECT_THAT(peers.present().begin()->second.rigs, IsEmpty());
+  FoundEndpoint endpoint{News::found, true, guid(1)};
+  endpoint.guid.entityId = 0x102;
+  endpoint.rigs = {"left"};
+  peers.on_endpoint(endpoint);
+  endpoint.guid = guid(2);  // of nobody whom we know
+  peers.on_endpoint(endpoint);
+  const auto present = peers.present();
+  ASSERT_EQ(present.size(), 1u);
+  EXPECT_EQ(present.begin()->second.role, Role::simulation);
+  EXPECT_THAT(present.begin()->second.rigs, ElementsAre("left"));
+}
+
 // Over TCP nobody is heard of before Fast DDS 3 tells.
 TEST(Peers, WhoIsLetInBeforeItIsKnownIsDecided) {
   PacketGuard guard(false, true);

@@ -48,9 +48,10 @@ bool counts(const Order& order, const Answer& answer) {
 /// Gives one order in one rig.
 class Giving {
  public:
-  Giving(service::Shell& shell, const Order& order)
+  Giving(service::Shell& shell, const Order& order, std::string rig)
       : shell_(shell),
         order_(order),
+        rig_(std::move(rig)),
         id_(fmt::format("{}-{}-{}", operator_name(), ::getpid(), to_ns(shell.now()))),
         begun_(shell.now()),
         orders_(shell.publish(dds::operator_command)) {
@@ -96,13 +97,24 @@ class Giving {
     return !all.empty() && std::all_of(all.begin(), all.end(), is_done);
   }
 
+  /// Somebody is here who may have a gate in the rig, and none was heard of yet. A participant is
+  /// met at once, its topics a moment later, or seconds where the network loses packets.
+  bool lacks_gates() const {
+    return std::ranges::any_of(shell_.present(), [this](const auto& entry) {
+      const auto& [participant, peer] = entry;
+      if (!peer.role || !dds::robot_gate.writers.has(*peer.role)) return false;
+      const bool elsewhere = rig_ != "*" && !peer.rigs.empty() && !peer.rigs.contains(rig_);
+      return !elsewhere && !answers_.contains(participant);
+    });
+  }
+
   void tick(Time now) {
     if (keyboard_ && !pressed_) {
       pressed_ = keyboard_->key().has_value();
       if (!pressed_) return;
       begun_ = now;
     }
-    const bool given = is_given();
+    const bool given = is_given() && !lacks_gates();
     // What a gate says of itself comes right behind its reply.
     const bool told = std::all_of(answers_.begin(), answers_.end(), [](auto& entry) {
       const auto& [reply, state] = entry.second;
@@ -110,8 +122,8 @@ class Giving {
     });
     const bool over = now - begun_ > seconds(order_.timeout);
     // Whoever replies as a gate and tells of none holds nobody up for longer than that.
-    if ((given && (told || now - newest_ > patience) && now - newest_ > grace) || over)
-      return shell_.stop();
+    const bool settled = (told || now - newest_ > patience) && now - newest_ > grace;
+    if ((given && settled) || over) return shell_.stop();
     v1::OperatorCommand message;
     message.id(id_.substr(0, 63).c_str());
     // When it was given, however often it is repeated: a release must not end a later stop.
@@ -127,7 +139,7 @@ class Giving {
 
   service::Shell& shell_;
   const Order& order_;
-  std::string id_;
+  std::string rig_, id_;
   Time begun_, newest_{}, sent_{};
   std::optional<tool::Keyboard> keyboard_;  // that is waited for
   bool pressed_ = false;
@@ -164,7 +176,7 @@ Expected<bool> give_in(const std::string& rig, const Order& order,
   const auto shell =
       service::Shell::create(arguments, {operator_name(), "Gives an order.", "operator", false});
   if (!shell) return tl::unexpected(shell.error());
-  const Giving giving(**shell, order);
+  const Giving giving(**shell, order, rig);
   if (const auto ended = (*shell)->run(); !ended) return tl::unexpected(ended.error());
   // Gates first. Where somebody has taken over, those who do not know him matter to nobody.
   const auto all = giving.sorted_answers();
