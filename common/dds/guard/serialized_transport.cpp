@@ -59,6 +59,7 @@ void SerializedTransport::close() {
 std::shared_ptr<transport::TransportDescriptorInterface> serialized(
     std::shared_ptr<transport::TransportDescriptorInterface> lower,
     SerializedTransport& serializer) {
+  if constexpr (PREHEND_FAST_DDS != 2) return lower;
   return std::make_shared<SerializingDescriptor>(std::move(lower), serializer);
 }
 

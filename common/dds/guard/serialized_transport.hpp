@@ -48,7 +48,8 @@ class SerializedTransport {
   std::atomic<std::uint64_t> packet_ = 0;  // that is inside; 0: none
 };
 
-/// The same transport, whose packets pass through the serializer, which must outlive it.
+/// The same transport, whose packets pass through the serializer, which must outlive it; of Fast
+/// DDS 3, which does not deadlock, the transport itself.
 std::shared_ptr<transport::TransportDescriptorInterface> serialized(
     std::shared_ptr<transport::TransportDescriptorInterface> transport,
     SerializedTransport& serializer);

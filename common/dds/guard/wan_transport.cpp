@@ -57,7 +57,7 @@ class WanTransport final : public PassThroughTransport {
  public:
   WanTransport(const transport::ChainingTransportDescriptor& descriptor, Dialled dialled)
       : PassThroughTransport(descriptor), dialled_(std::move(dialled)) {
-    if (dialled_.empty()) return;
+    if (dialled_.empty() || PREHEND_FAST_DDS != 2) return;
     watch_ = std::jthread([this](const std::stop_token& end) {
       std::mutex mutex;
       std::unique_lock lock(mutex);

@@ -20,7 +20,7 @@ using Dialled = std::set<std::pair<Ipv4, std::uint16_t>>;
 /// from what it does wrong there:
 /// - Within a site TCP is not used: two processes that dial each other at once both fail.
 /// - A connection that was greeted before the library had noted what to ask for says nothing, for
-///   ever: it is cut, and the library dials again.
+///   ever: it is cut, and the library dials again. Fast DDS 3 does not need that.
 /// - A process behind a gateway is reached there, and only once.
 /// keeps: lives as long as the transport is used.
 std::shared_ptr<transport::TransportDescriptorInterface> wan_transport(

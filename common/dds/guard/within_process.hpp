@@ -4,9 +4,6 @@
 
 #if PREHEND_FAST_DDS == 2
 #include <fastrtps/xmlparser/XMLProfileManager.h>
-#else
-#include <fastdds/LibrarySettings.hpp>
-#include <fastdds/dds/domain/DomainParticipantFactory.hpp>
 #endif
 
 namespace prehend::dds {
@@ -16,20 +13,14 @@ namespace prehend::dds {
 /// process (StatefulWriter::intraprocess_delivery and _gap on a reader that is gone) when one of
 /// them leaves while another still finds it; a recorder has two. Samples over the network as well
 /// would lock a writer up whose instances end (StatefulWriter::check_acked_status does not come
-/// back; test_lockstep, 1 run in 3). To be called before the first one joins.
+/// back; test_lockstep, 1 run in 3). Fast DDS 3 needs none of this. To be called before the first
+/// one joins.
 inline void find_over_the_network_within_process() {
 #if PREHEND_FAST_DDS == 2
   namespace library = eprosima::fastrtps;
   library::LibrarySettingsAttributes settings;
-#else
-  namespace library = eprosima::fastdds;
-  library::LibrarySettings settings;
-#endif
   settings.intraprocess_delivery = library::INTRAPROCESS_USER_DATA_ONLY;
-#if PREHEND_FAST_DDS == 2
   library::xmlparser::XMLProfileManager::library_settings(settings);
-#else
-  library::dds::DomainParticipantFactory::get_instance()->set_library_settings(settings);
 #endif
 }
 
