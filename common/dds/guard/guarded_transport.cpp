@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "common/base/clock.hpp"
+#include "common/dds/guard/early_handshakes.hpp"
 #include "common/dds/guard/pass_through_transport.hpp"
 #include "common/dds/guard/registry.hpp"
 #include "common/dds/guard/rtps_parts.hpp"
@@ -101,16 +102,36 @@ class Transport final : public PassThroughTransport {
                const rtps::Locator_t& remote) override {
     const Ipv4 source =
         low_level_transport_->is_local_locator(remote) ? Ipv4{127, 0, 0, 1} : ip_of(remote);
-    if (guard_.accepts({bytes, size}, source)) next->OnDataReceived(bytes, size, local, remote);
+    const bool accepted = guard_.accepts({bytes, size}, source);
+    if (accepted) next->OnDataReceived(bytes, size, local, remote);
+    if (const auto early = early_handshake({bytes, size}, accepted))
+      if (guard_.accepts(*early, source))
+        next->OnDataReceived(early->data(), static_cast<std::uint32_t>(early->size()), local,
+                             remote);
     if (carries_samples(local)) return;
     for (const auto& late : guard_.take_departures())
       next->OnDataReceived(late.data(), static_cast<std::uint32_t>(late.size()), local, remote);
   }
 
  private:
+  /// What was kept of a sender that is admitted with this packet.
+  std::optional<std::vector<std::uint8_t>> early_handshake(std::span<const std::uint8_t> message,
+                                                           bool accepted) {
+    constexpr std::size_t header = 20;
+    if (message.size() < header) return std::nullopt;
+    const GuidPrefix sender = wire::array_at<12>(message, 8);
+    const bool keeps = !accepted && read_packet(message) && read_plaintext(message).shakes_hands;
+    const std::scoped_lock lock(mutex_);
+    if (keeps) early_.keep(sender, message, process_now());
+    if (!accepted || early_.empty()) return std::nullopt;
+    return early_.take(sender, process_now());
+  }
+
   PacketGuard& guard_;
   transport::SendResourceList lower_;
   std::size_t wrapped_ = 0;  // of these
+  std::mutex mutex_;
+  EarlyHandshakes early_;
 };
 
 struct Descriptor final : transport::ChainingTransportDescriptor {
