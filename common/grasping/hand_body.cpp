@@ -24,6 +24,19 @@ constexpr double slips_after = 0.02;  // s, that a joint must be blocked before 
 constexpr double give = 0.13, yield = 0.07, blocked_speed = 0.33;
 constexpr double goes_back = 0.1;      // share of a squeeze behind where its motor was: it opens
 constexpr double resting_gap = 0.002;  // m: links that are closer at rest never collide
+constexpr double gear_strength = 10;   // of the torque that its drive can ask of it
+
+/// What the drive of each joint has: with what is geared to it, which it moves as well.
+std::vector<double> drive_torques(const model::HandModel& hand) {
+  std::vector<double> torque;
+  for (const model::HandJoint& joint : hand.joints()) torque.push_back(joint.max_torque);
+  for (const model::HandJoint& joint : hand.joints())
+    if (joint.geared_to >= 0) {
+      const auto to = static_cast<std::size_t>(joint.geared_to);
+      torque[to] += joint.max_torque * std::abs(joint.multiplier / hand.joints()[to].multiplier);
+    }
+  return torque;
+}
 
 }  // namespace
 
@@ -43,7 +56,11 @@ bool LinkPairFilter::ignores(int a, int b) const {
 
 HandBody::HandBody(const model::HandModel& hand, const std::vector<analysis::Material>& materials,
                    btMultiBodyDynamicsWorld& world, double time_step, const BaseBody& base)
-    : hand_(hand), world_(world), time_step_(time_step), max_effort_(model::max_effort(hand)) {
+    : hand_(hand),
+      world_(world),
+      time_step_(time_step),
+      max_effort_(model::max_effort(hand)),
+      max_torque_(drive_torques(hand)) {
   world_.getPairCache()->setOverlapFilterCallback(&filter_);
   build_links(base);
   world_.addMultiBody(multibody_.get());
@@ -56,7 +73,9 @@ HandBody::HandBody(const model::HandModel& hand, const std::vector<analysis::Mat
 }
 
 HandBody::~HandBody() {
-  for (auto& motor : motors_) world_.removeMultiBodyConstraint(motor.get());
+  for (auto& motor : motors_)
+    if (motor) world_.removeMultiBodyConstraint(motor.get());
+  for (auto& gear : gears_) world_.removeMultiBodyConstraint(gear.get());
   for (auto& limit : limits_) world_.removeMultiBodyConstraint(limit.get());
   for (auto& collider : colliders_) world_.removeCollisionObject(collider.get());
   world_.removeMultiBody(multibody_.get());
@@ -126,6 +145,18 @@ void HandBody::ignore_overlaps() {
     }
 }
 
+void HandBody::build_gear(int i) {
+  const model::HandJoint& joint = hand_.joints()[static_cast<std::size_t>(i)];
+  const model::HandJoint& to = hand_.joints()[static_cast<std::size_t>(joint.geared_to)];
+  const double ratio = joint.multiplier / to.multiplier;
+  const double most =
+      gear_strength * max_torque_[static_cast<std::size_t>(joint.geared_to)] / std::abs(ratio);
+  gears_.push_back(std::make_unique<Gear>(multibody_.get(), i, joint.geared_to, ratio,
+                                          joint.offset - ratio * to.offset, most * time_step_));
+  gears_.back()->finalizeMultiDof();
+  world_.addMultiBodyConstraint(gears_.back().get());
+}
+
 void HandBody::build_drives() {
   clutches_.resize(hand_.dofs().size());
   for (int i = 0; i < static_cast<int>(hand_.joints().size()); ++i) {
@@ -134,8 +165,13 @@ void HandBody::build_drives() {
     const model::HandJoint& leader = hand_.joints()[static_cast<std::size_t>(dof.joint)];
     auto& follower = clutches_[static_cast<std::size_t>(joint.dof)].follower;
     if (leader.breakaway && dof.closing != 0 && follower < 0 && i != dof.joint) follower = i;
-    auto motor = std::make_unique<btMultiBodyJointMotor>(multibody_.get(), i, 0,
-                                                         joint.max_torque * time_step_);
+    if (joint.geared_to >= 0) {  // the limits of what moves it are its own
+      build_gear(i);
+      motors_.push_back(nullptr);
+      continue;
+    }
+    auto motor = std::make_unique<btMultiBodyJointMotor>(
+        multibody_.get(), i, 0, max_torque_[static_cast<std::size_t>(i)] * time_step_);
     motor->setVelocityTarget(0, 1);
     motor->setRhsClamp(dof.max_velocity * std::abs(joint.multiplier));
     motor->finalizeMultiDof();  // otherwise its impulse cannot be read before the first step
@@ -168,9 +204,12 @@ void HandBody::copy_state(const HandBody& other) {
   for (int i = 0; i < multibody_->getNumLinks(); ++i) {
     multibody_->setJointPos(i, other.joint(i));
     multibody_->setJointVel(i, other.velocity(i));
-    motors_[static_cast<std::size_t>(i)]->internalSetAppliedImpulse(
-        0, other.motors_[static_cast<std::size_t>(i)]->getAppliedImpulse(0));
+    const auto k = static_cast<std::size_t>(i);
+    if (motors_[k])
+      motors_[k]->internalSetAppliedImpulse(0, other.motors_[k]->getAppliedImpulse(0));
   }
+  for (std::size_t i = 0; i < gears_.size(); ++i)
+    gears_[i]->internalSetAppliedImpulse(0, other.gears_[i]->getAppliedImpulse(0));
   clutches_ = other.clutches_;
   move_colliders();
 }
@@ -189,6 +228,7 @@ void HandBody::drive(const VectorXd& dof, const VectorXd& effort) {
                             : VectorXd::Ones(dof.size());
   const VectorXd target = hand_.joint_angles(dof);
   for (int i = 0; i < target.size(); ++i) {
+    if (!motors_[static_cast<std::size_t>(i)]) continue;
     const model::HandJoint& joint = hand_.joints()[static_cast<std::size_t>(i)];
     const model::HandDof& led = hand_.dofs()[static_cast<std::size_t>(joint.dof)];
     double wanted = std::clamp(target[i], joint.lower, joint.upper);
@@ -210,7 +250,7 @@ void HandBody::drive(const VectorXd& dof, const VectorXd& effort) {
     }
     auto& motor = *motors_[static_cast<std::size_t>(i)];
     share = std::min(std::clamp(share, min_drive, 1.0), limit);
-    motor.setMaxAppliedImpulse(joint.max_torque * share * time_step_);
+    motor.setMaxAppliedImpulse(max_torque_[static_cast<std::size_t>(i)] * share * time_step_);
     motor.setPositionTarget(wanted, drive_gain);
   }
 }
@@ -293,7 +333,8 @@ bool HandBody::may_touch(int link, int other) const {
 }
 
 double HandBody::torque(int i) const {
-  return motors_[static_cast<std::size_t>(i)]->getAppliedImpulse(0) / time_step_;
+  const auto& motor = motors_[static_cast<std::size_t>(i)];
+  return motor ? motor->getAppliedImpulse(0) / time_step_ : 0;
 }
 
 }  // namespace prehend::grasping

@@ -14,6 +14,7 @@
 
 #include "common/base/pose.hpp"
 #include "common/grasping/arm.hpp"
+#include "common/grasping/gear.hpp"
 #include "common/grasping/surface.hpp"
 #include "common/model/hand_model.hpp"
 
@@ -30,11 +31,12 @@ struct LinkPairFilter : btOverlapFilterCallback {
 };
 
 /// The hand in a Bullet world: a Featherstone multibody with a collider on each link, a drive and
-/// limits on each joint. Each drive is a spring that reaches its joint's torque limit when the
-/// command is the DoF's squeeze ahead, no faster than the DoF's velocity limit, and pushes with no
-/// more than the effort that the DoF may use. The base moves as
-/// it is told, whatever the hand touches. Link and joint numbers are those of the model; values are
-/// rad and N m, or m and N of a joint that slides.
+/// limits on each joint; a joint that gears or bars move has a gear in place of a drive, and what
+/// drives it stands at the joint that moves it. Each drive is a spring that reaches its joint's
+/// torque limit when the command is the DoF's squeeze ahead, no faster than the DoF's velocity
+/// limit, and pushes with no more than the effort that the DoF may use. The base moves as it is
+/// told, whatever the hand touches. Link and joint numbers are those of the model; values are rad
+/// and N m, or m and N of a joint that slides.
 ///
 /// A joint with a clutch that is blocked with the breakaway torque is let go: it stays where it is,
 /// still pressed with that torque and held against opening with its whole torque, as by a worm
@@ -67,7 +69,7 @@ class HandBody {
   Pose X_WC_of(const Pose& X_WB) const;
   double joint(int i) const { return multibody_->getJointPos(i); }
   double velocity(int i) const { return multibody_->getJointVel(i); }
-  double torque(int i) const;  // that the drive applied in the last step
+  double torque(int i) const;  // that the drive applied in the last step; 0: it has none
   /// Where the motor of a DoF is: with the joint that it leads, or, while its clutch has let that
   /// go, with the joint coupled to it.
   double motor(int dof) const;
@@ -92,19 +94,22 @@ class HandBody {
   void build_colliders(const std::vector<analysis::Material>& materials);
   void ignore_overlaps();
   void build_drives();
+  void build_gear(int joint);
   void update_clutch(int dof, double command);
   void move_colliders();
 
   const model::HandModel& hand_;
   btMultiBodyDynamicsWorld& world_;
   double time_step_;
-  Eigen::VectorXd max_effort_;  // of each DoF
+  Eigen::VectorXd max_effort_;      // of each DoF
+  std::vector<double> max_torque_;  // of each joint's drive, for itself and what is geared to it
   LinkPairFilter filter_;
   std::deque<Surface> surfaces_;  // stable addresses
   std::vector<std::unique_ptr<btCollisionShape>> shapes_;
   std::unique_ptr<btMultiBody> multibody_;
   std::vector<std::unique_ptr<btMultiBodyLinkCollider>> colliders_;
-  std::vector<std::unique_ptr<btMultiBodyJointMotor>> motors_;
+  std::vector<std::unique_ptr<btMultiBodyJointMotor>> motors_;  // of each joint; null: geared
+  std::vector<std::unique_ptr<Gear>> gears_;
   std::vector<std::unique_ptr<btMultiBodyJointLimitConstraint>> limits_;
   std::vector<Clutch> clutches_;  // of each DoF
 };

@@ -5,6 +5,7 @@
 
 #include "common/base/file_text.hpp"
 #include "common/base/paths.hpp"
+#include "common/model/hand_coupling.hpp"
 #include "common/model/hand_effort.hpp"
 #include "common/model/hand_model.hpp"
 #include "common/model/hand_urdf.hpp"
@@ -75,8 +76,9 @@ class HandLoader {
     const std::string where = "[[dof]] " + dof.name;
     if (find_named(hand.dofs_, dof.name) >= 0) return fail("there are two of this name", where);
     if (auto known = only_keys(
-            table, {"name", "joint", "lower", "upper", "max_velocity", "closing", "squeeze"}, where,
-            hand_page);
+            table,
+            {"name", "joint", "lower", "upper", "max_velocity", "closing", "squeeze", "coupling"},
+            where, hand_page);
         !known)
       return tl::unexpected(known.error());
 
@@ -112,6 +114,12 @@ class HandLoader {
       return fail("closing must be -1, 0 or 1", where);
     if (!(dof.squeeze > 0)) return fail("squeeze must be positive", where);
     dof.closing = static_cast<int>(closing);
+    if (!table.contains("coupling")) return dof;
+    const auto word = text_of(table, "coupling", where);
+    if (!word) return tl::unexpected(word.error());
+    const auto coupling = coupling_from_string(*word);
+    if (!coupling) return fail("«coupling» is «" + *word + "»", where, "springs, fingers or rigid");
+    dof.coupling = *coupling;
     return dof;
   }
 
@@ -145,6 +153,8 @@ class HandLoader {
         return fail("coupling must be finite and of a size that a hand can have", joint.name);
       if (joint.multiplier == 0) return fail("coupling must not be zero", joint.name);
     }
+    for (std::size_t i = 0; i < hand.joints_.size(); ++i)
+      hand.joints_[i].geared_to = gear_of(hand, static_cast<int>(i));
     return {};
   }
 
@@ -182,6 +192,8 @@ class HandLoader {
                         [&](const HandJoint& other) { return other.dof == joint.dof; }) > 1;
       if (leads(index) < 0 || !coupled)
         return fail("a clutch is on a joint that leads a DoF and has joints coupled to it", where);
+      if (hand.dofs_[static_cast<std::size_t>(joint.dof)].coupling != Coupling::springs)
+        return fail("a clutch lets go only of joints that are coupled by springs", where);
       joint.breakaway = *torque;
     }
     return {};

@@ -51,10 +51,19 @@ struct HandJoint {
   /// much or more, the motor lets go of the joint, which stays where it is, and drives on the
   /// joints that are coupled to it. The motor takes the joint again when it is driven back.
   std::optional<double> breakaway;
+  /// The joint of the same DoF that moves it by gears or bars, whatever pushes; -1: its own drive.
+  int geared_to = -1;
 };
 
 /// How far past the contact a finger must be commanded to grip with full effort, rad.
 inline constexpr double full_squeeze = 0.15;
+
+/// How the joints of a DoF hang together.
+enum class Coupling {
+  springs,  // each has a drive of its own, so that one that is blocked holds back no other
+  fingers,  // gears or bars within each finger, and a drive a finger, as behind a differential
+  rigid,    // gears or bars between all
+};
 
 /// Values are those of the joint that leads it: rad and rad/s, or m and m/s.
 struct HandDof {
@@ -67,6 +76,7 @@ struct HandDof {
   int closing = 0;
   /// How far past the contact a command must be to ask for the full effort, rad or m.
   double squeeze = full_squeeze;
+  Coupling coupling = Coupling::springs;
 };
 
 /// What 1 rad of a finger is for this DoF wherever an angle says how far a hand closes, presses or

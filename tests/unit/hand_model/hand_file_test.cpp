@@ -177,6 +177,8 @@ TEST(HandFile, RefusesWhatIsNoHandAndSaysWhere) {
            {false, "closing = -1", "closing = \"in\"", "thumb"},
            {false, "closing = -1", "closnig = -1", "closnig"},
            {false, "squeeze = 0.002", "squeeze = 0.0", "thumb"},
+           {false, "closing = -1", "closing = -1\ncoupling = \"soft\"", "soft"},
+           {false, "closing = -1", "closing = -1\ncoupling = \"rigid\"", "springs"},
            {false, "upper = 0.025", "upper = 0.6", "thumb"},
            {false, "upper = 0.025", "upper = -0.1", "thumb"},
            {false, "upper = 0.025", "upper = nan", "thumb"},

@@ -11,15 +11,17 @@
 #include "common/grasping/candidates.hpp"
 #include "services/planner/tools/hand/commands.hpp"
 #include "services/planner/tools/hand/fit.hpp"
+#include "services/planner/tools/hand/hand_page.hpp"
 #include "services/planner/tools/hand_import/finding_report.hpp"
 #include "services/planner/tools/hand_import/make_hand.hpp"
+#include "services/planner/tools/hand_import/palms.hpp"
 #include "services/planner/tools/planning/planning_task.hpp"
 
 namespace prehend::planner {
 namespace {
 
 struct AddArguments {
-  std::string file, name, output;
+  std::string file, name, output, palm;
   int candidates = 60;
   bool json = false;
 };
@@ -37,7 +39,8 @@ Expected<void> write_folder(const MadeHand& hand, const std::filesystem::path& f
 }
 
 /// One object of the trial: the best planned grasp and whether it survived lift, shake and turn.
-nlohmann::ordered_json trial(const MadeHand& hand, const grasping::Body& body, int candidates) {
+nlohmann::ordered_json trial(const MadeHand& hand, const grasping::Body& body, int candidates,
+                             std::vector<Trial>& shown) {
   const auto plan = planner::plan_in_batches(hand.model, body, candidates, 0);
   nlohmann::ordered_json document{{"object", body.name},
                                   {"width_m", grasping::narrowest_width(body.shape)},
@@ -48,12 +51,16 @@ nlohmann::ordered_json trial(const MadeHand& hand, const grasping::Body& body, i
     document["reason"] = plan.error().message();
   else if (!plan->held())
     document["reason"] = plan->reason;
-  if (plan && !plan->grasps.empty()) document["epsilon"] = plan->grasps.front().quality.epsilon;
+  shown.push_back({body, {}});
+  if (plan && !plan->grasps.empty()) {
+    shown.back().best = plan->grasps.front();
+    document["epsilon"] = plan->grasps.front().quality.epsilon;
+  }
   return document;
 }
 
 nlohmann::ordered_json report(const MadeHand& hand, const std::vector<grasping::Body>& bodies,
-                              const AddArguments& arguments) {
+                              const AddArguments& arguments, std::vector<Trial>& shown) {
   nlohmann::ordered_json document{{"name", arguments.name}, {"folder", arguments.output}};
   document["dofs"] = nlohmann::ordered_json::array();
   for (const model::HandDof& dof : hand.model.dofs())
@@ -77,7 +84,7 @@ nlohmann::ordered_json report(const MadeHand& hand, const std::vector<grasping::
   document["opposed"] = hand.opposed;
   document["trial_grasps"] = nlohmann::ordered_json::array();
   for (const grasping::Body& body : trial_bodies(bodies, hand.model.reach().opening))
-    document["trial_grasps"].push_back(trial(hand, body, arguments.candidates));
+    document["trial_grasps"].push_back(trial(hand, body, arguments.candidates, shown));
   return document;
 }
 
@@ -108,7 +115,9 @@ void print(const nlohmann::ordered_json& document) {
                    ? fmt::format("held, epsilon {:.3f}", trial["epsilon"].get<double>())
                    : "not held: " + trial["reason"].get<std::string>());
   const auto folder = document["folder"].get<std::string>();
-  fmt::print("\nthe hand is in {}; correct hand.toml there where it guessed wrong\n", folder);
+  fmt::print(
+      "\nthe hand is in {0}; correct hand.toml there where {0}/hand.html shows a wrong guess\n",
+      folder);
   const std::string hand = called(document["name"].get<std::string>(), folder);
   fmt::print("then: prehend train --hand {0}; prehend demo --hand {0}\n", hand);
 }
@@ -126,8 +135,9 @@ int run_add(AddArguments arguments) {
     return tool::complain(
         {"there is a hand already", arguments.output, "remove it, or use --output"},
         exit_wrong_use);
-  const auto robot = read_robot_file(arguments.file);
+  auto robot = read_robot_file(arguments.file);
   if (!robot) return tool::complain(robot.error(), exit_no);
+  *robot = hand_of(std::move(*robot), arguments.palm);
   const auto hand = make_hand(*robot, arguments.name, mesh_files(arguments.file), {.trials = true});
   if (!hand) {
     log::error("{}: {}; `prehend hand check` lists everything", arguments.file,
@@ -138,7 +148,10 @@ int run_add(AddArguments arguments) {
   if (!bodies) return tool::complain(bodies.error(), exit_broken);
   if (const auto written = write_folder(*hand, arguments.output); !written)
     return tool::complain(written.error(), exit_broken);
-  const nlohmann::ordered_json document = report(*hand, *bodies, arguments);
+  std::vector<Trial> trials;
+  const nlohmann::ordered_json document = report(*hand, *bodies, arguments, trials);
+  if (const auto page = write_page(arguments.output, hand->model, trials, document); !page)
+    return tool::complain(page.error(), exit_broken);
   if (arguments.json)
     std::cout << document.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) << "\n";
   else
@@ -158,6 +171,8 @@ void add_add(tool::Program& program) {
   command->add_option("FILE", arguments->file, "a URDF")->required();
   command->add_option("--name", arguments->name, "of the hand")->required();
   command->add_option("--output,-o", arguments->output, "folder for the hand (./NAME)");
+  command->add_option("--palm", arguments->palm,
+                      "the link where the hand begins, of a robot with several or with an arm");
   command->add_option("--candidates", arguments->candidates, "grasps that are tried an object")
       ->capture_default_str()
       ->check(CLI::Range(1, 100000));

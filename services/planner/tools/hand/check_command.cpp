@@ -9,18 +9,20 @@
 #include "services/planner/tools/hand/commands.hpp"
 #include "services/planner/tools/hand_import/finding_report.hpp"
 #include "services/planner/tools/hand_import/make_hand.hpp"
+#include "services/planner/tools/hand_import/palms.hpp"
 
 namespace prehend::planner {
 namespace {
 
-int run_check(const std::string& file, bool json) {
+int run_check(const std::string& file, const std::string& palm, bool json) {
   if (std::error_code ignored; !std::filesystem::is_regular_file(file, ignored)) {
     log::error("{}: there is no such file", file);
     return 2;
   }
   std::vector<UrdfFinding> findings;
-  const auto robot = read_robot_file(file);
+  auto robot = read_robot_file(file);
   if (robot) {
+    *robot = hand_of(std::move(*robot), palm);
     const MeshReader meshes = mesh_files(file);
     findings = check(*robot, meshes);
     // What only shows when a hand is made of it: too many DoFs, no fingers.
@@ -51,14 +53,17 @@ int run_check(const std::string& file, bool json) {
 
 void add_check(tool::Program& program) {
   auto file = std::make_shared<std::string>();
+  auto palm = std::make_shared<std::string>();
   auto json = std::make_shared<bool>(false);
   CLI::App* command = program.app().add_subcommand(
       "check",
       "Lists what is missing or suspicious in a URDF that shall be a hand, each with its mend.\n"
       "Exit code 0: usable, perhaps with warnings, 1: not usable, 2: wrong use.");
   command->add_option("FILE", *file, "a URDF")->required();
+  command->add_option("--palm", *palm,
+                      "the link where the hand begins, of a robot with several or with an arm");
   command->add_flag("--json", *json, "one JSON document on standard output");
-  program.on(*command, [file, json] { return run_check(*file, *json); });
+  program.on(*command, [file, palm, json] { return run_check(*file, *palm, *json); });
 }
 
 }  // namespace prehend::planner

@@ -19,6 +19,7 @@ struct Anatomy {
     int closing = 0;
     double open = 0, fist = 0;
     bool wrist = false;  // moves the whole palm
+    model::Coupling coupling = model::Coupling::springs;
   };
   struct Fingertip {
     std::string name, link;

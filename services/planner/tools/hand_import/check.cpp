@@ -8,15 +8,18 @@
 #include <map>
 #include <set>
 
+#include "services/planner/tools/hand_import/locked.hpp"
 #include "services/planner/tools/hand_import/overlap.hpp"
 #include "services/planner/tools/hand_import/tree.hpp"
+#include "services/planner/tools/hand_import/units.hpp"
 
 namespace prehend::planner {
 namespace {
 
 using Eigen::Vector3d;
 
-constexpr double deep = 0.003;  // m, overlap of links at rest
+constexpr double deep = 0.003;   // m, overlap of links at rest
+constexpr double beyond = 1e-3;  // rad or m, of a limit that is rounded
 constexpr std::size_t max_links = 256;
 
 class Checker {
@@ -66,7 +69,7 @@ class Checker {
   }
 
   void check_mesh(const Solid& solid, const std::string& name, bool collides) {
-    const auto points = meshes_(solid);
+    auto points = meshes_(solid);
     if (!points) {
       const std::string what =
           fmt::format("{} mesh: {}", collides ? "collision" : "visual", points.error().message());
@@ -77,6 +80,9 @@ class Checker {
                 "without it the link gets a shape along its joints");
       return;
     }
+    if (taken_as_millimetres(*points, kind_))
+      warning("units", name, solid.line, fmt::format("the mesh {} is metres large", solid.mesh),
+              "`add` takes it as millimetres; scale=\"0.001 0.001 0.001\" says so");
     const Solid fitted = fit_primitive(*points);
     check_size(model::half_extents(fitted.shape), solid.X_LS * fitted.X_LS, name, solid.line);
     if (collides)
@@ -95,6 +101,11 @@ class Checker {
 
   void check_inertial(const Inertial& inertial, const std::string& name, int line) {
     const double mass = inertial.mass;
+    if (mass == 0) {
+      warning("no-mass", name, line, "weighs nothing, as a frame does",
+              "`add` estimates what moves from the shapes");
+      return;
+    }
     if (!(mass > 0)) {
       error("no-mass", name, line, fmt::format("has a mass of {} kg", mass),
             "give its mass in kg, or leave <inertial> out to have it estimated");
@@ -149,7 +160,13 @@ class Checker {
       return;
     }
     const JointLimit& limit = *joint.limit;
-    if (!(limit.lower < limit.upper))
+    if (!limit.has_range)
+      error("no-limits", name, joint.line, "the range is missing: no lower and no upper limit",
+            "<limit lower=\"…\" upper=\"…\" …/>");
+    else if (is_locked(joint))
+      warning("locked", name, joint.line, fmt::format("may move from {0} to {0}", limit.lower),
+              "`add` holds it there");
+    else if (!(limit.lower < limit.upper))
       error("no-limits", name, joint.line,
             fmt::format("may move from {} to {}", limit.lower, limit.upper),
             "lower < upper; make it fixed if it does not move");
@@ -176,16 +193,30 @@ class Checker {
               fmt::format("follows joint {}, which is not there", joint.mimic->joint),
               "name a joint of this file");
       else if (!master->moves())
-        error("mimic-missing", name, joint.line,
-              fmt::format("follows joint {}, which is fixed", master->name),
-              "name a joint that moves");
+        warning("locked", name, joint.line,
+                fmt::format("follows joint {}, which is fixed", master->name),
+                "`add` holds it where that one is");
       else if (!leader_of(robot_, i))
         error("mimic-loop", name, joint.line, "follows joints that follow each other, or nothing",
               "one joint of the loop must lead");
       if (joint.mimic->multiplier == 0)
-        error("mimic-zero", name, joint.line, "follows with the factor 0",
-              "make the joint fixed, or give its factor");
+        warning("locked", name, joint.line, "follows with the factor 0",
+                "`add` holds it where it is");
+      check_follows(i, name);
     }
+  }
+
+  /// What its leader may do, this joint may do.
+  void check_follows(std::size_t i, const std::string& name) {
+    const RobotJoint& joint = robot_.joints[i];
+    const auto range = followed_range(robot_, i);
+    if (!range || !joint.limit || !joint.limit->has_range) return;
+    const JointLimit& own = *joint.limit;
+    if (range->first >= own.lower - beyond && range->second <= own.upper + beyond) return;
+    warning("mimic-limit", name, joint.line,
+            fmt::format("is led from {:.3g} to {:.3g}, and may move from {:.3g} to {:.3g}",
+                        range->first, range->second, own.lower, own.upper),
+            "`add` narrows the range of what leads it, or widens this one if little would be left");
   }
 
   /// True if the links form one tree in which something moves, so that poses mean something.
@@ -246,7 +277,9 @@ class Checker {
   }
 
   void check_fingers() {
-    const bool moves = std::any_of(robot_.joints.begin(), robot_.joints.end(),
+    std::vector<std::string> ignored;
+    const Robot free = without_locked(robot_, ignored);
+    const bool moves = std::any_of(free.joints.begin(), free.joints.end(),
                                    [](const RobotJoint& joint) { return joint.moves(); });
     if (!moves)
       error("no-fingertips", "robot " + robot_.name, 0, "no joint moves, so there are no fingers",

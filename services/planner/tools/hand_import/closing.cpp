@@ -36,7 +36,8 @@ bool flexes(const Skeleton& skeleton, const FingerChain& finger, int dof) {
 /// What a DoF does to the tips that it flexes, m, from a quarter of a turn below to one above rest.
 struct Effect {
   double nearer_to_palm = 0, nearer_to_others = 0;
-  double travel = 0;  // of the tips
+  double nearer_to_each_other = 0;  // those that it flexes
+  double travel = 0;                // of the tips
 };
 
 Effect effect_of(const Skeleton& skeleton, int dof) {
@@ -51,8 +52,13 @@ Effect effect_of(const Skeleton& skeleton, int dof) {
   const auto at_low = skeleton.tips(low), at_high = skeleton.tips(high),
              at_rest = skeleton.tips(rest);
   Effect effect;
+  std::vector<std::size_t> flexed;
   for (std::size_t i = 0; i < fingers.size(); ++i) {
     if (!fingers[i].dofs.contains(dof) || !flexes(skeleton, fingers[i], dof)) continue;
+    for (const std::size_t k : flexed)
+      effect.nearer_to_each_other +=
+          (at_low[i] - at_low[k]).norm() - (at_high[i] - at_high[k]).norm();
+    flexed.push_back(i);
     Vector3d others_low = Vector3d::Zero(), others_high = others_low;
     for (std::size_t k = 0; k < fingers.size(); ++k)
       if (k != i) {
@@ -68,15 +74,27 @@ Effect effect_of(const Skeleton& skeleton, int dof) {
   return effect;
 }
 
-/// 1: closes towards the upper limit, -1: towards the lower, 0: does not close.
-int sense_of(const Effect& effect, bool slides) {
+/// 1: closes towards the upper limit, -1: towards the lower, 0: does not close. Jaws close where
+/// they meet: their tips may go away from the palm meanwhile.
+int sense_of(const Effect& effect, bool slides, bool jaws) {
   if (!(effect.travel > 0)) return 0;
-  double towards_high = slides ? effect.nearer_to_others : effect.nearer_to_palm;
+  if (std::abs(effect.nearer_to_each_other) > 0.5 * effect.travel)
+    return effect.nearer_to_each_other > 0 ? 1 : -1;
+  const bool meet =
+      slides || (jaws && std::abs(effect.nearer_to_others) > std::abs(effect.nearer_to_palm));
+  double towards_high = meet ? effect.nearer_to_others : effect.nearer_to_palm;
   // Bent equally far either way: the side of the other tips.
   if (std::abs(towards_high) < 0.02 * effect.travel) towards_high = effect.nearer_to_others;
   const bool matters = !slides || std::abs(towards_high) > 0.3 * effect.travel;
   if (!matters || towards_high == 0) return 0;
   return towards_high > 0 ? 1 : -1;
+}
+
+/// Jaws are coupled by gears; of a hand, each finger is, and the fingers by what lets them differ.
+model::Coupling coupling_of(const Skeleton& skeleton, int dof) {
+  const auto& joints = skeleton.hand().joints();
+  if (std::ranges::count(joints, dof, &model::HandJoint::dof) < 2) return model::Coupling::springs;
+  return skeleton.fingers().size() == 2 ? model::Coupling::rigid : model::Coupling::fingers;
 }
 
 Anatomy::Dof closing_of(const Skeleton& skeleton, int dof) {
@@ -85,7 +103,10 @@ Anatomy::Dof closing_of(const Skeleton& skeleton, int dof) {
   const std::string& name = skeleton.joint(limits.joint).name;
   if (skeleton.is_wrist(dof)) return {name, 0, rest, rest, true};
   const bool slides = limits.kind == model::JointKind::prismatic;
-  Anatomy::Dof result{name, sense_of(effect_of(skeleton, dof), slides), rest, rest, false};
+  Anatomy::Dof result{name,
+                      sense_of(effect_of(skeleton, dof), slides, skeleton.fingers().size() == 2),
+                      rest, rest, false};
+  result.coupling = coupling_of(skeleton, dof);
   if (result.closing == 0) return result;
   const double closed = result.closing > 0 ? limits.upper : limits.lower;
   const double opened = result.closing > 0 ? limits.lower : limits.upper;

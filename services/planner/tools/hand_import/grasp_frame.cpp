@@ -95,9 +95,9 @@ class FrameFinder {
     return meeting;
   }
 
-  /// Out of the palm is where the tips go when they begin to close. Where the thumb moves against
-  /// the fingers, what brings them together cancels out; beside fingers that it does not move
-  /// against, as in a human hand, it does not count. Jaws that slide point out of the palm.
+  /// Out of the palm is where thumb and fingers meet, where they move against each other. Beside
+  /// fingers that the thumb does not move against, as in a human hand, it is where these begin to
+  /// close.
   Directions find_directions(std::size_t thumb, const Meeting& meeting) const {
     const auto open = tips(0), begun = tips(0.1);
     const auto direction = [&](std::size_t i) {
@@ -108,14 +108,13 @@ class FrameFinder {
       if (i != thumb) fingers += direction(i);
     fingers.normalize();
     const bool like_human = open.size() >= 4 && direction(thumb).dot(fingers) > -0.6;
-    Vector3d approach = like_human ? fingers : Vector3d(fingers + direction(thumb));
-    if (approach.norm() < 0.2) approach = meeting.middle - skeleton_.p_BP();
+    const Vector3d approach =
+        (like_human ? fingers : Vector3d(meeting.middle - skeleton_.p_BP())).normalized();
     const auto across = [](const Vector3d& v, const Vector3d& unit) {
       const Vector3d rest = v - v.dot(unit) * unit;
       return Vector3d(rest.norm() > 1e-3 * v.norm() ? rest : unit.unitOrthogonal()).normalized();
     };
     if (!like_human) return {meeting.closing, across(approach, meeting.closing)};
-    approach.normalize();
     return {across(meeting.closing, approach), approach};
   }
 

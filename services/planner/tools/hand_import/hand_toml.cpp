@@ -66,6 +66,9 @@ std::string write_toml(const Anatomy& anatomy, const std::string& name, const Ro
   for (const Anatomy::Dof& dof : anatomy.dofs) {
     text += fmt::format("\n[[dof]]\nname = {0}\njoint = {0}\nclosing = {1}\n", toml_text(dof.joint),
                         dof.closing);
+    if (dof.coupling != model::Coupling::springs)
+      text += fmt::format("coupling = \"{}\"\n",
+                          dof.coupling == model::Coupling::rigid ? "rigid" : "fingers");
     if (dof.wrist) text += wrist_limits(dof, robot);
     open.push_back(dof.open);
     fist.push_back(dof.fist);

@@ -14,6 +14,7 @@ namespace {
 using Eigen::Vector3d;
 using Eigen::VectorXd;
 
+constexpr double further = 0.5;                   // rad, beyond where fingers rest
 constexpr int kept = 8;                           // of the samples, to be refined
 constexpr std::array radii{0.015, 0.022, 0.033};  // m, of the rods that are tried
 constexpr double good = 0.4;                      // quality of a grip that counts
@@ -62,6 +63,8 @@ class Search {
       const bool keep = found.empty() || near.worth > found.front().worth - better;
       found.insert(keep ? found.begin() : found.begin() + 1, near);
     }
+    if (auto wider = opened(found.front()); judge && wider)
+      found.insert(found.begin() + 1, std::move(*wider));
     std::size_t best = 0;
     Opposition result = described(found[0]);
     double most = judge ? judge(result, 0) : 0;
@@ -91,6 +94,23 @@ class Search {
   }
 
   bool turns_aside(std::size_t i) const { return world_.closing()[i] == 0 && !fixed_[i]; }
+
+  /// The same with fingers that open further than they rest; none where they do not.
+  std::optional<Trial> opened(Trial trial) const {
+    double most = 0;
+    for (std::size_t i = 0; i < fixed_.size(); ++i) {
+      if (world_.closing()[i] == 0 || fixed_[i]) continue;
+      const model::HandDof& dof = world_.hand().dofs()[i];
+      double& value = trial.dof[static_cast<Eigen::Index>(i)];
+      const double by = std::clamp((world_.closing()[i] > 0 ? dof.lower : dof.upper) - value,
+                                   -further * radian_of(dof), further * radian_of(dof));
+      value += by;
+      most = std::max(most, std::abs(by) / radian_of(dof));
+    }
+    if (most < 0.1 * further) return std::nullopt;
+    trial.worth = worth(trial);
+    return trial;
+  }
 
   /// How far the way in along `out` is free, at most to `wanted`: the least room on it, m.
   double way(const Trial& trial, Rod rod) const {
@@ -325,7 +345,17 @@ class Search {
       const auto rod = placed(trial, radius, 0.01);
       if (rod && grip_quality(world_.close(trial.dof, *rod)) > good) found = 2 * radius;
     }
-    return found + 2 * clear;
+    return std::min(found + 2 * clear, gap(trial));
+  }
+
+  /// Between the two tips that are farthest apart along y, m: nothing wider goes between them.
+  double gap(const Trial& trial) const {
+    double least = 1e9, most = -1e9;
+    for (const Vector3d& tip : tips(trial.dof)) {
+      least = std::min(least, trial.across.dot(tip));
+      most = std::max(most, trial.across.dot(tip));
+    }
+    return most - least;
   }
 
   /// Fingers begin partly closed, near what they take with their ends.

@@ -8,7 +8,9 @@
 #include <map>
 #include <numbers>
 
+#include "services/planner/tools/hand_import/locked.hpp"
 #include "services/planner/tools/hand_import/tree.hpp"
+#include "services/planner/tools/hand_import/units.hpp"
 
 namespace prehend::planner {
 namespace {
@@ -18,6 +20,7 @@ using Eigen::Vector3d;
 
 constexpr double density = 1500;    // kg/m³, of links: plastic, metal and air
 constexpr double min_mass = 0.005;  // kg
+constexpr double rotor = 1e-4;      // kg m², of a motor behind the gear of a finger
 constexpr double turning_effort = 1, turning_velocity = 2;     // N m, rad/s
 constexpr double sliding_effort = 20, sliding_velocity = 0.1;  // N, m/s
 // What motors of hands can do, at the fingertip or of a slide: many files give 0.01 or 1000 N m.
@@ -86,7 +89,7 @@ std::string described(const model::Shape& shape) {
 class Mender {
  public:
   Mender(const Robot& source, const MeshReader& meshes, const RobotKind& kind)
-      : source_(source), meshes_(meshes), kind_(kind) {}
+      : source_(without_locked(source, mended_.changes)), meshes_(meshes), kind_(kind) {}
 
   Expected<Mended> run() {
     mended_.robot.name = source_.name;
@@ -97,7 +100,9 @@ class Mender {
       give_mass(link);
     }
     for (RobotJoint& joint : mended_.robot.joints) give_limits(joint);
+    agree_with_followers();
     if (!kind_.weak) return std::move(mended_);
+    for (RobotLink& link : mended_.robot.links) give_rotor(link);
     const Tree tree(mended_.robot);
     const auto X_BL = tree.poses(tree.roots()[0], rest_values(mended_.robot));
     for (RobotJoint& joint : mended_.robot.joints) bound_effort(joint, tree, X_BL);
@@ -113,9 +118,11 @@ class Mender {
     std::vector<Solid> made;
     for (Solid solid : solids) {
       if (!solid.mesh.empty()) {
-        const auto points = meshes_(solid);
+        auto points = meshes_(solid);
         if (!points && visual) continue;
         if (!points) return tl::unexpected(points.error());
+        if (taken_as_millimetres(*points, kind_))
+          tell(fmt::format("link {}: the mesh {} taken as millimetres", link.name, solid.mesh));
         const Solid fitted = fit_primitive(*points);
         tell(fmt::format("link {}: the mesh {} became {}", link.name, solid.mesh,
                          described(fitted.shape)));
@@ -139,6 +146,7 @@ class Mender {
 
     RobotLink& body = mended_.robot.links[index];
     std::optional<Inertial> inertial = link.inertial;
+    if (inertial && !(inertial->mass > 0)) inertial.reset();  // a frame
     if (inertial && !is_possible(*inertial)) {
       if (collision->empty()) {
         inertial->inertia_I = 0.4 * inertial->mass * 1e-4 * Matrix3d::Identity();  // ball of 1 cm
@@ -250,6 +258,43 @@ class Mender {
     }
   }
 
+  /// What leads goes no further than all that follow it may; those that would leave it less than
+  /// half of its range are given more instead.
+  void agree_with_followers() {
+    for (std::size_t i = 0; i < mended_.robot.joints.size(); ++i) {
+      const auto led = followed_range(mended_.robot, i);
+      if (!led) continue;
+      RobotJoint& joint = mended_.robot.joints[i];
+      JointLimit& own = *joint.limit;
+      const double low = std::max(led->first, own.lower), high = std::min(led->second, own.upper);
+      if (low <= led->first && high >= led->second) continue;
+      const Leader leader = *leader_of(mended_.robot, i);
+      RobotJoint& leads = mended_.robot.joints[leader.joint];
+      if (high - low < 0.5 * (led->second - led->first)) {
+        own.lower = std::min(own.lower, led->first);
+        own.upper = std::max(own.upper, led->second);
+        tell(fmt::format("joint {}: may move from {:.3g} to {:.3g}, as {} leads it", joint.name,
+                         own.lower, own.upper, leads.name));
+        continue;
+      }
+      const auto [a, b] = std::minmax(
+          {(low - leader.offset) / leader.multiplier, (high - leader.offset) / leader.multiplier});
+      leads.limit->lower = std::max(leads.limit->lower, a);
+      leads.limit->upper = std::min(leads.limit->upper, b);
+      tell(fmt::format("joint {}: may move from {:.3g} to {:.3g}, as far as {} follows", leads.name,
+                       leads.limit->lower, leads.limit->upper, joint.name));
+    }
+  }
+
+  /// What a motor's rotor weighs behind its gear is more than a finger's link does; files tell the
+  /// link alone. Without it a light link is thrown to and fro by whatever it touches.
+  void give_rotor(RobotLink& link) {
+    const bool moved =
+        std::any_of(mended_.robot.joints.begin(), mended_.robot.joints.end(),
+                    [&](const RobotJoint& joint) { return joint.child == link.name; });
+    if (moved) link.inertial->inertia_I += rotor * Matrix3d::Identity();
+  }
+
   /// From a joint to the farthest shape that it moves, at rest, m.
   double lever(const RobotJoint& joint, const Tree& tree,
                const std::map<std::string, Pose>& X_BL) const {
@@ -285,10 +330,10 @@ class Mender {
     }
   }
 
-  const Robot& source_;
+  Mended mended_;
+  const Robot source_;
   const MeshReader& meshes_;
   const RobotKind kind_;
-  Mended mended_;
 };
 
 }  // namespace

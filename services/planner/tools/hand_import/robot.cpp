@@ -181,7 +181,8 @@ class Reader {
       joint.axis_J = Vector3d(numbers(*axis, "xyz", 3, {1, 0, 0}).data());
     if (const XMLElement* limit = e.FirstChildElement("limit"))
       joint.limit = {number(*limit, "lower", 0), number(*limit, "upper", 0),
-                     number(*limit, "effort", 0), number(*limit, "velocity", 0)};
+                     number(*limit, "effort", 0), number(*limit, "velocity", 0),
+                     limit->Attribute("lower") || limit->Attribute("upper")};
     if (const XMLElement* mimic = e.FirstChildElement("mimic"))
       joint.mimic = {text(*mimic, "joint"), number(*mimic, "multiplier", 1),
                      number(*mimic, "offset", 0)};

@@ -37,6 +37,7 @@ struct RobotLink {
 struct JointLimit {
   double lower = 0, upper = 0;      // rad or m
   double effort = 0, velocity = 0;  // N m or N; rad/s or m/s
+  bool has_range = true;            // false: neither lower nor upper was given
 };
 
 struct JointMimic {

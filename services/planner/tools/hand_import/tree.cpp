@@ -68,6 +68,16 @@ std::optional<Leader> leader_of(const Robot& robot, std::size_t joint) {
   return std::nullopt;
 }
 
+std::optional<std::pair<double, double>> followed_range(const Robot& robot, std::size_t joint) {
+  const auto leader = leader_of(robot, joint);
+  if (!leader || leader->joint == joint) return std::nullopt;
+  const auto& limit = robot.joints[leader->joint].limit;
+  if (!limit || !limit->has_range || limit->lower > limit->upper) return std::nullopt;
+  const double a = leader->multiplier * limit->lower + leader->offset,
+               b = leader->multiplier * limit->upper + leader->offset;
+  return std::minmax(a, b);
+}
+
 std::vector<double> rest_values(const Robot& robot) {
   std::vector<double> values(robot.joints.size(), 0.0);
   for (std::size_t i = 0; i < values.size(); ++i) {

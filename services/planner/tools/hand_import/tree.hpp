@@ -3,6 +3,7 @@
 #include <map>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "services/planner/tools/hand_import/robot.hpp"
@@ -39,5 +40,9 @@ struct Leader {
   double multiplier = 1, offset = 0;
 };
 std::optional<Leader> leader_of(const Robot& robot, std::size_t joint);
+
+/// The values that a joint takes while the one that leads it goes through its range, least first.
+/// None for a joint that leads, and where no range is known.
+std::optional<std::pair<double, double>> followed_range(const Robot& robot, std::size_t joint);
 
 }  // namespace prehend::planner

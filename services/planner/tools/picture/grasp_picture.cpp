@@ -8,6 +8,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "common/analysis/materials.hpp"
+#include "common/model/placement.hpp"
 
 namespace prehend::planner {
 namespace {
@@ -43,6 +44,27 @@ std::size_t index_of(const std::string& material) {
 
 void append(std::vector<Triangle>& to, std::vector<Triangle> more) {
   to.insert(to.end(), more.begin(), more.end());
+}
+
+/// Adds its links; returns the paints that it uses.
+std::vector<int> add_hand(Drawing& drawing, const model::HandModel& hand, const Pose& X_WB,
+                          const Eigen::VectorXd& joints) {
+  std::vector<int> paints;
+  const std::vector<Pose> X_BL = hand.link_poses(joints);
+  for (std::size_t i = 0; i < hand.links().size(); ++i) {
+    const int paint = static_cast<int>(index_of(hand.links()[i].material));
+    if (std::find(paints.begin(), paints.end(), paint) == paints.end()) paints.push_back(paint);
+    for (const model::CollisionShape& part : hand.links()[i].collision)
+      append(drawing.triangles, surface_of(part.shape, X_WB * X_BL[i] * part.X_LS, paint));
+  }
+  return paints;
+}
+
+double lowest(const Drawing& drawing) {
+  double z = 0;
+  for (const Triangle& triangle : drawing.triangles)
+    for (const Vector3d& p : triangle.p) z = std::min(z, p.z());
+  return z;
 }
 
 }  // namespace
@@ -92,15 +114,7 @@ Expected<GraspDrawing> draw_grasp(const model::HandModel& hand, const grasping::
   made.cone_paint = add_paint(cone_paint);
   made.touch_paint = add_paint(touch_paint);
 
-  const std::vector<Pose> X_BL = hand.link_poses(grasp.joints);
-  for (std::size_t i = 0; i < hand.links().size(); ++i) {
-    const int paint = static_cast<int>(index_of(hand.links()[i].material));
-    if (std::find(made.hand_paints.begin(), made.hand_paints.end(), paint) ==
-        made.hand_paints.end())
-      made.hand_paints.push_back(paint);
-    for (const model::CollisionShape& part : hand.links()[i].collision)
-      append(drawing.triangles, surface_of(part.shape, grasp.X_OB * X_BL[i] * part.X_LS, paint));
-  }
+  made.hand_paints = add_hand(drawing, hand, grasp.X_OB, grasp.joints);
   append(drawing.triangles, surface_of(object.shape, Pose::Identity(), made.object_paint));
   for (const analysis::Contact& contact : grasp.contacts) {
     const double angle = std::max(0.05, std::atan(contact.friction));
@@ -109,10 +123,18 @@ Expected<GraspDrawing> draw_grasp(const model::HandModel& hand, const grasping::
     const model::Shape ball{model::ShapeKind::sphere, Vector3d::Constant(touch_radius)};
     append(drawing.triangles, surface_of(ball, make_pose(contact.p_OC), made.touch_paint));
   }
-  drawing.floor = -model::half_extents(object.shape).z();
-  for (const Triangle& triangle : drawing.triangles)
-    for (const Vector3d& p : triangle.p) drawing.floor = std::min(drawing.floor, p.z());
+  drawing.floor = std::min(lowest(drawing), -model::half_extents(object.shape).z());
   return made;
+}
+
+Drawing draw_hand(const model::HandModel& hand, const Eigen::VectorXd& dof) {
+  Drawing drawing;
+  drawing.paints.assign(hand_paint.begin(), hand_paint.end());
+  const Pose X_WG =
+      make_pose(Vector3d::Zero(), model::grasp_axes(Vector3d::UnitX(), Vector3d::UnitY()));
+  add_hand(drawing, hand, X_WG * hand.X_BG().inverse(), hand.joint_angles(dof));
+  drawing.floor = lowest(drawing);
+  return drawing;
 }
 
 Viewpoint best_view(const GraspDrawing& scene, double aspect) {

@@ -21,6 +21,10 @@ struct GraspDrawing {
 Expected<GraspDrawing> draw_grasp(const model::HandModel& hand, const grasping::Body& object,
                                   const grasping::PlannedGrasp& grasp);
 
+/// The hand alone in a posture (values of its DoFs). W: its palm looks along x, and its fingers
+/// close along y.
+Drawing draw_hand(const model::HandModel& hand, const Eigen::VectorXd& dof);
+
 /// From that direction (unit, not straight up), so near that all of it just fills the picture.
 Viewpoint look_at(const Drawing& drawing, const Eigen::Vector3d& from, double aspect);
 
