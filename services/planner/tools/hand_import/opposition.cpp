@@ -18,7 +18,9 @@ constexpr double further = 0.5;                   // rad, beyond where fingers r
 constexpr int kept = 8;                           // of the samples, to be refined
 constexpr std::array radii{0.015, 0.022, 0.033};  // m, of the rods that are tried
 constexpr double good = 0.4;                      // quality of a grip that counts
-constexpr double clearly = 0.5;                   // objects more that another place must hold
+constexpr std::size_t judged = 5;   // of all, in the physics: the best by worth come first
+constexpr double enough = 5;        // objects held, more than which are not looked for
+constexpr double clearly = 0.5;     // objects more that another place must hold
 constexpr double better = 0.8;      // by which a found place must surpass the known axes
 constexpr double aside = 0.25;      // what a DoF costs that leaves its rest by its whole range
 constexpr double clear = 0.002;     // m, between the open hand and a rod
@@ -68,7 +70,7 @@ class Search {
     std::size_t best = 0;
     Opposition result = described(found[0]);
     double most = judge ? judge(result, 0) : 0;
-    for (std::size_t i = 1; judge && i < found.size(); ++i) {
+    for (std::size_t i = 1; judge && i < found.size() && i < judged && most < enough; ++i) {
       Opposition other = described(found[i]);
       const double held = judge(other, most + clearly);
       if (held < most + clearly) continue;
