@@ -55,7 +55,8 @@ Expected<ModelPlaces> ready_places(const std::string& hand, const model::HandMod
   ModelPlaces places = model_places(hand);
   const std::string why = lack(places, model, needs);
   if (why.empty()) return places;
-  log::info("the hand {} {}: it is trained now, once, in less than a minute", model.name(), why);
+  log::info("the hand {} {}: it is trained now, once; that takes seconds, at most about a minute",
+            model.name(), why);
   const auto begin = Clock::now();
   const auto trained = train_quickly(places, model);
   if (!trained) return tl::unexpected(trained.error());
