@@ -415,6 +415,16 @@ Expected<std::filesystem::path> named_hand(const std::string& name) {
   return fail("no hand of this name comes with us or is the user's", "'" + name + "'");
 }
 
+Expected<std::filesystem::path> named_hand(const std::string& name,
+                                           const std::vector<std::string>& told) {
+  for (const std::string& one : told) {
+    if (one.empty()) continue;
+    const auto folder = hand_directory(one);
+    if (const auto hand = HandModel::load(folder); hand && hand->name() == name) return folder;
+  }
+  return named_hand(name);
+}
+
 std::string lab_hand() {
   try {
     const toml::table lab = toml::parse_file((share_directory() / "lab.toml").string());

@@ -106,6 +106,9 @@ std::vector<std::string> hand_names();
 /// The folder of a hand that somebody else names, in a message or a recording: ours or the user's
 /// (data_directory()), by its name alone, since a path would open any file.
 Expected<std::filesystem::path> named_hand(const std::string& name);
+/// Before these, of `told`: hands, by name or path, that this process was told of by its own user.
+Expected<std::filesystem::path> named_hand(const std::string& name,
+                                           const std::vector<std::string>& told);
 
 /// The hand of the lab that comes with us (lab.toml), for tools that read no configuration.
 std::string lab_hand();

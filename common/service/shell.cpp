@@ -340,6 +340,10 @@ void Shell::stop(Exit exit) {
   state_->stop();
 }
 
+bool Shell::stopping() const {
+  return state_->stopping;
+}
+
 /// Publishes the status when it is due, and then looks for what else happens seldom; tells the
 /// supervisor that the loop runs. Says when the next of these is due.
 Time Shell::beat(Time now) {

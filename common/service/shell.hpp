@@ -92,6 +92,8 @@ class Shell {
 
   /// Ends run() with this exit code.
   void stop(Exit exit = exit_done);
+  /// Whether run() will end at once, for who makes somebody wait before it.
+  bool stopping() const;
 
   /// Until SIGTERM, SIGINT or stop(). Fails at once where a topic could not be joined.
   Expected<Exit> run();

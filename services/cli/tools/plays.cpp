@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <iostream>
 
+#include "common/model/hand_model.hpp"
 #include "services/cli/tools/demo/demo_command.hpp"
 #include "services/cli/tools/dispatch.hpp"
 
@@ -12,7 +13,7 @@ namespace {
 
 /// What decides who plays; the play itself reads all arguments.
 struct Choice {
-  std::string task, record, robot;
+  std::string task, record, robot, hand;
   bool watch = false, targets = false;
 };
 
@@ -24,6 +25,7 @@ Choice chosen_by(std::vector<std::string> arguments) {
   app.add_option("--task", choice.task);
   app.add_option("--record", choice.record);
   app.add_option("--robot", choice.robot);
+  app.add_option("--hand", choice.hand);
   app.add_flag("--watch", choice.watch);
   app.add_flag("--targets", choice.targets);
   std::reverse(arguments.begin(), arguments.end());  // as CLI11 takes them
@@ -40,6 +42,10 @@ std::string targets_of(const Choice& choice) {
   std::string targets = "lab";
   if (!choice.record.empty()) targets += " prehend-record";
   if (!choice.robot.empty()) targets += " prehend-robot prehend-robot-tool";
+  // A user's hand is trained on first use.
+  const auto ours = model::hand_names();
+  if (!choice.hand.empty() && std::find(ours.begin(), ours.end(), choice.hand) == ours.end())
+    targets += " prehend-train";
   if (choice.watch) targets += " prehend-console prehend-teacher";
   return targets;
 }

@@ -38,6 +38,7 @@ struct ModelTraits {
   /// offset; their sum is positive for precision. Empty: not learnt.
   Eigen::VectorXd precision;
   std::vector<PalmOffset> places;  // where the hand stands to grasp what
+  std::string made_for;            // digest of the user's hand; empty: not said
 };
 
 /// A robot posture, and whether the question lay outside what was trained.

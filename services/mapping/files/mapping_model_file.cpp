@@ -53,7 +53,8 @@ Expected<MappingNetwork> read(const messages::MappingNetwork& from) {
 }
 
 /// Whether the file was made for this hand as it is now.
-Expected<void> check_hand(const messages::MappingModel& message, const model::HandModel& hand) {
+Expected<void> check_hand(const messages::MappingModel& message, const model::HandModel& hand,
+                          const std::string& made_for) {
   if (message.hand() != hand.name())
     return fail(
         fmt::format("was trained for the hand «{}», not for «{}»", message.hand(), hand.name()));
@@ -66,20 +67,23 @@ Expected<void> check_hand(const messages::MappingModel& message, const model::Ha
   }
   if (!same)
     return fail(fmt::format("was trained for another version of the hand «{}»", hand.name()));
+  if (!made_for.empty() && !message.made_for().empty() && message.made_for() != made_for)
+    return fail(fmt::format("was trained for the hand «{}» as it was before", hand.name()));
   return {};
 }
 
 }  // namespace
 
 Expected<MappingModel> load_mapping_model(const std::filesystem::path& file,
-                                          const model::HandModel& hand) {
+                                          const model::HandModel& hand,
+                                          const std::string& made_for) {
   const std::string hint = "train it again: prehend train --hand " + hand.name();
   const auto refuse = [&](const std::string& what) { return fail(what, file.string(), hint); };
   auto bytes = proto::read_sealed(file, kind);
   if (!bytes) return tl::unexpected(bytes.error());
   messages::MappingModel message;
   if (!message.ParseFromString(*bytes)) return refuse("not a mapping model");
-  if (auto ok = check_hand(message, hand); !ok) return refuse(ok.error().message());
+  if (auto ok = check_hand(message, hand, made_for); !ok) return refuse(ok.error().message());
   std::vector<MappingNetwork> networks;
   for (const messages::MappingNetwork& from : message.networks()) {
     auto network = read(from);
@@ -94,7 +98,8 @@ Expected<MappingModel> load_mapping_model(const std::filesystem::path& file,
                      Eigen::VectorXd::Map(message.lower().data(), message.lower_size()),
                      Eigen::VectorXd::Map(message.upper().data(), message.upper_size()),
                      Eigen::VectorXd::Map(message.precision().data(), message.precision_size()),
-                     {}};
+                     {},
+                     message.made_for()};
   for (const messages::LearntPlace& from : message.places()) {
     const auto shape = model::shape_from_string(from.shape());
     if (!shape || from.seen_size() != 4 || from.place_size() != 3)
@@ -105,6 +110,13 @@ Expected<MappingModel> load_mapping_model(const std::filesystem::path& file,
   auto made = MappingModel::create(hand, std::move(traits), std::move(networks));
   if (!made) return refuse(made.error().message());
   return made;
+}
+
+bool was_made_for(const std::filesystem::path& file, const std::string& made_for) {
+  const auto bytes = proto::read_sealed(file, kind);
+  messages::MappingModel message;
+  return bytes && message.ParseFromString(*bytes) &&
+         (message.made_for().empty() || message.made_for() == made_for);
 }
 
 Expected<void> save_mapping_model(const std::filesystem::path& file, const MappingModel& model,
@@ -120,6 +132,7 @@ Expected<void> save_mapping_model(const std::filesystem::path& file, const Mappi
   }
   message.set_scheme(traits.scheme);
   message.set_training_set_digest(traits.training_set_digest);
+  message.set_made_for(traits.made_for);
   message.set_size_input(std::string(to_string(traits.size_input)));
   message.mutable_lower()->Add(traits.lower.begin(), traits.lower.end());
   message.mutable_upper()->Add(traits.upper.begin(), traits.upper.end());

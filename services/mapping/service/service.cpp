@@ -14,8 +14,8 @@
 #include "services/mapping/core/mapping_model.hpp"
 #include "services/mapping/core/mapping_modes.hpp"
 #include "services/mapping/files/mapping_model_file.hpp"
-#include "services/mapping/files/model_places.hpp"
 #include "services/mapping/service/messages.hpp"
+#include "services/mapping/service/trained_model.hpp"
 
 namespace prehend::mapping {
 
@@ -278,15 +278,10 @@ Expected<std::unique_ptr<Service>> Service::create(service::Shell& shell) {
   auto loaded = model::HandModel::load(model::hand_directory(hand_kind));
   if (!loaded) return tl::unexpected(loaded.error());
   auto hand = std::make_unique<const model::HandModel>(std::move(*loaded));
-  std::filesystem::path file = config.path("mapping.model");
-  if (file.empty()) {
-    file = model_places(hand_kind).model;
-    std::error_code none;
-    if (!std::filesystem::exists(file, none))
-      return fail("there is no trained model of this hand yet", file.string(),
-                  "prehend train --hand " + hand_kind);
-  }
-  auto trained = load_mapping_model(file, *hand);
+  const std::filesystem::path file = config.path("mapping.model");
+  auto trained = file.empty()
+                     ? trained_model(hand_kind, *hand, [&shell] { return shell.stopping(); })
+                     : load_mapping_model(file, *hand);
   if (!trained) return tl::unexpected(trained.error());
   auto model = std::make_unique<const MappingModel>(std::move(*trained));
   MappingModes modes;

@@ -239,7 +239,9 @@ class Performer::State {
   /// In a thread of its own, since it takes seconds.
   void think() {
     if (auto error = obstacle()) return refuse(*error);
-    const auto folder = model::named_hand(model_);
+    const auto& config = shell_.config();
+    const auto folder =
+        model::named_hand(model_, {config.text("mapping.hand"), config.text("simulation.hand")});
     if (!folder) return refuse(folder.error());
     auto hand = model::HandModel::load(*folder);
     if (!hand) return refuse(hand.error());

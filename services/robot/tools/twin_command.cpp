@@ -52,9 +52,11 @@ class SideBySide {
     if (!states) return tl::unexpected(states.error());
     auto led = participant->writer(dds::robot_command);
     if (!led) return tl::unexpected(led.error());
-    return std::unique_ptr<SideBySide>(new SideBySide(name, arguments, std::move(*participant),
-                                                      std::move(*commands), std::move(*states),
-                                                      std::move(*led)));
+    std::unique_ptr<SideBySide> made(new SideBySide(name, arguments, std::move(*participant),
+                                                    std::move(*commands), std::move(*states),
+                                                    std::move(*led)));
+    made->told_ = {config.text("mapping.hand"), config.text("simulation.hand")};
+    return made;
   }
 
   Expected<void> step(Time now) {
@@ -114,7 +116,8 @@ class SideBySide {
       return wrong_use("is another hand, " + twin_->state.model().to_string(), arguments_.twin,
                        "simulate " + state.model().to_string());
     if (!hand_) {
-      auto loaded = model::named_hand(state.model().to_string()).and_then(model::HandModel::load);
+      auto loaded =
+          model::named_hand(state.model().to_string(), told_).and_then(model::HandModel::load);
       if (!loaded) return tl::unexpected(loaded.error());
       hand_ = std::make_unique<const model::HandModel>(std::move(*loaded));
       parting_.emplace(*hand_, Parting::Options{arguments_.within, seconds(arguments_.patience)});
@@ -140,6 +143,7 @@ class SideBySide {
   dds::Reader<v2::HandCommand> commands_;
   dds::Reader<v1::HandState> states_;
   dds::Writer<v2::HandCommand> led_;
+  std::vector<std::string> told_;  // hands that lab.toml names
   std::unique_ptr<const model::HandModel> hand_;
   std::optional<Parting> parting_;
   std::optional<Time> led_since_, begun_;

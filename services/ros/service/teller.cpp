@@ -27,6 +27,7 @@ Expected<Pose> pose_of(const std::vector<double>& v) {
 Expected<std::unique_ptr<Teller>> Teller::create(const service::Config& config,
                                                  const Options& options) {
   std::unique_ptr<Teller> made(new Teller(options));
+  made->told_ = {config.text("mapping.hand"), config.text("simulation.hand")};
   if (auto joined = made->join_nodes(config); !joined) return tl::unexpected(joined.error());
   if (auto joined = made->join_lab(config); !joined) return tl::unexpected(joined.error());
   return made;
@@ -113,7 +114,7 @@ const model::HandModel* Teller::introduce(const std::string& name) {
   if (name == shown_) return model_ ? &*model_ : nullptr;
   shown_ = name;
   model_.reset();
-  const auto folder = model::named_hand(name);
+  const auto folder = model::named_hand(name, told_);
   auto model = folder.and_then(model::HandModel::load);
   auto urdf = folder.and_then([](const auto& found) { return read_file(found / "hand.urdf"); });
   if (!model || !urdf) {

@@ -6,6 +6,7 @@
 #include <mutex>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "common/dds/participant.hpp"
 #include "common/dds/raw.hpp"
@@ -55,7 +56,8 @@ class Teller {
   void write(dds::RawWriter& writer, Bytes bytes);
 
   Options options_;
-  std::string shown_;  // the model that nodes know
+  std::vector<std::string> told_;  // hands that lab.toml names
+  std::string shown_;              // the model that nodes know
   std::optional<model::HandModel> model_;
   std::mutex mutex_;  // guards news_
   std::condition_variable come_;

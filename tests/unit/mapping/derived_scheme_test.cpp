@@ -1,6 +1,7 @@
 // The scheme that is derived for a hand without one: for the hands of the lab, for the same when
-// hand.toml does not say which human finger a fingertip follows, and for imported ones. What must
-// hold of written schemes (scheme_test.cpp) must hold of these.
+// hand.toml does not say which human finger a fingertip follows, for imported ones, and for made
+// ones of two to five fingers and 1 to 25 DoF. What must hold of written schemes (scheme_test.cpp)
+// must hold of these.
 #include "services/mapping/tools/training/derived_scheme.hpp"
 
 #include <fmt/format.h>
@@ -9,10 +10,12 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <set>
 
 #include "common/base/file_text.hpp"
 #include "services/planner/tools/hand_import/make_hand.hpp"
 #include "tests/support/hands.hpp"
+#include "tests/support/made_hands/made_hands.hpp"
 #include "tests/support/paths/paths.hpp"
 #include "tests/support/popular_hands/popular_hands.hpp"
 
@@ -47,6 +50,7 @@ std::vector<model::HandModel> all_hands() {
     hands.push_back(untold(name));
   }
   for (const auto& popular : popular_hands::popular_hands()) hands.push_back(imported(popular));
+  for (const test::MadeHand& made : test::made_hands()) hands.push_back(test::made_hand(made));
   return hands;
 }
 
@@ -85,22 +89,31 @@ TEST_F(EveryHand, IsClosedByHumanFingersThatClose) {
   }
 }
 
-/// m, from the thumb's tip to the middle of the others, the nearest while these close.
-double gap(const model::HandModel& hand, const Scheme& scheme, bool thumb_too) {
+/// m, from the thumb's tip to the middle of the others.
+double gap_at(const model::HandModel& hand, const VectorXd& dof) {
   const auto driver = drivers(hand);
+  const auto tips = hand.fingertip_positions(dof);
+  Eigen::Vector3d thumb = Eigen::Vector3d::Zero(), others = thumb;
+  for (std::size_t f = 0; f < tips.size(); ++f)
+    if (driver[f] == Driver::thumb)
+      thumb = tips[f];
+    else
+      others += tips[f] / static_cast<double>(tips.size() - 1);
+  return (thumb - others).norm();
+}
+
+double open_gap(const model::HandModel& hand, const Scheme& scheme) {
+  return gap_at(hand, scheme.open.robot);
+}
+
+/// The nearest while the others close.
+double gap(const model::HandModel& hand, const Scheme& scheme, bool thumb_too) {
   double nearest = 1e9;
   for (const double share : {0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8}) {
     VectorXd dof = scheme.open.robot;
     for (const SchemePosture& closed : scheme.closed)
       if (thumb_too || closed.name != "thumb") dof += share * (closed.robot - scheme.open.robot);
-    const auto tips = hand.fingertip_positions(dof);
-    Eigen::Vector3d thumb = Eigen::Vector3d::Zero(), others = thumb;
-    for (std::size_t f = 0; f < tips.size(); ++f)
-      if (driver[f] == Driver::thumb)
-        thumb = tips[f];
-      else
-        others += tips[f] / static_cast<double>(tips.size() - 1);
-    nearest = std::min(nearest, (thumb - others).norm());
+    nearest = std::min(nearest, gap_at(hand, dof));
   }
   return nearest;
 }
@@ -114,7 +127,11 @@ TEST_F(EveryHand, ThumbClosesTowardsTheFingers) {
     EXPECT_EQ(std::count(driver.begin(), driver.end(), Driver::thumb), 1);
     EXPECT_GE(std::count(driver.begin(), driver.end(), Driver::index), 1);
     const Scheme scheme = derive_scheme(hand);
-    EXPECT_LT(gap(hand, scheme, true), gap(hand, scheme, false) - 0.004);
+    // Where one motor closes all fingers alike, the thumb does so by its part of the same way.
+    if (hand.name().find("motors of all") != std::string::npos)
+      EXPECT_LT(gap(hand, scheme, true), open_gap(hand, scheme) - 0.004);
+    else
+      EXPECT_LT(gap(hand, scheme, true), gap(hand, scheme, false) - 0.004);
   }
 }
 
@@ -176,6 +193,63 @@ TEST(Drivers, OfImportedHands) {
     EXPECT_TRUE(index.front().starts_with("index") || index.front().starts_with("first") ||
                 index.front().starts_with("finger0"))
         << popular.name << ": " << index.front();
+  }
+}
+
+/// Those with a thumb, of more than two fingers: of two, either may be the thumb.
+std::vector<test::MadeHand> hands_with_thumbs() {
+  std::vector<test::MadeHand> hands;
+  for (const test::MadeHand& made : test::made_hands())
+    if (made.thumb && made.fingers > 2) hands.push_back(made);
+  return hands;
+}
+
+TEST(MadeHands, HaveOneDofTo25) {
+  std::set<std::size_t> dofs;
+  for (const test::MadeHand& made : test::made_hands())
+    dofs.insert(test::made_hand(made).dofs().size());
+  EXPECT_EQ(*dofs.begin(), 1u);
+  EXPECT_EQ(*dofs.rbegin(), 25u);
+}
+
+TEST(MadeHands, ThumbAndTheFingerNextToItAreFound) {
+  for (const test::MadeHand& made : hands_with_thumbs()) {
+    SCOPED_TRACE(made.name());
+    const model::HandModel hand = test::made_hand(made);
+    EXPECT_EQ(driven_by(hand, Driver::thumb), Names{"thumb"});
+    EXPECT_EQ(driven_by(hand, Driver::index), Names{"1"});
+    EXPECT_EQ(driven_by(hand, Driver::little).size(), hand.fingertips().size() - 2);
+  }
+}
+
+// Who wrote the URDF may have begun with any finger.
+TEST(MadeHands, OrderOfFingertipsSaysNothing) {
+  for (test::MadeHand made : hands_with_thumbs()) {
+    SCOPED_TRACE(made.name());
+    const model::HandModel forwards = test::made_hand(made);
+    made.backwards = true;
+    const model::HandModel backwards = test::made_hand(made);
+    for (const Driver driver : {Driver::thumb, Driver::index, Driver::little}) {
+      Names one = driven_by(forwards, driver), other = driven_by(backwards, driver);
+      std::sort(one.begin(), one.end());
+      std::sort(other.begin(), other.end());
+      EXPECT_EQ(one, other);
+    }
+  }
+}
+
+TEST(MadeHands, LeftOnesCloseAsRightOnes) {
+  for (test::MadeHand made : hands_with_thumbs()) {
+    if (made.left) continue;
+    SCOPED_TRACE(made.name());
+    const Scheme right = derive_scheme(test::made_hand(made));
+    made.left = true;
+    const Scheme left = derive_scheme(test::made_hand(made));
+    ASSERT_EQ(left.closed.size(), right.closed.size());
+    for (std::size_t i = 0; i < left.closed.size(); ++i) {
+      EXPECT_EQ(left.closed[i].human, right.closed[i].human);
+      EXPECT_TRUE(left.closed[i].robot.isApprox(right.closed[i].robot, 1e-9));
+    }
   }
 }
 

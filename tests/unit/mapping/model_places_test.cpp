@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <set>
 
 #include "common/base/paths.hpp"
 #include "common/model/hand_model.hpp"
@@ -65,6 +66,15 @@ TEST_F(Places, OthersNameOnlyWhatIsKept) {
   EXPECT_FALSE(model::named_hand((root_ / "here" / "beside").string()));
 }
 
+// A message says «barrett» of a hand that this process was given as a folder.
+TEST_F(Places, OthersNameAlsoWhatThisProcessWasToldOf) {
+  const path told = test::in_sources("common/models/hands/barrett");
+  EXPECT_EQ(model::named_hand("barrett", {"", told}), told);
+  EXPECT_EQ(model::named_hand("barrett", {test::in_sources("common/models/hands/dlr")}),
+            share_directory() / "models" / "hands" / "barrett");
+  EXPECT_FALSE(model::named_hand("beside", {told}));
+}
+
 TEST_F(Places, ModelsLieWithTheirHand) {
   const ModelPlaces ours = model_places("barrett");
   EXPECT_EQ(ours.grasps, share_directory() / "trained" / "barrett.grasps");
@@ -77,6 +87,63 @@ TEST_F(Places, ModelsLieWithTheirHand) {
   EXPECT_EQ(own.model, root_ / "here/beside/hand.mapping");
   EXPECT_EQ(own.scheme, root_ / "here/beside/scheme.toml");
   EXPECT_EQ(model_places("./barrett").model, "./barrett/hand.mapping");
+}
+
+/// Whether this process may write there as one that is not root.
+class Nobody {
+ public:
+  Nobody() : was_(::geteuid()) {
+    if (was_ == 0 && ::seteuid(65534) != 0) ADD_FAILURE() << "cannot be nobody";
+  }
+  ~Nobody() {
+    if (::seteuid(was_) != 0) ADD_FAILURE() << "cannot be root again";
+  }
+  Nobody(const Nobody&) = delete;
+  Nobody& operator=(const Nobody&) = delete;
+
+ private:
+  uid_t was_;
+};
+
+// A hand on a shared disk, or one that an administrator put there.
+TEST_F(Places, WhatMayNotLieWithItsHandIsKeptForTheUser) {
+  const path folder = root_ / "here" / "beside";
+  ::setenv("XDG_STATE_HOME", (root_ / "state").c_str(), 1);
+  std::filesystem::permissions(folder, std::filesystem::perms(0555));
+  ModelPlaces kept, changed;
+  {
+    const Nobody nobody;
+    kept = model_places(folder);
+  }
+  std::filesystem::permissions(folder, std::filesystem::perms(0755));
+  std::ofstream(folder / "hand.toml") << "# another hand\n";
+  std::filesystem::permissions(folder, std::filesystem::perms(0555));
+  {
+    const Nobody nobody;
+    changed = model_places(folder);
+  }
+  std::filesystem::permissions(folder, std::filesystem::perms(0755));
+  ::unsetenv("XDG_STATE_HOME");
+  EXPECT_EQ(kept.model.parent_path().parent_path(), root_ / "state/prehend/hands");
+  EXPECT_EQ(kept.grasps.parent_path(), kept.model.parent_path());
+  EXPECT_EQ(kept.scheme, folder / "scheme.toml");
+  // Two versions of a hand do not share a place.
+  EXPECT_NE(changed.model, kept.model);
+  EXPECT_NE(changed.made_for, kept.made_for);
+}
+
+TEST_F(Places, WhatWasMadeForAHandIsKnownByAllOfItsFiles) {
+  const path folder = root_ / "here" / "beside";
+  std::set<std::string> digests{model_places(folder).made_for};
+  for (const char* file : {"hand.urdf", "hand.toml", "scheme.toml"}) {
+    std::ofstream(folder / file) << "changed\n";
+    digests.insert(model_places(folder).made_for);
+  }
+  EXPECT_EQ(digests.size(), 4u);
+  std::ofstream(folder / "picture.png") << "says nothing of it";
+  digests.insert(model_places(folder).made_for);
+  EXPECT_EQ(digests.size(), 4u);
+  EXPECT_EQ(model_places("barrett").made_for, "");
 }
 
 }  // namespace

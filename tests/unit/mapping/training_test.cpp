@@ -79,6 +79,34 @@ TEST(RobotGrasps, OfAnotherHandOrDamagedAreRefused) {
   EXPECT_FALSE(load_robot_grasps(file, barrett()));
 }
 
+// A hand too small or too weak for the catalogue still has postures that people can show.
+TEST(RobotGrasps, MayBeNone) {
+  SetOptions options;
+  options.users = 2;
+  const learning::TrainingSet set = demonstrate(barrett(), scheme(), {}, options);
+  std::set<std::string> shown;
+  for (const learning::TrainingPair& pair : set.pairs) {
+    EXPECT_EQ(pair.shape, "");
+    shown.insert(pair.posture);
+  }
+  for (const SchemePosture& posture : scheme().posture_set())
+    EXPECT_TRUE(shown.contains(posture.name)) << posture.name;
+}
+
+// What was made for the hand as it was before is not taken for what it is now; who does not say is.
+TEST(RobotGrasps, OfTheHandBeforeItChangedAreRefused) {
+  const auto file = std::filesystem::path(testing::TempDir()) / "prehend_grasps_before.grasps";
+  ASSERT_TRUE(save_robot_grasps(file, barrett(), grasps(), "before"));
+  EXPECT_TRUE(load_robot_grasps(file, barrett(), "before"));
+  EXPECT_TRUE(load_robot_grasps(file, barrett()));
+  const auto refused = load_robot_grasps(file, barrett(), "now");
+  ASSERT_FALSE(refused);
+  EXPECT_THAT(refused.error().message(), testing::HasSubstr("as it was before"));
+  ASSERT_TRUE(save_robot_grasps(file, barrett(), grasps()));
+  EXPECT_TRUE(load_robot_grasps(file, barrett(), "now"));
+  std::filesystem::remove(file);
+}
+
 TEST(RobotGrasps, AreClosedOnTheObjects) {
   std::map<std::string, int> held;
   std::set<GraspType> types;

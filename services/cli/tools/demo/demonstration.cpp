@@ -4,6 +4,7 @@
 
 #include <chrono>
 
+#include "services/cli/tools/demo/chosen_hand.hpp"
 #include "services/cli/tools/demo/grasp_play.hpp"
 
 namespace prehend::cli {
@@ -48,6 +49,7 @@ Expected<std::string> watch(const DemoOptions& options, stage::Stage& stage, Gra
 }  // namespace
 
 Expected<Outcome> demonstrate(const DemoOptions& options, const stage::Progress& progress) {
+  if (const auto trained = train_hand(options); !trained) return tl::unexpected(trained.error());
   auto stage = stage::Stage::create({options.lab, options.timeout, options.keep, progress});
   if (!stage) return tl::unexpected(stage.error());
   GraspPlay play(options, *stage);

@@ -9,6 +9,7 @@
 #include "common/model/catalogue.hpp"
 #include "common/model/hand_model.hpp"
 #include "common/stage/arm.hpp"
+#include "services/cli/tools/demo/chosen_hand.hpp"
 #include "services/cli/tools/demo/free_address.hpp"
 #include "services/cli/tools/demo/setting.hpp"
 
@@ -89,20 +90,15 @@ Expected<void> GraspPlay::look_up_camera() {
   return {};
 }
 
-std::string GraspPlay::hand_setting() const {
-  return in(model::hand_names(), options_.hand)
-             ? options_.hand
-             : absolute(model::hand_directory(options_.hand).string());
-}
-
 std::string GraspPlay::arm_setting() const {
   return options_.arm.find('/') == std::string::npos ? options_.arm : absolute(options_.arm);
 }
 
 void GraspPlay::choose() {
   if (!options_.hand.empty()) {
-    stage_.set("mapping.hand=" + hand_setting());
-    stage_.set("simulation.hand=" + hand_setting());
+    const std::string hand = hand_setting(options_.hand);
+    stage_.set("mapping.hand=" + hand);
+    stage_.set("simulation.hand=" + hand);
     stage_.set("mapping.model=");  // that of the hand
   }
   if (!options_.arm.empty()) stage_.set("robot.arm=" + arm_setting());

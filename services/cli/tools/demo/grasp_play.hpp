@@ -42,8 +42,6 @@ class GraspPlay {
   /// Asks the services what the glove and the camera are that were named.
   Expected<void> look_up();
   Expected<void> look_up_camera();
-  /// Services may run in other folders, where a hand of this one goes by its whole path.
-  std::string hand_setting() const;
   std::string arm_setting() const;
   /// Tells every service of this lab what was chosen.
   void choose();

@@ -21,13 +21,13 @@
 #include "common/service/arguments.hpp"
 #include "common/stage/temporary_folder.hpp"
 #include "services/mapping/files/mapping_model_file.hpp"
-#include "services/mapping/files/model_places.hpp"
 #include "services/mapping/tools/benchmark/external_mapping.hpp"
 #include "services/mapping/tools/benchmark/own_by_messages.hpp"
 #include "services/mapping/tools/benchmark/people.hpp"
 #include "services/mapping/tools/benchmark/take_file.hpp"
 #include "services/mapping/tools/judging/real_reach.hpp"
 #include "services/mapping/tools/judging/summary_json.hpp"
+#include "services/mapping/tools/training/first_use.hpp"
 
 namespace prehend::mapping {
 namespace {
@@ -140,10 +140,11 @@ Expected<Judged> load(const Arguments& arguments, const std::string& name) {
   auto catalogue =
       model::Catalogue::load(share_directory() / "models" / "objects" / "catalogue.toml");
   if (!catalogue) return tl::unexpected(catalogue.error());
-  const ModelPlaces places = model_places(name);
-  auto model = load_mapping_model(places.model, *hand);
+  const auto places = ready_places(name, *hand, Needs::model_and_grasps);
+  if (!places) return tl::unexpected(places.error());
+  auto model = load_mapping_model(places->model, *hand);
   if (!model) return tl::unexpected(model.error());
-  auto grasps = load_robot_grasps(places.grasps, *hand);
+  auto grasps = load_robot_grasps(places->grasps, *hand);
   if (!grasps) return tl::unexpected(grasps.error());
   if (grasps->empty()) return fail("there is no grasp to repeat", hand->name());
   std::vector<BenchmarkTake> takes;

@@ -73,6 +73,8 @@ std::string data_digest(const BenchmarkRequest& request) {
     files.push_back(model::hand_directory(hand) / "hand.toml");
   }
   std::string digests;
+  for (const BenchmarkedHand& hand : request.hands)
+    digests += hand.model.traits().made_for;  // of a user's hand, which lies elsewhere
   for (const std::filesystem::path& file : files)
     digests += proto::digest(read_file(file).value_or(""));
   return proto::digest(digests).substr(0, 12);

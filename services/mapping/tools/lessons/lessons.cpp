@@ -274,6 +274,7 @@ Expected<std::unique_ptr<Lessons>> Lessons::create(service::Shell& shell) {
   TrainingRun run;
   run.catalogue = share_directory() / "models" / "objects" / "catalogue.toml";
   run.grasps = places.grasps;
+  run.closures.made_for = places.made_for;
   run.people.users = static_cast<int>(users);
   // What is installed is not written to.
   if (!fs::exists(run.grasps)) run.grasps = folder_of(config) / (hand->name() + ".grasps");

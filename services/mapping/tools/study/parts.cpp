@@ -6,8 +6,8 @@
 
 #include "common/base/paths.hpp"
 #include "services/mapping/files/mapping_model_file.hpp"
-#include "services/mapping/files/model_places.hpp"
 #include "services/mapping/tools/training/derived_scheme.hpp"
+#include "services/mapping/tools/training/first_use.hpp"
 
 namespace prehend::mapping {
 
@@ -20,14 +20,15 @@ Expected<Parts> load_parts(const std::vector<std::string>& hands, bool with_mode
     if (parts.hands.contains(name)) continue;  // figures and benchmark name the same ones
     auto hand = model::HandModel::load(model::hand_directory(name));
     if (!hand) return tl::unexpected(hand.error());
-    const ModelPlaces places = model_places(name);
-    auto scheme = load_or_derive(places.scheme, *hand);
+    const auto places = ready_places(name, *hand, Needs::model_and_grasps);
+    if (!places) return tl::unexpected(places.error());
+    auto scheme = load_or_derive(places->scheme, *hand);
     if (!scheme) return tl::unexpected(scheme.error());
-    auto grasps = load_robot_grasps(places.grasps, *hand);
+    auto grasps = load_robot_grasps(places->grasps, *hand);
     if (!grasps) return tl::unexpected(grasps.error());
     std::optional<MappingModel> model;
     if (with_models) {
-      auto loaded = load_mapping_model(places.model, *hand);
+      auto loaded = load_mapping_model(places->model, *hand);
       if (!loaded) return tl::unexpected(loaded.error());
       model = std::move(*loaded);
     }

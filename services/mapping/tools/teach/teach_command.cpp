@@ -12,6 +12,7 @@
 #include "services/mapping/tools/teach/teach_recording.hpp"
 #include "services/mapping/tools/teach/teach_session.hpp"
 #include "services/mapping/tools/training/derived_scheme.hpp"
+#include "services/mapping/tools/training/first_use.hpp"
 #include "services/mapping/tools/training/teach.hpp"
 
 namespace prehend::mapping {
@@ -75,6 +76,15 @@ Expected<std::multimap<std::string, double>> parse_labels(const std::vector<std:
   return labels;
 }
 
+Expected<std::vector<RobotGrasp>> held_grasps(const std::string& name,
+                                              const model::HandModel& hand) {
+  const auto ready = ready_places(name, hand, Needs::model_and_grasps);
+  if (!ready) return tl::unexpected(ready.error());
+  auto grasps = load_robot_grasps(ready->grasps, hand);
+  if (grasps) std::erase_if(*grasps, [](const RobotGrasp& grasp) { return !grasp.held; });
+  return grasps;
+}
+
 int run(Arguments arguments) {
   const auto broken = [](const Error& error) { return service::complain(error, exit_broken); };
   const auto labels = parse_labels(arguments.labels);
@@ -94,10 +104,9 @@ int run(Arguments arguments) {
   if (!scheme) return broken(scheme.error());
   std::vector<RobotGrasp> grasps;
   if (arguments.grasps) {
-    auto loaded = load_robot_grasps(places.grasps, *hand);
-    if (!loaded) return broken(loaded.error());
-    for (RobotGrasp& grasp : *loaded)
-      if (grasp.held) grasps.push_back(std::move(grasp));
+    auto held = held_grasps(arguments.hand, *hand);
+    if (!held) return broken(held.error());
+    grasps = std::move(*held);
   }
   const auto asked =
       curriculum(*hand, *scheme, arguments.user, arguments.takes, arguments.postures, grasps);

@@ -16,6 +16,7 @@
 #include "services/mapping/files/mapping_model_file.hpp"
 #include "services/mapping/files/model_places.hpp"
 #include "services/mapping/tools/training/derived_scheme.hpp"
+#include "services/mapping/tools/training/first_use.hpp"
 #include "services/mapping/tools/training/training_run.hpp"
 
 namespace prehend::mapping {
@@ -60,10 +61,11 @@ nlohmann::json describe(const MappingModel& model, const MappingNetwork& network
 
 struct Arguments {
   std::string hand = model::lab_hand(), scheme, catalogue, grasps, out, set_file;
+  std::string made_for;  // see ModelPlaces
   std::vector<std::string> taught;
   SetOptions people;
   TrainerOptions trainer;
-  bool json = false, close_again = false;
+  bool json = false, close_again = false, if_needed = false;
 };
 
 void add_people(CLI::App& app, SetOptions& people) {
@@ -126,7 +128,10 @@ void fill_in_defaults(Arguments& arguments) {
   if (arguments.catalogue.empty())
     arguments.catalogue = share_directory() / "models" / "objects" / "catalogue.toml";
   const ModelPlaces places = model_places(arguments.hand);
-  if (arguments.grasps.empty()) arguments.grasps = places.grasps;
+  if (arguments.grasps.empty()) {
+    arguments.grasps = places.grasps;
+    arguments.made_for = places.made_for;
+  }
   if (arguments.out.empty()) arguments.out = places.model;
 }
 
@@ -159,6 +164,7 @@ Expected<nlohmann::json> train(const Arguments& arguments) {
   const TrainingRun run{.catalogue = arguments.catalogue,
                         .grasps = arguments.grasps,
                         .close_again = arguments.close_again,
+                        .closures = {.made_for = arguments.made_for},
                         .people = arguments.people,
                         .trainer = arguments.trainer,
                         .taught = {arguments.taught.begin(), arguments.taught.end()},
@@ -187,6 +193,24 @@ Expected<nlohmann::json> train(const Arguments& arguments) {
   return document;
 }
 
+/// Nothing where there is a model that fits the hand as it is now.
+Expected<nlohmann::json> train_if_needed(const std::string& name) {
+  const auto hand = model::HandModel::load(model::hand_directory(name));
+  if (!hand) return tl::unexpected(hand.error());
+  const auto places = ready_places(name, *hand, Needs::model);
+  if (!places) return tl::unexpected(places.error());
+  return nlohmann::json{{"hand", name}, {"model", places->model.string()}};
+}
+
+int answer(const Expected<nlohmann::json>& document, bool json, bool told) {
+  if (!document) return tool::complain(document.error(), exit_broken);
+  if (json)
+    std::cout << document->dump(2) << '\n';
+  else if (!told)
+    print(*document);
+  return exit_done;
+}
+
 }  // namespace
 
 int train_command(const std::vector<std::string>& texts) {
@@ -197,15 +221,13 @@ int train_command(const std::vector<std::string>& texts) {
   add_people(app, arguments.people);
   add_trainer(app, arguments.trainer);
   app.add_flag("--json", arguments.json, "print the outcome as one JSON document");
+  app.add_flag("--if-needed", arguments.if_needed,
+               "only if there is no model of the hand as it is now, and in seconds: what others do "
+               "on first use; of the other options only --hand counts");
   if (const auto code = tool::parse(app, texts)) return *code;
+  if (arguments.if_needed) return answer(train_if_needed(arguments.hand), arguments.json, true);
   fill_in_defaults(arguments);
-  const auto document = train(arguments);
-  if (!document) return tool::complain(document.error(), exit_broken);
-  if (arguments.json)
-    std::cout << document->dump(2) << '\n';
-  else
-    print(*document);
-  return exit_done;
+  return answer(train(arguments), arguments.json, false);
 }
 
 }  // namespace prehend::mapping

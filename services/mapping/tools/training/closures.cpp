@@ -9,7 +9,8 @@ namespace prehend::mapping {
 
 Expected<std::vector<RobotGrasp>> close_and_save(const model::HandModel& hand, const Scheme& scheme,
                                                  const std::filesystem::path& catalogue_file,
-                                                 const std::filesystem::path& grasps_file) {
+                                                 const std::filesystem::path& grasps_file,
+                                                 const ClosureOptions& options) {
   const auto catalogue = model::Catalogue::load(catalogue_file);
   if (!catalogue) return tl::unexpected(catalogue.error());
   prehend::Progress progress("closing the hand");
@@ -18,9 +19,13 @@ Expected<std::vector<RobotGrasp>> close_and_save(const model::HandModel& hand, c
       [&](std::size_t count, const auto& work) {
         share_work(count, 0, work, [&](std::size_t done) { progress.show(done, count); });
       },
-      [](const Error& error) { log::warning("{}", error.message()); });
-  if (grasps.empty()) return fail("the hand can grasp nothing of it", catalogue_file.string());
-  if (auto saved = save_robot_grasps(grasps_file, hand, grasps); !saved)
+      [&](const Error& error) {
+        if (options.warns) log::warning("{}", error.message());
+      },
+      options.trials);
+  if (grasps.empty())
+    log::warning("{}: the hand can grasp nothing of it; it only imitates", catalogue_file.string());
+  if (auto saved = save_robot_grasps(grasps_file, hand, grasps, options.made_for); !saved)
     return tl::unexpected(saved.error());
   return grasps;
 }

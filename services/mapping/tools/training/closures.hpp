@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 #include <vector>
 
 #include "common/base/error.hpp"
@@ -9,10 +10,17 @@
 
 namespace prehend::mapping {
 
+struct ClosureOptions {
+  Trials trials;
+  std::string made_for;  // see ModelPlaces
+  bool warns = true;     // of each grasp that is left out, and why
+};
+
 /// Closes the hand on every object of a catalogue file, which takes a minute, and saves the grasps.
-/// Shows its progress; warns of each grasp that is left out, and why.
+/// Shows its progress.
 Expected<std::vector<RobotGrasp>> close_and_save(const model::HandModel& hand, const Scheme& scheme,
                                                  const std::filesystem::path& catalogue_file,
-                                                 const std::filesystem::path& grasps_file);
+                                                 const std::filesystem::path& grasps_file,
+                                                 const ClosureOptions& options = {});
 
 }  // namespace prehend::mapping

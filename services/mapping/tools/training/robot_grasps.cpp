@@ -21,7 +21,8 @@ using Eigen::Vector3d;
 constexpr std::string_view kind = "robot-grasps";
 constexpr double max_closing = 3;                // s, until the fingers must have stopped
 constexpr double aside = 0.012, nearer = 0.015;  // m, where else the hand is tried
-constexpr double unsure = 0.008;  // m, beside its place where a grasp shall hold as well
+constexpr double unsure = 0.008;    // m, beside its place where a grasp shall hold as well
+constexpr double short_hold = 0.5;  // s: drops what it drops at once
 
 template <class Repeated>
 Eigen::VectorXd to_vector(const Repeated& values) {
@@ -78,10 +79,9 @@ bool above_table(const model::HandModel& hand, const Pose& X_OB, const Eigen::Ve
 
 /// Held on the table. The hand stands `beside` its place, m, in the direction in which it closes.
 bool survives(const model::HandModel& hand, const Eigen::VectorXd& open,
-              const grasping::Body& object, const RobotGrasp& grasp, double beside) {
+              const grasping::Body& object, const RobotGrasp& grasp, double beside,
+              const grasping::HoldOptions& hold) {
   const Pose X_OG = grasp.X_OR() * Eigen::Translation3d(0, beside, 0);
-  grasping::HoldOptions hold{.shake = true};
-  if (beside != 0) hold.hold = 0.5;  // drops what it drops at once
   return grasping::held_on_table(hand, object, {X_OG, open, grasp.dof, grasp.closing}, hold);
 }
 
@@ -159,14 +159,22 @@ std::vector<Vector3d> places_to_try() {
   return {{0, 0, 0}, {0, aside, 0}, {0, -aside, 0}, {0, 0, nearer}, {0, 0, -nearer}};
 }
 
+Trials Trials::quick() {
+  Trials trials;
+  trials.hold = 1;
+  trials.shake = trials.beside = trials.each_type = false;
+  return trials;
+}
+
 Expected<RobotGrasp> robot_grasp(const model::HandModel& hand, const Scheme& scheme,
                                  const model::CatalogueObject& object, const Pose& X_OG,
-                                 GraspType type, const std::vector<Vector3d>& places) {
+                                 GraspType type, const Trials& trials) {
   const grasping::Body body{object.name, object.shape, object.mass, object.material, {}};
   Error last{"no preshape is for this grasp", object.name, ""};
   std::optional<RobotGrasp> best;
   int most = -1;
-  for (const Vector3d& place : places) {
+  const int enough = trials.beside ? 3 : 1;
+  for (const Vector3d& place : trials.places) {
     std::vector<RobotGrasp> closed;
     for (const Preshape& preshape : scheme.preshapes) {
       if (std::find(preshape.types.begin(), preshape.types.end(), type) == preshape.types.end())
@@ -186,15 +194,18 @@ Expected<RobotGrasp> robot_grasp(const model::HandModel& hand, const Scheme& sch
       return a.epsilon > b.epsilon;
     });
     for (RobotGrasp& candidate : closed) {
-      candidate.held = survives(hand, scheme.open.robot, body, candidate, 0);
+      const auto survives_at = [&](double beside, double hold) {
+        return survives(hand, scheme.open.robot, body, candidate, beside,
+                        {.hold = hold, .shake = trials.shake});
+      };
+      candidate.held = survives_at(0, trials.hold);
       int survived = candidate.held ? 1 : 0;
-      if (candidate.held)
-        for (const double beside : {unsure, -unsure})
-          survived += survives(hand, scheme.open.robot, body, candidate, beside);
+      if (candidate.held && trials.beside)
+        for (const double beside : {unsure, -unsure}) survived += survives_at(beside, short_hold);
       if (survived <= most) continue;
       most = survived;
       best = std::move(candidate);
-      if (most == 3) return *best;
+      if (most == enough) return *best;
     }
   }
   if (!best) return tl::unexpected(last);
@@ -204,7 +215,8 @@ Expected<RobotGrasp> robot_grasp(const model::HandModel& hand, const Scheme& sch
 std::vector<RobotGrasp> close_on_catalogue(const model::HandModel& hand, const Scheme& scheme,
                                            const model::Catalogue& catalogue,
                                            const grasping::ForEach& for_each,
-                                           const std::function<void(const Error&)>& report) {
+                                           const std::function<void(const Error&)>& report,
+                                           const Trials& trials) {
   struct Task {
     const model::CatalogueObject* object;
     Pose X_OG;
@@ -223,10 +235,11 @@ std::vector<RobotGrasp> close_on_catalogue(const model::HandModel& hand, const S
   }
   for_each(approached.size(), [&](std::size_t i) {
     // Until its fingers close, a hand cannot know the type: all of them from one place.
-    std::vector<Vector3d> from = places_to_try();
+    Trials from = trials;
     for (Task& task : approached[i]) {
       task.grasp = robot_grasp(hand, scheme, *task.object, task.X_OG, task.type, from);
-      if (*task.grasp && (*task.grasp)->held) from = {(*task.grasp)->p_GR};
+      if (*task.grasp && ((*task.grasp)->held || !from.each_type))
+        from.places = {(*task.grasp)->p_GR};
     }
   });
   std::vector<RobotGrasp> grasps;
@@ -242,10 +255,11 @@ std::vector<RobotGrasp> close_on_catalogue(const model::HandModel& hand, const S
   return grasps;
 }
 
-std::string encode_robot_grasps(const model::HandModel& hand,
-                                const std::vector<RobotGrasp>& grasps) {
+std::string encode_robot_grasps(const model::HandModel& hand, const std::vector<RobotGrasp>& grasps,
+                                const std::string& made_for) {
   messages::RobotGrasps message;
   message.set_hand(hand.name());
+  message.set_made_for(made_for);
   for (const model::HandDof& dof : hand.dofs()) message.add_dof_names(dof.name);
   for (const RobotGrasp& grasp : grasps) {
     messages::RobotGrasp& to = *message.add_grasps();
@@ -267,7 +281,8 @@ std::string encode_robot_grasps(const model::HandModel& hand,
 }
 
 Expected<std::vector<RobotGrasp>> decode_robot_grasps(const std::string& bytes,
-                                                      const model::HandModel& hand) {
+                                                      const model::HandModel& hand,
+                                                      const std::string& made_for) {
   messages::RobotGrasps message;
   if (!message.ParseFromString(bytes)) return fail("holds no grasps");
   bool same = message.dof_names_size() == static_cast<int>(hand.dofs().size());
@@ -276,6 +291,8 @@ Expected<std::vector<RobotGrasp>> decode_robot_grasps(const std::string& bytes,
   if (message.hand() != hand.name() || !same)
     return fail(fmt::format("holds grasps of the hand «{}», not of this «{}»", message.hand(),
                             hand.name()));
+  if (!made_for.empty() && !message.made_for().empty() && message.made_for() != made_for)
+    return fail(fmt::format("holds grasps of the hand «{}» as it was before", hand.name()));
   std::vector<RobotGrasp> grasps;
   for (const messages::RobotGrasp& from : message.grasps()) {
     auto grasp = read(from, hand);
@@ -286,18 +303,20 @@ Expected<std::vector<RobotGrasp>> decode_robot_grasps(const std::string& bytes,
 }
 
 Expected<void> save_robot_grasps(const std::filesystem::path& file, const model::HandModel& hand,
-                                 const std::vector<RobotGrasp>& grasps) {
-  return proto::write_sealed(file, kind, encode_robot_grasps(hand, grasps));
+                                 const std::vector<RobotGrasp>& grasps,
+                                 const std::string& made_for) {
+  return proto::write_sealed(file, kind, encode_robot_grasps(hand, grasps, made_for));
 }
 
 Expected<std::vector<RobotGrasp>> load_robot_grasps(const std::filesystem::path& file,
-                                                    const model::HandModel& hand) {
+                                                    const model::HandModel& hand,
+                                                    const std::string& made_for) {
   auto grasps = proto::read_sealed(file, kind).and_then([&](const std::string& bytes) {
-    return decode_robot_grasps(bytes, hand);
+    return decode_robot_grasps(bytes, hand, made_for);
   });
   if (!grasps)
     return fail(grasps.error().what, file.string(),
-                "make them again: prehend train --hand " + hand.name());
+                "make them again: prehend train --close --hand " + hand.name());
   return grasps;
 }
 

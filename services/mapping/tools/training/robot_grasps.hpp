@@ -48,34 +48,49 @@ std::vector<GraspType> types_from(const Pose& X_OG);
 /// corrected.
 std::vector<Eigen::Vector3d> places_to_try();
 
+/// How thoroughly a hand is tried on an object.
+struct Trials {
+  std::vector<Eigen::Vector3d> places = places_to_try();
+  double hold = 3;        // s, that a grasp is held up where it was asked for
+  bool shake = true;      // it is also shaken
+  bool beside = true;     // it also holds 8 mm to either side
+  bool each_type = true;  // what was not held in one way of closing is tried everywhere in the next
+  /// Takes a fraction of the time: for a first use, which somebody waits for.
+  static Trials quick();
+};
+
 /// Closes the hand in Bullet on the object where it stands, with every preshape of the scheme for
-/// this type, from the first of these places where a grasp is found that, closed on the table as
+/// this type, from the first of the places where a grasp is found that, closed on the table as
 /// the mapping closes it, neither shoves nor topples the object and holds when it is lifted and
 /// shaken, and also 8 mm to either side; of several the one with the greatest epsilon. If there is
 /// none, the one that survives in most of these. Fails when the fingers find no two contacts from
 /// anywhere without reaching into the table.
 Expected<RobotGrasp> robot_grasp(const model::HandModel& hand, const Scheme& scheme,
                                  const model::CatalogueObject& object, const Pose& X_OG,
-                                 GraspType type,
-                                 const std::vector<Eigen::Vector3d>& places = places_to_try());
+                                 GraspType type, const Trials& trials = {});
 
 /// The same on every object of the catalogue, from every approach, with every type. What the hand
 /// cannot grasp is left out, and `report` is told why. The same however the work is divided.
 std::vector<RobotGrasp> close_on_catalogue(const model::HandModel& hand, const Scheme& scheme,
                                            const model::Catalogue& catalogue,
                                            const grasping::ForEach& for_each,
-                                           const std::function<void(const Error&)>& report);
+                                           const std::function<void(const Error&)>& report,
+                                           const Trials& trials = {});
 
-/// As bytes within a file. Decoding refuses what was made for another hand.
-std::string encode_robot_grasps(const model::HandModel& hand,
-                                const std::vector<RobotGrasp>& grasps);
+/// As bytes within a file. Decoding refuses what was made for another hand, or, where both sides
+/// say for which (ModelPlaces::made_for), for this hand as it was before.
+std::string encode_robot_grasps(const model::HandModel& hand, const std::vector<RobotGrasp>& grasps,
+                                const std::string& made_for = {});
 Expected<std::vector<RobotGrasp>> decode_robot_grasps(const std::string& bytes,
-                                                      const model::HandModel& hand);
+                                                      const model::HandModel& hand,
+                                                      const std::string& made_for = {});
 /// As a sealed file of kind «robot-grasps», so that nobody needs to close the hand again. Loading
 /// refuses what is damaged or was made for another hand.
 Expected<void> save_robot_grasps(const std::filesystem::path& file, const model::HandModel& hand,
-                                 const std::vector<RobotGrasp>& grasps);
+                                 const std::vector<RobotGrasp>& grasps,
+                                 const std::string& made_for = {});
 Expected<std::vector<RobotGrasp>> load_robot_grasps(const std::filesystem::path& file,
-                                                    const model::HandModel& hand);
+                                                    const model::HandModel& hand,
+                                                    const std::string& made_for = {});
 
 }  // namespace prehend::mapping

@@ -185,18 +185,21 @@ learning::TrainingSet demonstrate(const model::HandModel& hand, const Scheme& sc
       shown.pair.user = demonstrator.user();
       shown.pair.take = static_cast<unsigned>(take);
       shown.pair.source = "synthetic";
+      const auto show_posture = [&](const SchemePosture& posture) {
+        demonstrator.rest(!spread_says);
+        shown.show(posture.name, demonstrator.repeat(posture.human), posture.splay,
+                   1 - posture.human.front(), posture.robot, 1.0, false);
+      };
+      if (grasps.empty())
+        for (const SchemePosture& posture : postures) show_posture(posture);
       for (const std::size_t g : drawn(grasps.size(), options.grasps, random)) {
         const RobotGrasp& grasp = grasps[g];
         shown.pair.object = grasp.object;
         shown.pair.shape = model::to_string(grasp.shape.kind);
         shown.pair.size = grasp.shape.size;
         shown.pair.X_OG = grasp.X_OG;
-        for (int i = 0; i < options.beside; ++i) {
-          const SchemePosture& posture = postures[random.index(postures.size())];
-          demonstrator.rest(!spread_says);
-          shown.show(posture.name, demonstrator.repeat(posture.human), posture.splay,
-                     1 - posture.human.front(), posture.robot, 1.0, false);
-        }
+        for (int i = 0; i < options.beside; ++i)
+          show_posture(postures[random.index(postures.size())]);
         demonstrator.rest(!spread_says);
         // None: this person's hand does not fit around it.
         if (const auto human = demonstrator.reach(grasp.shape, grasp.X_OG, grasp.type))
@@ -286,7 +289,7 @@ Expected<MappingModel> train_mapping(const model::HandModel& hand, const Scheme&
   ModelTraits traits{scheme.name,        proto::digest(learning::serialise(sets.training)),
                      options.size_input, scheme.lower,
                      scheme.upper,       options.precision,
-                     options.places};
+                     options.places,     options.made_for};
   return MappingModel::create(hand, std::move(traits), std::move(networks));
 }
 

@@ -41,7 +41,8 @@ struct SetOptions {
 };
 
 /// What synthetic people show: in each take some grasps, and with each some of the scheme's
-/// postures (which have nothing to do with the object, but its network must know them). Between the
+/// postures (which have nothing to do with the object, but its network must know them); of a hand
+/// that grasps nothing all postures. Between the
 /// open hand (the scheme's first posture) and each of them lie pairs in proportion: a network that
 /// knows the ends alone jumps somewhere between them.
 learning::TrainingSet demonstrate(const model::HandModel& hand, const Scheme& scheme,
@@ -65,6 +66,7 @@ struct TrainerOptions {
   learning::ScalingKind scaling = learning::ScalingKind::each_feature;  // of the inputs
   Eigen::VectorXd precision;                                            // see ModelTraits
   std::vector<PalmOffset> places;                                       // see palm_offsets()
+  std::string made_for;                                                 // see ModelTraits
 };
 
 /// A set for each purpose; their users are disjoint.

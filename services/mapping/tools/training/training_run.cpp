@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "services/mapping/tools/training/closures.hpp"
+#include "common/base/log.hpp"
 #include "services/mapping/tools/training/teach.hpp"
 
 namespace prehend::mapping {
@@ -48,14 +48,23 @@ Expected<Sets> make_sets(const TrainingRun& run, const model::HandModel& hand, c
   return sets;
 }
 
+/// Those of the file, unless there is none or, of a user's hand, none that fits.
+Expected<std::vector<RobotGrasp>> grasps_of(const TrainingRun& run, const model::HandModel& hand,
+                                            const Scheme& scheme) {
+  if (!run.close_again && std::filesystem::exists(run.grasps)) {
+    auto loaded = load_robot_grasps(run.grasps, hand, run.closures.made_for);
+    if (loaded || run.closures.made_for.empty()) return loaded;
+    log::info("{}: {}; the hand is closed anew", run.grasps.string(), loaded.error().what);
+  }
+  return close_and_save(hand, scheme, run.catalogue, run.grasps, run.closures);
+}
+
 }  // namespace
 
 Expected<TrainedMapping> run_training(const TrainingRun& run, const model::HandModel& hand,
                                       const Scheme& scheme, const grasping::ForEach& for_each,
                                       const Progress& progress) {
-  auto grasps = !run.close_again && std::filesystem::exists(run.grasps)
-                    ? load_robot_grasps(run.grasps, hand)
-                    : close_and_save(hand, scheme, run.catalogue, run.grasps);
+  auto grasps = grasps_of(run, hand, scheme);
   if (!grasps) return tl::unexpected(grasps.error());
   auto sets = make_sets(run, hand, scheme, *grasps);
   if (!sets) return tl::unexpected(sets.error());
@@ -66,6 +75,7 @@ Expected<TrainedMapping> run_training(const TrainingRun& run, const model::HandM
   trainer.network.seed = static_cast<std::uint32_t>(run.people.seed);
   trainer.precision = precision_discriminant(*catalogue, hand.reach(), run.people);
   trainer.places = palm_offsets(*grasps);
+  trainer.made_for = run.closures.made_for;
   auto model = train_mapping(hand, scheme, *sets, trainer, for_each, progress);
   if (!model) return tl::unexpected(model.error());
   return TrainedMapping{std::move(*grasps), std::move(*sets), std::move(*model)};

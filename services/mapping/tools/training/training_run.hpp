@@ -5,6 +5,7 @@
 
 #include "common/base/error.hpp"
 #include "services/mapping/core/mapping_model.hpp"
+#include "services/mapping/tools/training/closures.hpp"
 #include "services/mapping/tools/training/trainer.hpp"
 
 namespace prehend::mapping {
@@ -14,6 +15,7 @@ struct TrainingRun {
   std::filesystem::path catalogue;
   std::filesystem::path grasps;  // the robot's: read, or made if missing
   bool close_again = false;      // make them, though the file is there
+  ClosureOptions closures;       // of a made_for: what was made for another hand is made anew
   SetOptions people;
   TrainerOptions trainer;                     // its seed, precision and places are worked out
   std::vector<std::filesystem::path> taught;  // sets of `prehend teach`

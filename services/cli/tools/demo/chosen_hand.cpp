@@ -1,0 +1,38 @@
+#include "services/cli/tools/demo/chosen_hand.hpp"
+
+#include <algorithm>
+#include <filesystem>
+
+#include "common/model/hand_model.hpp"
+#include "common/stage/first_training.hpp"
+
+namespace prehend::cli {
+namespace {
+
+bool is_ours(const std::string& hand) {
+  const auto names = model::hand_names();
+  return std::find(names.begin(), names.end(), hand) != names.end();
+}
+
+}  // namespace
+
+std::string hand_setting(const std::string& hand) {
+  if (hand.empty() || is_ours(hand)) return hand;
+  return std::filesystem::absolute(model::hand_directory(hand)).string();
+}
+
+Expected<void> train_hand(const DemoOptions& options) {
+  const auto& without = options.without;
+  if (options.attach || std::find(without.begin(), without.end(), "mapping") != without.end())
+    return {};
+  std::string hand = hand_setting(options.hand);
+  if (hand.empty()) {
+    const auto config = options.lab.load();
+    if (!config) return wrong_use(config.error().what, config.error().where, config.error().hint);
+    if (!config->path("mapping.model").empty()) return {};
+    hand = config->text("mapping.hand");
+  }
+  return hand.empty() || is_ours(hand) ? Expected<void>() : stage::train_if_needed(hand);
+}
+
+}  // namespace prehend::cli

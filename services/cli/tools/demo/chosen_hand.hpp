@@ -1,0 +1,17 @@
+#pragma once
+
+#include <string>
+
+#include "services/cli/tools/demo/options.hpp"
+
+namespace prehend::cli {
+
+/// What services are told of --hand: they may run in other folders, where a hand of this one goes
+/// by its whole path.
+std::string hand_setting(const std::string& hand);
+
+/// Has a hand that does not come with us trained, where it was not yet: before the demonstration
+/// begins, whose time is short.
+Expected<void> train_hand(const DemoOptions& options);
+
+}  // namespace prehend::cli
