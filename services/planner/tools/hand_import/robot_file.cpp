@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 
 #include "common/base/file_text.hpp"
+#include "services/planner/tools/hand_import/mjcf.hpp"
 #include "services/planner/tools/hand_import/xacro.hpp"
 
 namespace prehend::planner {
@@ -43,7 +44,15 @@ Expected<Robot> read_robot_file(const std::filesystem::path& file,
   auto text = read_file(file);
   if (text && is_xacro(*text)) text = expand_xacro(file, options.xacro);
   if (!text) return tl::unexpected(text.error());
-  auto robot = read_robot(*text);
+  // MuJoCo's files name those that they include by their place beside the outermost.
+  const IncludeReader beside = [&](const std::string& name) {
+    const auto place = std::filesystem::absolute(file).parent_path() / name;
+    std::error_code none;
+    if (!std::filesystem::is_regular_file(place, none))
+      return Expected<std::string>(fail("there is no such file", place.string()));
+    return read_file(place);
+  };
+  auto robot = is_mjcf(*text) ? read_mjcf(*text, beside) : read_robot(*text);
   if (!robot)
     robot.error().where =
         file.string() + (robot.error().where.empty() ? "" : ": " + robot.error().where);
