@@ -68,7 +68,7 @@ bool make(const std::string& text) {
 int main(int argc, char** argv) {
   console_bridge::noOutputHandler();
   fuzz::Fuzzer fuzzer;
-  fuzzer.seeds = {test::mjcf_gripper(), test::mjcf_three_fingers()};
+  fuzzer.seeds = {test::mjcf_gripper(), test::mjcf_three_fingers(), test::mjcf_linkages()};
   for (const fuzz::HandFiles& hand : fuzz::all_hands()) {
     const auto robot = planner::read_robot(hand.urdf);
     fuzz::require(robot.has_value(), "a hand of the lab cannot be read");

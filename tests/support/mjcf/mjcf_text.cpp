@@ -88,6 +88,51 @@ constexpr const char* three_fingers = R"(<mujoco>
   </actuator>
 </mujoco>)";
 
+constexpr const char* linkages = R"(<mujoco model="linkages">
+  <compiler angle="radian"/>
+  <default>
+    <joint axis="1 0 0"/>
+    <default class="crank"><joint range="-.4 .5"/></default>
+    <default class="toe"><joint range="-.6 0" stiffness=".05" springref="1"/></default>
+    <geom type="box" size=".008 .004 .02"/>
+  </default>
+  <worldbody>
+    <body name="palm">
+      <geom size=".03 .05 .015"/>
+      <body name="left" pos="0 .03 .015">
+        <body name="left_crank">
+          <joint name="left_crank" class="crank"/><geom pos="0 0 .02"/>
+          <body name="left_coupler" pos="0 0 .045">
+            <joint name="left_coupler"/><geom pos="0 -.01 .03" size=".01 .004 .025"/>
+            <body name="left_toe" pos="0 -.01 0">
+              <joint name="left_toe" class="toe"/><geom pos="0 -.005 0" size=".008 .004 .004"/>
+            </body>
+          </body>
+        </body>
+        <body name="left_rocker" pos="0 -.02 0"><joint name="left_rocker"/><geom pos="0 0 .02"/></body>
+      </body>
+      <body name="right" pos="0 -.03 .015" euler="0 0 3.141592653589793">
+        <body name="right_crank">
+          <joint name="right_crank" class="crank"/><geom pos="0 0 .02"/>
+          <body name="right_coupler" pos="0 0 .045">
+            <joint name="right_coupler"/><geom pos="0 -.01 .03" size=".01 .004 .025"/>
+            <body name="right_toe" pos="0 -.01 0">
+              <joint name="right_toe" class="toe"/><geom pos="0 -.005 0" size=".008 .004 .004"/>
+            </body>
+          </body>
+        </body>
+        <body name="right_rocker" pos="0 -.02 0"><joint name="right_rocker"/><geom pos="0 0 .02"/></body>
+      </body>
+    </body>
+  </worldbody>
+  <equality>
+    <connect body1="left_toe" body2="left_rocker" anchor="0 -.01 0"/>
+    <connect body1="right_toe" body2="right_rocker" anchor="0 -.01 0"/>
+    <joint joint1="right_crank" joint2="left_crank"/>
+  </equality>
+  <actuator><position joint="left_crank" kp="20" ctrlrange="-.4 .5"/></actuator>
+</mujoco>)";
+
 class Writer {
  public:
   Writer(const Robot& robot, const MjcfStyle& style) : robot_(robot), style_(style) {
@@ -223,6 +268,10 @@ std::string mjcf_gripper() {
 
 std::string mjcf_three_fingers() {
   return three_fingers;
+}
+
+std::string mjcf_linkages() {
+  return linkages;
 }
 
 std::string mjcf_of(const planner::Robot& robot, const MjcfStyle& style) {

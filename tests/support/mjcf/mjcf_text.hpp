@@ -24,6 +24,11 @@ std::string mjcf_gripper();
 /// tip.obj.
 std::string mjcf_three_fingers();
 
+/// Two fingers, each a parallelogram: the crank is driven, coupler and rocker meet by <connect>,
+/// but for a toe of the coupler that a spring presses against its stop. The couplers carry the
+/// pads.
+std::string mjcf_linkages();
+
 /// X_LN: N: the frame of a body that is moved.
 Pose moved_by();
 

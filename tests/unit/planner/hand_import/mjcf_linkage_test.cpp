@@ -4,8 +4,10 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include "services/planner/tools/hand_import/make_hand.hpp"
 #include "services/planner/tools/hand_import/mjcf.hpp"
 #include "services/planner/tools/hand_import/tree.hpp"
+#include "tests/support/mjcf/mjcf_text.hpp"
 
 namespace {
 
@@ -73,6 +75,31 @@ TEST(MjcfLinkage, ASpringPressesAJointAgainstItsStop) {
   const planner::Robot robot = read(text);
   expect_parallelogram(robot);
   EXPECT_FALSE(robot.find_joint("bend")->moves());
+}
+
+// One motor moves all of it; the pads of the couplers stay upright as they close.
+TEST(MjcfLinkage, BecomesAGripper) {
+  const planner::Robot robot = read(test::mjcf_linkages());
+  const auto none = [](const planner::Solid&) -> Expected<std::vector<Eigen::Vector3d>> {
+    return fail("is not there");
+  };
+  const auto hand = planner::make_hand(robot, "linkages", none);
+  ASSERT_TRUE(hand) << hand.error().message();
+  ASSERT_EQ(hand->model.dofs().size(), 1u);
+  EXPECT_EQ(hand->model.fingertips().size(), 2u);
+  EXPECT_FALSE(robot.find_joint("left_toe")->moves());
+  const planner::Tree tree(robot);
+  for (const double crank : {-0.4, 0.0, 0.5}) {
+    std::vector<double> values;
+    for (std::size_t i = 0; i < robot.joints.size(); ++i) {
+      const auto leader = planner::leader_of(robot, i);
+      values.push_back(leader ? leader->multiplier * crank + leader->offset : 0);
+      if (robot.joints[i].name == "left_crank") values.back() = crank;
+    }
+    const auto X = tree.poses("palm", values);
+    for (const std::string side : {"left", "right"})
+      EXPECT_GT(X.at(side + "_coupler").linear()(2, 2), 0.9999) << side << " at " << crank;
+  }
 }
 
 // Without a motor nobody leads; a motor at each end of a loop that has no freedom left for both.
