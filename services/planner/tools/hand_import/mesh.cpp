@@ -8,6 +8,8 @@
 #include <algorithm>
 #include <assimp/Importer.hpp>
 #include <fstream>
+#include <map>
+#include <memory>
 #include <numbers>
 
 namespace prehend::planner {
@@ -74,8 +76,15 @@ Eigen::Matrix3d principal_axes(const std::vector<Vector3d>& points) {
 }  // namespace
 
 MeshReader mesh_files(const path& robot_file, const Packages& packages) {
-  return [robot_file, packages](const Solid& solid) -> Expected<std::vector<Vector3d>> {
-    const auto file = find_mesh(solid, robot_file, packages);
+  // Places are looked for once: folders of others are large, and some meshes are in none of them.
+  using Places = std::map<std::pair<std::string, std::string>, Expected<path>>;
+  const auto places = std::make_shared<Places>();
+  return [=](const Solid& solid) -> Expected<std::vector<Vector3d>> {
+    const std::pair name(solid.mesh_folder, solid.mesh);
+    auto known = places->find(name);
+    if (known == places->end())
+      known = places->emplace(name, find_mesh(solid, robot_file, packages)).first;
+    const Expected<path>& file = known->second;
     if (!file) return tl::unexpected(file.error());
     auto points = read_mesh(*file);
     if (points)

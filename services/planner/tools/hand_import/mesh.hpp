@@ -10,6 +10,7 @@
 namespace prehend::planner {
 
 /// Vertices of a solid's mesh in its own frame S, m (scaled). Fails where there is none to read.
+/// One thread at a time.
 using MeshReader = std::function<Expected<std::vector<Eigen::Vector3d>>(const Solid&)>;
 
 /// Reads STL, OBJ, DAE and whatever else assimp knows, from where find_mesh() finds it. Vertices

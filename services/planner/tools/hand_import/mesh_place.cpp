@@ -17,6 +17,7 @@ using std::filesystem::path;
 
 constexpr std::size_t searched_entries = 20000;  // of a folder's tree
 constexpr int searched_depth = 8;
+constexpr std::size_t kept_folders = 16;  // the last ones of a name on somebody's computer
 constexpr std::size_t told_places = 6;
 
 /// A name of a mesh, taken apart.
@@ -150,7 +151,8 @@ class Search {
   void offer_foreign(const path& file) {
     path rest;
     std::vector<std::pair<std::string, path>> ends;
-    for (path at = file; at.has_relative_path(); at = at.parent_path()) {
+    for (path at = file; at.has_relative_path() && ends.size() < kept_folders;
+         at = at.parent_path()) {
       ends.emplace_back(at.filename().string(), rest);
       rest = rest.empty() ? at.filename() : at.filename() / rest;
     }
