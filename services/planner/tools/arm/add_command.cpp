@@ -6,12 +6,13 @@
 #include <filesystem>
 #include <iostream>
 #include <memory>
+#include <nlohmann/json.hpp>
 
 #include "common/base/file_text.hpp"
 #include "common/base/paths.hpp"
 #include "services/planner/tools/arm/commands.hpp"
 #include "services/planner/tools/arm_import/make_arm.hpp"
-#include "services/planner/tools/hand_import/finding_report.hpp"
+#include "services/planner/tools/hand_import/robot_file.hpp"
 
 namespace prehend::planner {
 namespace {
@@ -19,6 +20,7 @@ namespace {
 struct AddArguments {
   std::string file, name, output, tip;
   bool json = false;
+  RobotFileOptions options;
 };
 
 Expected<std::filesystem::path> new_folder(const AddArguments& arguments) {
@@ -54,9 +56,10 @@ Expected<void> write_arm(const MadeArm& arm, const std::filesystem::path& folder
 int run_add(const AddArguments& arguments) {
   const auto folder = new_folder(arguments);
   if (!folder) return tool::complain(folder.error());
-  const auto robot = read_robot_file(arguments.file);
+  const auto robot = read_robot_file(arguments.file, arguments.options);
   if (!robot) return tool::complain(robot.error(), exit_no);
-  const auto arm = make_arm(*robot, arguments.name, mesh_files(arguments.file), arguments.tip);
+  const auto arm = make_arm(*robot, arguments.name,
+                            mesh_files(arguments.file, arguments.options.packages), arguments.tip);
   if (!arm) {
     Error error = arm.error();
     error.where = arguments.file + (error.where.empty() ? "" : ": " + error.where);
@@ -86,12 +89,13 @@ void add_add(tool::Program& program) {
       "add",
       "Makes an arm of the lab from a URDF: a folder with arm.urdf and arm.toml.\n"
       "Exit code 0: made, 1: the URDF is not usable, 2: wrong use.");
-  command->add_option("FILE", arguments->file, "a URDF")->required();
+  command->add_option("FILE", arguments->file, "a URDF, xacro or MJCF")->required();
   command->add_option("--name", arguments->name, "of the arm")->required();
   command->add_option("--output,-o", arguments->output,
                       "folder for the arm (models/arms/NAME of your data folder)");
   command->add_option("--tip", arguments->tip, "the link at the arm's end");
   command->add_flag("--json", arguments->json, "one JSON document on standard output");
+  add_file_options(*command, arguments->options);
   program.on(*command, [arguments] { return run_add(*arguments); });
 }
 

@@ -12,6 +12,7 @@
 #include "services/planner/tools/arm_import/make_arm.hpp"
 #include "services/planner/tools/hand_import/check.hpp"
 #include "services/planner/tools/hand_import/finding_report.hpp"
+#include "services/planner/tools/hand_import/robot_file.hpp"
 
 namespace prehend::planner {
 namespace {
@@ -21,6 +22,7 @@ using Json = nlohmann::ordered_json;
 struct CheckArguments {
   std::string what, tip;
   bool json = false;
+  RobotFileOptions options;
 };
 
 void describe(const model::ArmModel& arm, Json& document) {
@@ -38,13 +40,12 @@ void describe(const model::ArmModel& arm, Json& document) {
 
 void judge_urdf(const CheckArguments& arguments, std::vector<UrdfFinding>& findings,
                 Json& document) {
-  const auto robot = read_robot_file(arguments.what);
+  const auto robot = read_robot_file(arguments.what, arguments.options);
   if (!robot) {
-    findings.push_back(
-        {Severity::error, "not-urdf", "file", 0, robot.error().message(), robot.error().hint});
+    findings.push_back(unreadable(robot.error()));
     return;
   }
-  const MeshReader meshes = mesh_files(arguments.what);
+  const MeshReader meshes = mesh_files(arguments.what, arguments.options.packages);
   findings = check_arm(*robot, meshes, arguments.tip);
   if (!is_usable(findings)) return;
   const auto made =
@@ -99,9 +100,11 @@ void add_check(tool::Program& program) {
       "Lists what is missing or suspicious in a URDF that shall be an arm, each with its mend, or\n"
       "loads an arm of the lab. Exit code 0: usable, perhaps with warnings, 1: not usable, 2: "
       "wrong use.");
-  command->add_option("ARM", arguments->what, "a URDF, or an arm's name or folder")->required();
+  command->add_option("ARM", arguments->what, "a URDF, xacro or MJCF, or an arm's name or folder")
+      ->required();
   command->add_option("--tip", arguments->tip, "the link at the arm's end");
   command->add_flag("--json", arguments->json, "one JSON document on standard output");
+  add_file_options(*command, arguments->options);
   program.on(*command, [arguments] { return run_check(*arguments); });
 }
 

@@ -15,6 +15,7 @@
 #include "services/planner/tools/hand_import/finding_report.hpp"
 #include "services/planner/tools/hand_import/make_hand.hpp"
 #include "services/planner/tools/hand_import/palms.hpp"
+#include "services/planner/tools/hand_import/robot_file.hpp"
 #include "services/planner/tools/planning/planning_task.hpp"
 
 namespace prehend::planner {
@@ -24,6 +25,7 @@ struct AddArguments {
   std::string file, name, output, palm;
   int candidates = 60;
   bool json = false;
+  RobotFileOptions options;
 };
 
 Expected<void> write_folder(const MadeHand& hand, const std::filesystem::path& folder) {
@@ -135,10 +137,12 @@ int run_add(AddArguments arguments) {
     return tool::complain(
         {"there is a hand already", arguments.output, "remove it, or use --output"},
         exit_wrong_use);
-  auto robot = read_robot_file(arguments.file);
+  auto robot = read_robot_file(arguments.file, arguments.options);
   if (!robot) return tool::complain(robot.error(), exit_no);
   *robot = hand_of(std::move(*robot), arguments.palm);
-  const auto hand = make_hand(*robot, arguments.name, mesh_files(arguments.file), {.trials = true});
+  const auto hand =
+      make_hand(*robot, arguments.name, mesh_files(arguments.file, arguments.options.packages),
+                {.trials = true});
   if (!hand) {
     log::error("{}: {}; `prehend hand check` lists everything", arguments.file,
                hand.error().message());
@@ -168,7 +172,7 @@ void add_add(tool::Program& program) {
       "Makes a hand of the lab from a URDF, a folder with hand.urdf and hand.toml, and tries it "
       "on\n"
       "three objects. Exit code 0: made, 1: the URDF is not usable, 2: wrong use.");
-  command->add_option("FILE", arguments->file, "a URDF")->required();
+  command->add_option("FILE", arguments->file, "a URDF, xacro or MJCF")->required();
   command->add_option("--name", arguments->name, "of the hand")->required();
   command->add_option("--output,-o", arguments->output, "folder for the hand (./NAME)");
   command->add_option("--palm", arguments->palm,
@@ -177,6 +181,7 @@ void add_add(tool::Program& program) {
       ->capture_default_str()
       ->check(CLI::Range(1, 100000));
   command->add_flag("--json", arguments->json, "one JSON document on standard output");
+  add_file_options(*command, arguments->options);
   program.on(*command, [arguments] { return run_add(*arguments); });
 }
 

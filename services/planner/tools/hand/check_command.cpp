@@ -1,4 +1,4 @@
-// `prehend hand check`: what is missing or suspicious in a URDF.
+// `prehend hand check`: what is missing or suspicious in a robot's file.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -10,20 +10,28 @@
 #include "services/planner/tools/hand_import/finding_report.hpp"
 #include "services/planner/tools/hand_import/make_hand.hpp"
 #include "services/planner/tools/hand_import/palms.hpp"
+#include "services/planner/tools/hand_import/robot_file.hpp"
 
 namespace prehend::planner {
 namespace {
 
-int run_check(const std::string& file, const std::string& palm, bool json) {
+struct CheckArguments {
+  std::string file, palm;
+  bool json = false;
+  RobotFileOptions options;
+};
+
+int run_check(const CheckArguments& arguments) {
+  const std::string& file = arguments.file;
   if (std::error_code ignored; !std::filesystem::is_regular_file(file, ignored)) {
     log::error("{}: there is no such file", file);
     return 2;
   }
   std::vector<UrdfFinding> findings;
-  auto robot = read_robot_file(file);
+  auto robot = read_robot_file(file, arguments.options);
   if (robot) {
-    *robot = hand_of(std::move(*robot), palm);
-    const MeshReader meshes = mesh_files(file);
+    *robot = hand_of(std::move(*robot), arguments.palm);
+    const MeshReader meshes = mesh_files(file, arguments.options.packages);
     findings = check(*robot, meshes);
     // What only shows when a hand is made of it: too many DoFs, no fingers.
     if (is_usable(findings))
@@ -32,11 +40,10 @@ int run_check(const std::string& file, const std::string& palm, bool json) {
         findings.insert(findings.begin(), {Severity::error, "no-hand", "robot " + robot->name, 0,
                                            hand.error().message(), hand.error().hint});
   } else {
-    findings.push_back(
-        {Severity::error, "not-urdf", "file", 0, robot.error().message(), robot.error().hint});
+    findings.push_back(unreadable(robot.error()));
   }
   const bool usable = is_usable(findings);
-  if (json) {
+  if (arguments.json) {
     nlohmann::ordered_json document{{"file", file}, {"usable", usable}};
     document["findings"] = nlohmann::ordered_json::array();
     for (const UrdfFinding& finding : findings) document["findings"].push_back(to_json(finding));
@@ -52,18 +59,18 @@ int run_check(const std::string& file, const std::string& palm, bool json) {
 }  // namespace
 
 void add_check(tool::Program& program) {
-  auto file = std::make_shared<std::string>();
-  auto palm = std::make_shared<std::string>();
-  auto json = std::make_shared<bool>(false);
+  auto arguments = std::make_shared<CheckArguments>();
   CLI::App* command = program.app().add_subcommand(
       "check",
-      "Lists what is missing or suspicious in a URDF that shall be a hand, each with its mend.\n"
+      "Lists what is missing or suspicious in a file that shall be a hand, each with its "
+      "mend.\n"
       "Exit code 0: usable, perhaps with warnings, 1: not usable, 2: wrong use.");
-  command->add_option("FILE", *file, "a URDF")->required();
-  command->add_option("--palm", *palm,
+  command->add_option("FILE", arguments->file, "a URDF, xacro or MJCF")->required();
+  command->add_option("--palm", arguments->palm,
                       "the link where the hand begins, of a robot with several or with an arm");
-  command->add_flag("--json", *json, "one JSON document on standard output");
-  program.on(*command, [file, palm, json] { return run_check(*file, *palm, *json); });
+  command->add_flag("--json", arguments->json, "one JSON document on standard output");
+  add_file_options(*command, arguments->options);
+  program.on(*command, [arguments] { return run_check(*arguments); });
 }
 
 }  // namespace prehend::planner

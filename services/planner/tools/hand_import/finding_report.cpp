@@ -2,18 +2,13 @@
 
 #include <fmt/format.h>
 
-#include "common/base/file_text.hpp"
-
 namespace prehend::planner {
 
-Expected<Robot> read_robot_file(const std::filesystem::path& file) {
-  const auto text = read_file(file);
-  if (!text) return tl::unexpected(text.error());
-  auto robot = read_robot(*text);
-  if (!robot)
-    robot.error().where =
-        file.string() + (robot.error().where.empty() ? "" : ": " + robot.error().where);
-  return robot;
+UrdfFinding unreadable(Error error) {
+  std::string repair = std::move(error.hint);
+  error.hint.clear();
+  if (repair.empty()) repair = "a hand or an arm is a URDF, xacro or MJCF";
+  return {Severity::error, "not-urdf", "file", 0, error.message(), std::move(repair)};
 }
 
 nlohmann::ordered_json to_json(const UrdfFinding& finding) {

@@ -1,15 +1,14 @@
 #pragma once
 
-#include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "common/base/error.hpp"
 #include "services/planner/tools/hand_import/finding.hpp"
-#include "services/planner/tools/hand_import/robot.hpp"
 
 namespace prehend::planner {
 
-/// The file's bytes as a robot. Errors name the file.
-Expected<Robot> read_robot_file(const std::filesystem::path& file);
+/// The one finding of a file that is no robot.
+UrdfFinding unreadable(Error error);
 
 nlohmann::ordered_json to_json(const UrdfFinding& finding);
 void print(const UrdfFinding& finding);  // on standard output, two lines

@@ -1,14 +1,16 @@
 #include "services/planner/tools/hand_import/mesh.hpp"
 
+#include <assimp/config.h>
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <assimp/Importer.hpp>
-#include <cstdlib>
+#include <fstream>
+#include <map>
+#include <memory>
 #include <numbers>
-#include <sstream>
 
 namespace prehend::planner {
 namespace {
@@ -17,27 +19,6 @@ using Eigen::Vector3d;
 using std::filesystem::path;
 
 constexpr double thinnest = 0.001;  // m
-
-/// Places where a file of a package may lie.
-std::vector<path> candidates(const std::string& name, const path& urdf) {
-  const path folder = std::filesystem::absolute(urdf).parent_path();
-  const std::string package = "package://", file = "file://";
-  if (name.starts_with(file)) return {path(name.substr(file.size()))};
-  if (!name.starts_with(package)) return {folder / name};
-  const std::string rest = name.substr(package.size());
-  const std::string inside = rest.substr(std::min(rest.find('/') + 1, rest.size()));
-  std::vector<path> places;
-  for (path at = folder;; at = at.parent_path()) {
-    places.push_back(at / rest);
-    places.push_back(at / inside);
-    if (at == at.parent_path()) break;
-  }
-  if (const char* roots = std::getenv("ROS_PACKAGE_PATH")) {
-    std::istringstream stream(roots);
-    for (std::string root; std::getline(stream, root, ':');) places.push_back(path(root) / rest);
-  }
-  return places;
-}
 
 void collect(const aiScene& scene, const aiNode& node, const aiMatrix4x4& above,
              std::vector<Vector3d>& points) {
@@ -52,8 +33,23 @@ void collect(const aiScene& scene, const aiNode& node, const aiMatrix4x4& above,
   for (unsigned c = 0; c < node.mNumChildren; ++c) collect(scene, *node.mChildren[c], X, points);
 }
 
+/// What no reader of meshes would name: an empty file, or the stand-in of one that was not fetched.
+Expected<void> is_there(const path& file) {
+  constexpr std::string_view pointer = "version https://git-lfs.github.com/spec/";
+  std::string beginning(pointer.size(), ' ');
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream) return fail("cannot be read", file.string(), "may you?");
+  stream.read(beginning.data(), static_cast<std::streamsize>(beginning.size()));
+  if (stream.gcount() == 0) return fail("is empty", file.string(), "fetch the file again");
+  if (beginning == pointer)
+    return fail("is a Git LFS pointer, not the mesh itself", file.string(), "git lfs pull");
+  return {};
+}
+
 Expected<std::vector<Vector3d>> read_mesh(const path& file) {
+  if (const auto there = is_there(file); !there) return tl::unexpected(there.error());
   Assimp::Importer importer;
+  importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
   const aiScene* scene =
       importer.ReadFile(file.string(), aiProcess_JoinIdenticalVertices | aiProcess_Triangulate);
   if (!scene || !scene->mRootNode)
@@ -79,17 +75,21 @@ Eigen::Matrix3d principal_axes(const std::vector<Vector3d>& points) {
 
 }  // namespace
 
-MeshReader mesh_files(const path& urdf) {
-  return [urdf](const Solid& solid) -> Expected<std::vector<Vector3d>> {
-    for (const path& place : candidates(solid.mesh, urdf)) {
-      std::error_code ignored;
-      if (!std::filesystem::is_regular_file(place, ignored)) continue;
-      auto points = read_mesh(place);
-      if (points)
-        for (Vector3d& p : *points) p = p.cwiseProduct(solid.scale);
-      return points;
-    }
-    return fail("is not there", solid.mesh, "put the file where the URDF says");
+MeshReader mesh_files(const path& robot_file, const Packages& packages) {
+  // Places are looked for once: folders of others are large, and some meshes are in none of them.
+  using Places = std::map<std::pair<std::string, std::string>, Expected<path>>;
+  const auto places = std::make_shared<Places>();
+  return [=](const Solid& solid) -> Expected<std::vector<Vector3d>> {
+    const std::pair name(solid.mesh_folder, solid.mesh);
+    auto known = places->find(name);
+    if (known == places->end())
+      known = places->emplace(name, find_mesh(solid, robot_file, packages)).first;
+    const Expected<path>& file = known->second;
+    if (!file) return tl::unexpected(file.error());
+    auto points = read_mesh(*file);
+    if (points)
+      for (Vector3d& p : *points) p = p.cwiseProduct(solid.scale);
+    return points;
   };
 }
 

@@ -4,9 +4,9 @@
 #include <tinyxml2.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
-#include <sstream>
+
+#include "services/planner/tools/hand_import/numbers.hpp"
 
 namespace prehend::planner {
 namespace {
@@ -14,20 +14,15 @@ namespace {
 using Eigen::Vector3d;
 using tinyxml2::XMLElement;
 
-std::optional<double> finite_number(std::string_view word) {
-  if (word.starts_with('+')) word.remove_prefix(1);
-  double value = 0;
-  const auto [end, failure] = std::from_chars(word.data(), word.data() + word.size(), value);
-  if (failure != std::errc() || end != word.data() + word.size() || !std::isfinite(value))
-    return std::nullopt;
-  return value;
-}
-
 /// Reads the elements of a document into a robot; what is wrong becomes a finding.
 class Reader {
  public:
   void read(const XMLElement& root) {
     robot.name = text(root, "name");
+    // MuJoCo's dialect of URDF.
+    if (const XMLElement* mujoco = root.FirstChildElement("mujoco"))
+      if (const XMLElement* compiler = mujoco->FirstChildElement("compiler"))
+        mesh_folder_ = text(*compiler, "meshdir");
     for (const XMLElement* e = root.FirstChildElement(); e; e = e->NextSiblingElement()) {
       const std::string kind = e->Name();
       if (kind == "link") read_link(*e);
@@ -54,14 +49,8 @@ class Reader {
                               const std::vector<double>& otherwise) {
     const char* value = e.Attribute(key);
     if (!value) return otherwise;
-    std::vector<double> found;
-    std::istringstream words(value);
-    for (std::string word; words >> word;) {
-      const auto read = finite_number(word);
-      if (!read) break;
-      found.push_back(*read);
-      if (found.size() == count && !(words >> word)) return found;
-    }
+    const auto found = finite_numbers(value);
+    if (found && found->size() == count) return *found;
     complain(Severity::error, "bad-number", e,
              fmt::format("<{}> has {}=\"{}\"", e.Name(), key, value),
              fmt::format("{} finite number{}", count, count > 1 ? "s" : ""));
@@ -146,6 +135,7 @@ class Reader {
       solid.shape = {model::ShapeKind::sphere, Vector3d::Constant(number(*g, "radius", 0))};
     } else if (kind == "mesh") {
       solid.mesh = text(*g, "filename");
+      solid.mesh_folder = mesh_folder_;
       solid.scale = Vector3d(numbers(*g, "scale", 3, {1, 1, 1}).data());
       if (solid.mesh.empty())
         complain(severity, "no-geometry", *g, "a mesh has no filename", "name its file");
@@ -189,7 +179,8 @@ class Reader {
     robot.joints.push_back(std::move(joint));
   }
 
-  std::string owner_;  // element that is being read
+  std::string owner_;        // element that is being read
+  std::string mesh_folder_;  // of the whole robot
 };
 
 std::string escaped(const std::string& text) {

@@ -13,8 +13,9 @@ namespace prehend::planner {
 
 /// A collision or visual element. L: the link's frame, S: the solid's.
 struct Solid {
-  model::Shape shape;  // unknown: a mesh, or what could not be read
-  std::string mesh;    // file name as written; empty: not a mesh
+  model::Shape shape;       // unknown: a mesh, or what could not be read
+  std::string mesh;         // file name as written; empty: not a mesh
+  std::string mesh_folder;  // where the file says that meshes lie; empty: does not say
   Eigen::Vector3d scale = Eigen::Vector3d::Ones();
   Pose X_LS = Pose::Identity();
   int line = 0;

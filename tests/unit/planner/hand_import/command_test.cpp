@@ -10,11 +10,13 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "tests/support/mjcf/mjcf_text.hpp"
 #include "tests/support/paths/paths.hpp"
 #include "tests/unit/planner/hand_import/made_hands.hpp"
 
 namespace {
 
+namespace test = prehend::test;
 using Json = nlohmann::json;
 using std::filesystem::path;
 
@@ -89,6 +91,40 @@ TEST(HandCommand, AddsAForeignGripper) {
   ASSERT_EQ(document["trial_grasps"].size(), 3u);
   EXPECT_TRUE(document["trial_grasps"][0]["held"]) << answer.output;
   EXPECT_TRUE(std::filesystem::exists(folder / "made" / "hand.toml"));
+}
+
+// The folder of a package is said, a file of MuJoCo has a part in another file, and xacro that
+// nobody can expand is told as that.
+TEST(HandCommand, ReadsWhatStrangersBring) {
+  const path folder = scratch("strangers");
+  std::filesystem::create_directories(folder / "elsewhere" / "deep");
+  std::ofstream(folder / "elsewhere" / "deep" / "palm.obj") << made_hands::palm_mesh();
+  std::filesystem::create_directories(folder / "urdf");
+  const std::string urdf = (folder / "urdf" / "gripper.urdf").string();
+  std::ofstream(urdf) << made_hands::gripper();
+  EXPECT_EQ(run("prehend hand check " + urdf, folder).code, 1);
+  const std::string packages = " --package other=/ --package made=" + folder.string();
+  EXPECT_EQ(run("prehend hand check" + packages + "/elsewhere/deep " + urdf, folder).code, 0);
+  for (const std::string wrong : {"made", "made=", "=/", "made=/nowhere"})
+    EXPECT_EQ(run("prehend hand check --package " + wrong + " " + urdf, folder).code, 2) << wrong;
+
+  const std::string mjcf = test::mjcf_gripper();
+  const std::size_t at = mjcf.find("<equality>"), end = mjcf.find("</mujoco>");
+  std::ofstream(folder / "gripper.xml")
+      << mjcf.substr(0, at) << "<include file='rest.xml'/>" << mjcf.substr(end);
+  std::ofstream(folder / "rest.xml") << "<mujoco>" << mjcf.substr(at, end - at) << "</mujoco>";
+  const Answer read = run("prehend hand check --json " + (folder / "gripper.xml").string(), folder);
+  EXPECT_EQ(read.code, 0) << read.output;
+
+  std::ofstream(folder / "hand.xacro") << "<robot name='a'><xacro:if value='1'/></robot>";
+  const Answer xacro =
+      run("PATH=" + prehend::test::in_programs("") +
+              " prehend hand check --json --xacro side:=left " + (folder / "hand.xacro").string(),
+          folder);
+  EXPECT_EQ(xacro.code, 1);
+  const Json document = Json::parse(xacro.output);
+  ASSERT_EQ(document["findings"].size(), 1u);
+  EXPECT_NE(document["findings"][0]["what"].get<std::string>().find("is xacro"), std::string::npos);
 }
 
 TEST(HandCommand, TheExampleOfTheReadmeRuns) {
