@@ -10,12 +10,11 @@ constexpr int base_rows = 6;  // velocities of a multibody's base come before th
 
 }  // namespace
 
-Gear::Gear(btMultiBody* body, int follower, int leader, double ratio, double offset,
-           double most_impulse)
+Gear::Gear(btMultiBody* body, int follower, int leader, double ratio, double offset, double most)
     : btMultiBodyConstraint(body, body, follower, leader, 1, false, MULTIBODY_CONSTRAINT_GEAR),
       ratio_(ratio),
       offset_(offset) {
-  m_maxAppliedImpulse = most_impulse;
+  m_maxAppliedImpulse = most;
 }
 
 void Gear::finalizeMultiDof() {
