@@ -32,7 +32,11 @@ Expected<void> train_hand(const DemoOptions& options) {
     if (!config->path("mapping.model").empty()) return {};
     hand = config->text("mapping.hand");
   }
-  return hand.empty() || is_ours(hand) ? Expected<void>() : stage::train_if_needed(hand);
+  std::error_code none;
+  const bool is_there =
+      std::filesystem::exists(model::hand_directory(hand) / "hand.urdf", none);  // else it is told
+  return hand.empty() || is_ours(hand) || !is_there ? Expected<void>()
+                                                    : stage::train_if_needed(hand);
 }
 
 }  // namespace prehend::cli
