@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
 namespace popular_hands {
 namespace {
 
@@ -242,6 +244,63 @@ std::string two_sliding_fingers() {
   return w.done();
 }
 
+// The jaws stay parallel while their arms swing; their tips go away from the flange meanwhile, and
+// an inner bar swings beside each arm.
+std::string two_jaws_on_linkages() {
+  Writer w("linkages");
+  w.effort = 50;
+  w.velocity = 0.5;
+  w.link("base", 0.9, "0.075 0.14 0.09", "0 0 0.045");
+  for (const auto& [name, sign] : {std::pair("left", 1), {"right", -1}}) {
+    const std::string side = name, tilt = fmt::format("{} 0 0", -0.7 * sign),
+                      back = fmt::format("{} 0 0", 0.7 * sign);
+    const double low = sign > 0 ? 0 : -0.9, high = sign > 0 ? 0.9 : 0;
+    w.link(side + "_arm", 0.03, "0.015 0.01 0.05", "0 0 0.025");
+    w.link(side + "_bar", 0.02, "0.01 0.008 0.045", "0 0 0.0225");
+    w.link(side + "_pad", 0.03, "0.022 0.008 0.05", fmt::format("0 {} 0.02", -0.004 * sign));
+    w.joint(side + "_arm", "base", side + "_arm", fmt::format("0 {} 0.09", 0.03 * sign), tilt,
+            "1 0 0", low, high, sign < 0 ? follow("left_arm", -1) : "");
+    w.joint(side + "_bar", "base", side + "_bar", fmt::format("0 {} 0.1", 0.015 * sign), tilt,
+            "1 0 0", low, high, follow("left_arm", sign));
+    w.joint(side + "_pad", side + "_arm", side + "_pad", "0 0 0.055", back, "1 0 0", -high, -low,
+            follow("left_arm", -sign));
+  }
+  return w.done();
+}
+
+std::string two_turning_jaws() {
+  Writer w("jaws");
+  w.effort = 2;
+  w.link("base", 0.8, "0.06 0.1 0.06", "0 0 0.03");
+  for (const auto& [name, sign] : {std::pair("left", 1), {"right", -1}}) {
+    const std::string side = name;
+    w.link(side, 0.05, "0.02 0.012 0.09", "0 0 0.045");
+    w.joint(side + "_turn", "base", side, fmt::format("0 {} 0.06", 0.02 * sign),
+            fmt::format("{} 0 0", -0.5 * sign), "1 0 0", sign > 0 ? 0 : -0.8, sign > 0 ? 0.8 : 0);
+  }
+  return w.done();
+}
+
+// Fingers that rest upright, and open further than they rest.
+std::string three_fingers_around() {
+  Writer w("around");
+  w.link("palm", 0.5, "0.08 0.08 0.05", "0 0 0.025");
+  for (const double angle : {0.0, 2.0944, 4.1888}) {
+    const std::string f = fmt::format("finger{:.0f}", angle);
+    for (const auto& [part, length] : {std::pair(1, 0.055), {2, 0.045}, {3, 0.03}})
+      w.link(fmt::format("{}_{}", f, part), 0.03, fmt::format("0.018 0.018 {}", 0.9 * length),
+             fmt::format("0 0 {}", 0.45 * length));
+    w.joint(f, "palm", f + "_1",
+            fmt::format("{} {} 0.05", 0.045 * std::cos(angle), 0.045 * std::sin(angle)),
+            fmt::format("0 0 {}", angle + 3.14159), "0 1 0", -0.3, 1.4);
+    w.joint(f + "_middle", f + "_1", f + "_2", "0 0 0.055", "0 0 0", "0 1 0", -0.3, 1.4,
+            follow(f, 1));
+    w.joint(f + "_end", f + "_2", f + "_3", "0 0 0.045", "0 0 0", "0 1 0", -0.3, 1.4,
+            follow(f, 0.6));
+  }
+  return w.done();
+}
+
 std::vector<PopularHand> popular_hands() {
   return {{"opposed_thumb", sixteen_joints_with_opposed_thumb()},
           {"side_joints", sixteen_joints_with_side_joints()},
@@ -249,7 +308,10 @@ std::vector<PopularHand> popular_hands() {
           {"six_motors", six_motors(false)},
           {"six_motors_left", six_motors(true)},
           {"adaptive", three_adaptive_fingers()},
-          {"slides", two_sliding_fingers()}};
+          {"slides", two_sliding_fingers()},
+          {"linkages", two_jaws_on_linkages()},
+          {"jaws", two_turning_jaws()},
+          {"around", three_fingers_around()}};
 }
 
 }  // namespace popular_hands

@@ -25,6 +25,13 @@ std::string three_adaptive_fingers();
 /// Two sliding fingers on a flange.
 std::string two_sliding_fingers();
 
+/// Two jaws on parallel linkages, one motor; all else follows by <mimic>.
+std::string two_jaws_on_linkages();
+/// Two jaws that turn, each with a motor.
+std::string two_turning_jaws();
+/// Three fingers of one motor each, at equal distances around a palm.
+std::string three_fingers_around();
+
 /// All of these.
 std::vector<PopularHand> popular_hands();
 

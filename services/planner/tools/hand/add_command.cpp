@@ -23,6 +23,7 @@ namespace {
 
 struct AddArguments {
   std::string file, name, output, palm;
+  std::vector<std::string> fingers;  // FINGER=LINK
   int candidates = 60;
   bool json = false;
   RobotFileOptions options;
@@ -121,7 +122,22 @@ void print(const nlohmann::ordered_json& document) {
       "\nthe hand is in {0}; correct hand.toml there where {0}/hand.html shows a wrong guess\n",
       folder);
   const std::string hand = called(document["name"].get<std::string>(), folder);
-  fmt::print("then: prehend train --hand {0}; prehend demo --hand {0}\n", hand);
+  fmt::print("then: prehend demo --hand {}\n", hand);
+}
+
+/// FINGER=LINK: the finger with this link follows that of a person.
+Expected<void> note_fingers(Robot& robot, const std::vector<std::string>& fingers) {
+  for (const std::string& told : fingers) {
+    const std::size_t equals = told.find('=');
+    const auto finger = model::finger_from_string(told.substr(0, equals));
+    if (equals == std::string::npos || !finger)
+      return fail("says no finger", "--fingers " + told,
+                  "FINGER=LINK, with thumb, index, middle, ring or little");
+    if (!robot.find_link(told.substr(equals + 1)))
+      return fail("there is no such link", "--fingers " + told, "name a link of the file");
+    robot.human[told.substr(equals + 1)] = *finger;
+  }
+  return {};
 }
 
 int run_add(AddArguments arguments) {
@@ -139,6 +155,8 @@ int run_add(AddArguments arguments) {
         exit_wrong_use);
   auto robot = read_robot_file(arguments.file, arguments.options);
   if (!robot) return tool::complain(robot.error(), exit_no);
+  if (const auto told = note_fingers(*robot, arguments.fingers); !told)
+    return tool::complain(told.error(), exit_wrong_use);
   *robot = hand_of(std::move(*robot), arguments.palm);
   const auto hand =
       make_hand(*robot, arguments.name, mesh_files(arguments.file, arguments.options.packages),
@@ -177,6 +195,11 @@ void add_add(tool::Program& program) {
   command->add_option("--output,-o", arguments->output, "folder for the hand (./NAME)");
   command->add_option("--palm", arguments->palm,
                       "the link where the hand begins, of a robot with several or with an arm");
+  command
+      ->add_option(
+          "--fingers", arguments->fingers,
+          "FINGER=LINK,…: which human fingers (thumb, index, …) lead those with these links")
+      ->delimiter(',');
   command->add_option("--candidates", arguments->candidates, "grasps that are tried an object")
       ->capture_default_str()
       ->check(CLI::Range(1, 100000));

@@ -99,7 +99,13 @@ Expected<Anatomy> find_anatomy(const Robot& robot, const SearchEffort& effort,
   found.dofs = find_closing(skeleton);
   for (const FingerChain& finger : skeleton.fingers()) {
     const std::string& link = hand->links()[at(finger.leaf)].name;
-    found.fingertips.push_back({link, link, finger.p_LT});
+    found.fingertips.push_back({link, link, finger.p_LT, {}});
+    for (const int joint : finger.joints) {
+      const int child = hand->joints()[at(joint)].child;
+      if (const auto told = robot.human.find(hand->links()[at(child)].name);
+          told != robot.human.end())
+        found.fingertips.back().human = told->second;
+    }
   }
   const GraspFrame frame = find_grasp_frame(skeleton, found.dofs);
   found.X_BG = frame.X_BG;

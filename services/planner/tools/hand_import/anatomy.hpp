@@ -24,6 +24,7 @@ struct Anatomy {
   struct Fingertip {
     std::string name, link;
     Eigen::Vector3d p_LT;
+    std::optional<model::Finger> human;  // as a person says
   };
   std::vector<Dof> dofs;  // one a joint that does not mimic, in the order of the tree
   std::vector<Fingertip> fingertips;

@@ -73,9 +73,11 @@ std::string write_toml(const Anatomy& anatomy, const std::string& name, const Ro
     open.push_back(dof.open);
     fist.push_back(dof.fist);
   }
-  for (const Anatomy::Fingertip& tip : anatomy.fingertips)
+  for (const Anatomy::Fingertip& tip : anatomy.fingertips) {
     text += fmt::format("\n[[fingertip]]\nname = {}\nlink = {}\nposition = {}\n",
                         toml_text(tip.name), toml_text(tip.link), row(tip.p_LT));
+    if (tip.human) text += fmt::format("human = \"{}\"\n", model::finger_names.name(*tip.human));
+  }
   text += fmt::format(
       "\n# Torque limits are those of the URDF; [torque] overrides them.\n{}[materials]\n"
       "default = \"rubber\"\n{} = \"plastic\"\n\n[postures]\nopen = {}\nfist = {}\n",

@@ -66,6 +66,8 @@ Robot part_below(const Robot& robot, const std::string& link) {
   }
   for (RobotJoint& joint : part.joints)
     if (joint.mimic && !joints.contains(joint.mimic->joint)) joint.mimic.reset();
+  part.human = robot.human;
+  std::erase_if(part.human, [&](const auto& one) { return !links.contains(one.first); });
   std::ranges::copy_if(robot.links, std::back_inserter(part.links),
                        [&](const RobotLink& one) { return links.contains(one.name); });
   return part;

@@ -199,6 +199,9 @@ class Mender {
       if (auto added = add(*source_.find_link(joint.child), place.body, place.X_BL); !added)
         return added;
     }
+    for (const auto& [link, finger] : source_.human)
+      if (const auto place = places.find(link); place != places.end())
+        mended_.robot.human[mended_.robot.links[place->second.body].name] = finger;
     return {};
   }
 

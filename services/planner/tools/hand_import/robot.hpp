@@ -1,11 +1,13 @@
 #pragma once
 
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "common/base/error.hpp"
 #include "common/base/pose.hpp"
+#include "common/model/human_hand.hpp"
 #include "common/model/shape.hpp"
 #include "services/planner/tools/hand_import/finding.hpp"
 
@@ -65,6 +67,8 @@ struct Robot {
   std::vector<RobotLink> links;
   std::vector<RobotJoint> joints;
   std::vector<UrdfFinding> findings;
+  /// Whose tip the finger with this link follows, where a person says so.
+  std::map<std::string, model::Finger> human;
 
   const RobotLink* find_link(const std::string& link) const;
   const RobotJoint* find_joint(const std::string& joint) const;

@@ -42,7 +42,7 @@ std::optional<Pose> place(const model::Shape& shape, const model::Reach& reach) 
   return model::nearest_grasp(shape, make_pose(Vector3d::Zero(), R), reach);
 }
 
-/// The share of three places, side by side, from which it is held.
+/// The share of two places, to either side, from which it is held.
 double held(const model::HandModel& hand, const grasping::Body& body, const Pose& X_OG) {
   const Eigen::VectorXd& open = hand.postures().at("open");
   grasping::ClosingOptions options;
@@ -55,14 +55,14 @@ double held(const model::HandModel& hand, const grasping::Body& body, const Pose
   for (Eigen::Index i = 0; i < closing.size(); ++i)
     closing[i] = hand.dofs()[static_cast<std::size_t>(i)].closing;
   double count = 0;
-  for (const double y : {0.0, -beside, beside})
+  for (const double y : {-beside, beside})
     count += grasping::held_on_table(
                  hand, body,
                  {X_OG * Eigen::Translation3d(0, y, 0), open, hand.clamp(closed->dof), closing},
                  {.hold = 0.5, .shake = true})
                  ? 1
                  : 0;
-  return count / 3;
+  return count / 2;
 }
 
 }  // namespace

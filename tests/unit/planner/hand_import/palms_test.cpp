@@ -108,6 +108,25 @@ TEST(Palms, TheRoomIsNoPartOfTheHand) {
   EXPECT_TRUE(planner::is_usable(planner::check(taken, planner::mesh_files("."))));
 }
 
+// Told by a link at the tip that becomes part of another, or by one within the finger.
+TEST(Fingers, FollowThoseOfAPersonWhereThatIsTold) {
+  Robot robot = read(made_hands::four_fingers());
+  robot.human = {{"index_tip", model::Finger::index}, {"thumb_1", model::Finger::thumb}};
+  const auto hand = planner::make_hand(robot, "told", planner::mesh_files("."), {.samples = 20});
+  ASSERT_TRUE(hand) << hand.error().message();
+  int told = 0;
+  for (const model::HandFingertip& tip : hand->model.fingertips()) {
+    told += tip.human.has_value();
+    if (tip.name.starts_with("index")) {
+      EXPECT_EQ(tip.human, model::Finger::index);
+    }
+    if (tip.name.starts_with("thumb")) {
+      EXPECT_EQ(tip.human, model::Finger::thumb);
+    }
+  }
+  EXPECT_EQ(told, 2);
+}
+
 /// The same hand whose ring finger cannot move.
 TEST(Locked, WhatCannotMoveAndWhatFollowsItIsHeldThere) {
   std::string urdf = made_hands::four_fingers();
