@@ -24,8 +24,10 @@ namespace {
 /// Between two tries, until all have answered: who is only just being discovered hears a later one.
 constexpr Duration order_period = std::chrono::milliseconds(50);
 constexpr Duration key_period = std::chrono::milliseconds(5);
-/// Once all gates that are known have answered, others may still turn up for so long.
-constexpr Duration grace = std::chrono::milliseconds(300);
+/// Once all gates that are known have answered, others may still turn up for so long: in a rig, and
+/// in a whole domain, where everybody announces himself several times meanwhile.
+constexpr Duration grace = std::chrono::milliseconds(300),
+                   grace_of_all = std::chrono::milliseconds(1200);
 constexpr Duration patience = std::chrono::seconds(1);
 constexpr const char* gate_name = "gate";
 
@@ -122,7 +124,8 @@ class Giving {
     });
     const bool over = now - begun_ > seconds(order_.timeout);
     // Whoever replies as a gate and tells of none holds nobody up for longer than that.
-    const bool settled = (told || now - newest_ > patience) && now - newest_ > grace;
+    const bool settled =
+        (told || now - newest_ > patience) && now - newest_ > (rig_ == "*" ? grace_of_all : grace);
     if ((given && settled) || over) return shell_.stop();
     v1::OperatorCommand message;
     message.id(id_.substr(0, 63).c_str());
