@@ -5,7 +5,7 @@
 namespace prehend::grasping {
 
 /// The limits of a joint, of which the solver hears only where the joint could come to one in this
-/// step: rows of all joints cost it a third of its time, and change nothing while they are far.
+/// step: rows of joints that are far from theirs cost time and change nothing.
 class JointLimit final : public btMultiBodyJointLimitConstraint {
  public:
   /// rad or m.
@@ -14,13 +14,13 @@ class JointLimit final : public btMultiBodyJointLimitConstraint {
 
   void createConstraintRows(btMultiBodyConstraintArray& rows, btMultiBodyJacobianData& data,
                             const btContactSolverInfo& info) override {
-    const double at = m_bodyA->getJointPos(m_linkA);
+    const double at = m_bodyA->getJointPos(m_linkA), near = fastest * info.m_timeStep;
     if (at - lower_ < near || upper_ - at < near)
       btMultiBodyJointLimitConstraint::createConstraintRows(rows, data, info);
   }
 
  private:
-  static constexpr double near = 0.2;  // rad or m: 100 per s, of steps of 2 ms
+  static constexpr double fastest = 100;  // rad/s or m/s, of a joint that is thrown about
   double lower_, upper_;
 };
 

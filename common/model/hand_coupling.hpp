@@ -1,18 +1,12 @@
 #pragma once
 
-#include <optional>
-#include <string_view>
-
+#include "common/base/named_values.hpp"
 #include "common/model/hand_model.hpp"
 
 namespace prehend::model {
 
-constexpr std::optional<Coupling> coupling_from_string(std::string_view word) {
-  if (word == "springs") return Coupling::springs;
-  if (word == "fingers") return Coupling::fingers;
-  if (word == "rigid") return Coupling::rigid;
-  return std::nullopt;
-}
+inline constexpr auto coupling_names = named_values<Coupling>(
+    {{Coupling::springs, "springs"}, {Coupling::fingers, "fingers"}, {Coupling::rigid, "rigid"}});
 
 /// The joint of the same DoF that moves joint i by gears or bars: the first of its finger, or the
 /// one that leads the DoF. -1: it has a drive of its own.

@@ -114,12 +114,9 @@ class HandLoader {
       return fail("closing must be -1, 0 or 1", where);
     if (!(dof.squeeze > 0)) return fail("squeeze must be positive", where);
     dof.closing = static_cast<int>(closing);
-    if (!table.contains("coupling")) return dof;
-    const auto word = text_of(table, "coupling", where);
-    if (!word) return tl::unexpected(word.error());
-    const auto coupling = coupling_from_string(*word);
-    if (!coupling) return fail("«coupling» is «" + *word + "»", where, "springs, fingers or rigid");
-    dof.coupling = *coupling;
+    const auto coupling = named_of(table, "coupling", coupling_names, where);
+    if (!coupling) return tl::unexpected(coupling.error());
+    dof.coupling = coupling->value_or(Coupling::springs);
     return dof;
   }
 
@@ -236,13 +233,9 @@ class HandLoader {
       const auto position = numbers(table->get("position"), 3, where + ".position");
       if (!position) return tl::unexpected(position.error());
       tip.p_LT = *position;
-      if (table->contains("human")) {
-        const auto human = text_of(*table, "human", where);
-        if (!human) return tl::unexpected(human.error());
-        tip.human = finger_from_string(*human);
-        if (!tip.human)
-          return fail("«human» is «" + *human + "»", where, "thumb, index, middle, ring or little");
-      }
+      const auto human = named_of(*table, "human", finger_names, where);
+      if (!human) return tl::unexpected(human.error());
+      tip.human = *human;
       hand.fingertips_.push_back(std::move(tip));
     }
     assign_fingers();

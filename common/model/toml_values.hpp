@@ -4,11 +4,13 @@
 
 #include <Eigen/Core>
 #include <initializer_list>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "common/base/error.hpp"
+#include "common/base/named_values.hpp"
 #include "common/base/pose.hpp"
 
 /// Values of hand.toml and arm.toml. `where` says whose value it is, for messages.
@@ -51,6 +53,18 @@ int find_named(const Items& items, std::string_view name) {
   for (std::size_t i = 0; i < items.size(); ++i)
     if (items[i].name == name) return static_cast<int>(i);
   return -1;
+}
+
+/// The value of a word of the table; nothing: the key was left out.
+template <class E, std::size_t N>
+Expected<std::optional<E>> named_of(const toml::table& table, std::string_view key,
+                                    const NamedValues<E, N>& names, const std::string& where) {
+  if (!table.contains(key)) return std::optional<E>();
+  const auto word = text_of(table, key, where);
+  if (!word) return tl::unexpected(word.error());
+  const auto value = names.value(*word);
+  if (!value) return fail("«" + std::string(key) + "» is «" + *word + "»", where, names.list());
+  return value;
 }
 
 }  // namespace prehend::model

@@ -6,6 +6,8 @@
 #include <cstring>
 #include <nlohmann/json.hpp>
 
+#include "common/base/base64.hpp"
+
 namespace prehend::recording::types {
 namespace {
 
@@ -137,23 +139,6 @@ class Decoder {
   std::size_t at_ = 0;
   bool good_ = true;
 };
-
-std::string base64(const Value::Bytes& bytes) {
-  static constexpr char digits[] =
-      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string text;
-  text.reserve((bytes.size() + 2) / 3 * 4);
-  for (std::size_t i = 0; i < bytes.size(); i += 3) {
-    const std::size_t left = bytes.size() - i;
-    const std::uint32_t group =
-        bytes[i] << 16 | (left > 1 ? bytes[i + 1] << 8 : 0) | (left > 2 ? bytes[i + 2] : 0);
-    text += digits[group >> 18];
-    text += digits[group >> 12 & 63];
-    text += left > 1 ? digits[group >> 6 & 63] : '=';
-    text += left > 2 ? digits[group & 63] : '=';
-  }
-  return text;
-}
 
 template <class... Cases>
 struct Overloaded : Cases... {

@@ -99,7 +99,6 @@ Json scene_without(std::int64_t ns, std::string_view id);
 
 Json log_line(std::int64_t ns, LogLevel level, std::string_view name, std::string_view message);
 
-std::string base64(std::string_view bytes);
 /// As text. What is no UTF-8 is replaced.
 std::string text_of(const Json& document);
 

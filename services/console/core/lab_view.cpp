@@ -8,6 +8,7 @@
 #include <cmath>
 #include <utility>
 
+#include "common/base/base64.hpp"
 #include "services/console/core/resisted_forces.hpp"
 
 namespace prehend::console {

@@ -32,14 +32,6 @@ TEST(Protocol, ParametersAreThoseThatWereAskedFor) {
   EXPECT_FALSE(one.contains("id"));
 }
 
-TEST(Documents, Base64IsThatOfRfc4648) {
-  EXPECT_EQ(base64(""), "");
-  EXPECT_EQ(base64("f"), "Zg==");
-  EXPECT_EQ(base64("fo"), "Zm8=");
-  EXPECT_EQ(base64("foobar"), "Zm9vYmFy");
-  EXPECT_EQ(base64("\xff\xfe\xfd"), "//79");
-}
-
 TEST(Documents, SchemasAreJsonAndNamePicturesAsBytes) {
   for (const FeedInfo& feed : feeds) {
     const auto schema = nlohmann::json::parse(json_schema(feed.feed));

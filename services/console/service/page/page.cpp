@@ -2,6 +2,8 @@
 
 #include <initializer_list>
 
+#include "common/base/html.hpp"
+
 // The assembler takes the files in as they are: as an array in C++ they would compile for seconds.
 __asm__(
     ".pushsection .rodata\n"
@@ -32,26 +34,6 @@ File file(std::string_view path) {
   return {"text/plain; charset=utf-8", {prehend_page_licences, prehend_page_licences_end}};
 }
 
-namespace {
-
-/// As the value of an attribute.
-std::string escaped(std::string_view text) {
-  std::string made;
-  for (const char c : text) {
-    if (c == '&')
-      made += "&amp;";
-    else if (c == '"')
-      made += "&quot;";
-    else if (c == '<')
-      made += "&lt;";
-    else
-      made += c;
-  }
-  return made;
-}
-
-}  // namespace
-
 std::string html(std::string_view order_token, std::string_view no_hand) {
   std::string text(prehend_page_html, prehend_page_html_end);
   const auto put = [&](std::string_view place, std::string_view what) {
@@ -59,7 +41,7 @@ std::string html(std::string_view order_token, std::string_view no_hand) {
       text.replace(at, place.size(), what);
   };
   put("ORDER_TOKEN", order_token);
-  put("NO_HAND", escaped(no_hand));
+  put("NO_HAND", html_escaped(no_hand));
   return text;
 }
 

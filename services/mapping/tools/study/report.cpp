@@ -5,41 +5,13 @@
 #include <fstream>
 #include <system_error>
 
+#include "common/base/base64.hpp"
 #include "common/base/file_text.hpp"
+#include "common/base/html.hpp"
 
 namespace prehend::mapping {
 
 namespace {
-
-std::string escaped(std::string_view text) {
-  std::string html;
-  for (const char c : text) {
-    if (c == '&')
-      html += "&amp;";
-    else if (c == '<')
-      html += "&lt;";
-    else if (c == '>')
-      html += "&gt;";
-    else
-      html += c;
-  }
-  return html;
-}
-
-std::string base64(std::string_view bytes) {
-  static constexpr char letters[] =
-      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string text;
-  for (std::size_t i = 0; i < bytes.size(); i += 3) {
-    unsigned bits = 0;
-    const std::size_t count = std::min<std::size_t>(3, bytes.size() - i);
-    for (std::size_t k = 0; k < 3; ++k)
-      bits = bits << 8 | (k < count ? static_cast<unsigned char>(bytes[i + k]) : 0u);
-    for (std::size_t k = 0; k < 4; ++k)
-      text += k <= count ? letters[bits >> (18 - 6 * k) & 63] : '=';
-  }
-  return text;
-}
 
 constexpr std::string_view head = R"(<!DOCTYPE html>
 <html lang="en"><head><meta charset="utf-8"><title>Prehend: the study</title><style>
@@ -66,8 +38,8 @@ std::string_view style_of(Reproduction verdict) {
 std::string row(const Finding& finding) {
   return fmt::format(
       "<tr><td>{}</td><td>{}</td><td>{}</td><td class=\"{}\">{}</td><td>{}</td></tr>\n",
-      escaped(finding.figure), escaped(finding.claim), escaped(finding.measured),
-      style_of(finding.verdict), to_string(finding.verdict), escaped(finding.reason));
+      html_escaped(finding.figure), html_escaped(finding.claim), html_escaped(finding.measured),
+      style_of(finding.verdict), to_string(finding.verdict), html_escaped(finding.reason));
 }
 
 std::string benchmark_html(const std::vector<ModeSummary>& summaries) {
@@ -80,7 +52,7 @@ std::string benchmark_html(const std::vector<ModeSummary>& summaries) {
   for (const auto& row : to_rows(summaries)) {
     text += "<tr>";
     for (const std::string& value : row)
-      text += fmt::format("<{0}>{1}</{0}>", cell, escaped(value));
+      text += fmt::format("<{0}>{1}</{0}>", cell, html_escaped(value));
     text += "</tr>\n";
     cell = "td";
   }
@@ -106,8 +78,9 @@ std::string html(const std::vector<Studied>& studied, const std::vector<ModeSumm
     text += fmt::format(
         "<h2>{}: {}</h2>\n<p>{}. {} repetitions, each with another person and other first weights."
         "</p>\n<img alt=\"{}\" src=\"data:image/png;base64,{}\">\n",
-        escaped(experiment.figure), escaped(experiment.title), escaped(experiment.method),
-        studied[i].table.values.rows(), escaped(experiment.title), base64(pictures[i]));
+        html_escaped(experiment.figure), html_escaped(experiment.title),
+        html_escaped(experiment.method), studied[i].table.values.rows(),
+        html_escaped(experiment.title), base64(pictures[i]));
   }
   return text + "</body></html>\n";
 }

@@ -5,6 +5,7 @@
 #include <cctype>
 
 #include "common/base/file_text.hpp"
+#include "common/base/html.hpp"
 #include "services/planner/tools/picture/grasp_picture.hpp"
 
 namespace prehend::planner {
@@ -13,23 +14,6 @@ namespace {
 constexpr int width = 560, height = 420;
 constexpr double aspect = static_cast<double>(width) / height;
 constexpr const char* place = "pictures";
-
-std::string escaped(const std::string& text) {
-  std::string html;
-  for (const char c : text) {
-    if (c == '&')
-      html += "&amp;";
-    else if (c == '<')
-      html += "&lt;";
-    else if (c == '>')
-      html += "&gt;";
-    else if (c == '"')
-      html += "&quot;";
-    else
-      html += c;
-  }
-  return html;
-}
 
 /// A name for a file: letters, digits, and _ for all else.
 std::string file_named(const std::string& text) {
@@ -48,7 +32,7 @@ class Album {
     if (auto saved = save(folder_ / place / file, raster); !saved) return saved;
     html_ += fmt::format(
         "<figure><img alt=\"{0}\" src=\"{1}/{2}\"><figcaption>{0}</figcaption></figure>\n",
-        escaped(title), place, file);
+        html_escaped(title), place, file);
     return {};
   }
   const std::string& html() const { return html_; }
@@ -88,7 +72,7 @@ std::string list_of(const nlohmann::ordered_json& report) {
   for (const auto& dof : report["dofs"]) {
     const int closing = dof["closing"].get<int>();
     text += fmt::format("<tr><td>{}</td><td>{}</td><td>{:.3g}</td><td>{:.3g}</td></tr>\n",
-                        escaped(dof["name"].get<std::string>()),
+                        html_escaped(dof["name"].get<std::string>()),
                         closing == 0  ? "–"
                         : closing > 0 ? "its upper limit"
                                       : "its lower limit",
@@ -96,10 +80,10 @@ std::string list_of(const nlohmann::ordered_json& report) {
   }
   text += "</table>\n<h2>What was found and changed</h2>\n<ul>\n";
   for (const auto& finding : report["findings"])
-    text += fmt::format("<li>{}: {}</li>\n", escaped(finding["element"].get<std::string>()),
-                        escaped(finding["what"].get<std::string>()));
+    text += fmt::format("<li>{}: {}</li>\n", html_escaped(finding["element"].get<std::string>()),
+                        html_escaped(finding["what"].get<std::string>()));
   for (const auto& change : report["changes"])
-    text += fmt::format("<li>{}</li>\n", escaped(change.get<std::string>()));
+    text += fmt::format("<li>{}</li>\n", html_escaped(change.get<std::string>()));
   return text + "</ul>\n";
 }
 
@@ -112,7 +96,7 @@ Expected<void> write_page(const std::filesystem::path& folder, const model::Hand
   Album postures(folder), grasps(folder);
   if (auto drawn = draw_postures(postures, hand); !drawn) return drawn;
   if (auto drawn = draw_trials(grasps, hand, trials); !drawn) return drawn;
-  const std::string name = escaped(report["name"].get<std::string>());
+  const std::string name = html_escaped(report["name"].get<std::string>());
   const std::string html = fmt::format(
       "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>{0}</title><style>"
       "body{{font:16px sans-serif;max-width:75em;margin:2em auto;padding:0 1em}}"

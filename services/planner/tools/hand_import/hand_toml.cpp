@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "common/model/hand_coupling.hpp"
+
 namespace prehend::planner {
 namespace {
 
@@ -67,8 +69,7 @@ std::string write_toml(const Anatomy& anatomy, const std::string& name, const Ro
     text += fmt::format("\n[[dof]]\nname = {0}\njoint = {0}\nclosing = {1}\n", toml_text(dof.joint),
                         dof.closing);
     if (dof.coupling != model::Coupling::springs)
-      text += fmt::format("coupling = \"{}\"\n",
-                          dof.coupling == model::Coupling::rigid ? "rigid" : "fingers");
+      text += fmt::format("coupling = \"{}\"\n", model::coupling_names.name(dof.coupling));
     if (dof.wrist) text += wrist_limits(dof, robot);
     open.push_back(dof.open);
     fist.push_back(dof.fist);

@@ -4,7 +4,9 @@
 
 #include <fstream>
 
+#include "common/base/base64.hpp"
 #include "common/base/gnuplot.hpp"
+#include "common/base/html.hpp"
 #include "common/statistics/intervals.hpp"
 #include "services/recognition/files/picture_file.hpp"
 
@@ -13,39 +15,8 @@ namespace {
 
 constexpr int thumbnail_side = 220;  // px
 
-/// Text as it stands in HTML: a file or a class may be called anything.
-std::string text(const std::string& given) {
-  std::string made;
-  for (const char c : given) {
-    if (c == '<')
-      made += "&lt;";
-    else if (c == '&')
-      made += "&amp;";
-    else if (c == '"')
-      made += "&quot;";
-    else
-      made += c;
-  }
-  return made;
-}
-
-std::string base64(std::span<const std::uint8_t> bytes) {
-  constexpr std::string_view letters =
-      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string made;
-  for (std::size_t i = 0; i < bytes.size(); i += 3) {
-    const std::size_t left = std::min<std::size_t>(3, bytes.size() - i);
-    std::uint32_t group = 0;
-    for (std::size_t k = 0; k < 3; ++k)
-      group = group << 8 | (k < left ? bytes[i + k] : std::uint8_t{0});
-    for (std::size_t k = 0; k < 4; ++k)
-      made += k <= left ? letters[group >> (18 - 6 * k) & 63] : '=';
-  }
-  return made;
-}
-
 std::string name_of(const std::vector<std::string>& classes, int index, const char* none) {
-  return index < 0 ? none : text(classes[static_cast<std::size_t>(index)]);
+  return index < 0 ? none : html_escaped(classes[static_cast<std::size_t>(index)]);
 }
 
 std::string table(const std::vector<std::string>& classes, std::span<const Judged> pictures) {
@@ -54,7 +25,7 @@ std::string table(const std::vector<std::string>& classes, std::span<const Judge
   for (std::size_t i = 0; i < classes.size(); ++i) made += fmt::format("<th>{}</th>", i + 1);
   made += "</tr>\n";
   for (std::size_t row = 0; row < classes.size(); ++row) {
-    made += fmt::format("<tr><th>{} {}</th>", row + 1, text(classes[row]));
+    made += fmt::format("<tr><th>{} {}</th>", row + 1, html_escaped(classes[row]));
     for (std::size_t column = 0; column < classes.size(); ++column) {
       const int count = counts[row][column];
       made += fmt::format("<td{}>{}</td>",
@@ -102,17 +73,17 @@ Expected<void> write_report(const std::filesystem::path& folder, const std::stri
   if (error) return fail(error.message(), folder.string(), "is the place writable?");
   const auto drawn = draw_reliability(folder / "reliability.png", title, pictures);
   std::ofstream page(folder / "index.html");
-  page << "<!doctype html>\n<meta charset=utf-8>\n<title>" << text(title) << "</title>\n"
+  page << "<!doctype html>\n<meta charset=utf-8>\n<title>" << html_escaped(title) << "</title>\n"
        << "<style>body{font-family:sans-serif;margin:2em}td{text-align:center;min-width:2em}"
           "th{text-align:left}.right{background:#cfe8cf}.wrong{background:#f0c0c0}"
           "figure{display:inline-block;margin:.5em;width:220px;vertical-align:top}"
           "figcaption{font-size:80%}</style>\n"
-       << "<h1>" << text(title) << "</h1>\n"
+       << "<h1>" << html_escaped(title) << "</h1>\n"
        << table(classes, pictures);
   if (drawn)
     page << "<h2>Reliability</h2>\n<img src=reliability.png alt=\"reliability diagram\">\n";
   else
-    page << "<p>No reliability diagram: " << text(drawn.error().message()) << "</p>\n";
+    page << "<p>No reliability diagram: " << html_escaped(drawn.error().message()) << "</p>\n";
   page << "<h2>Failures</h2>\n";
   std::size_t failures = 0;
   for (const Judged& picture : pictures) {
@@ -124,7 +95,7 @@ Expected<void> write_report(const std::filesystem::path& folder, const std::stri
     if (shown)
       page << "<img alt=\"\" src=\"data:image/jpeg;base64,"
            << base64(encode_jpeg(shrink(*shown, thumbnail_side), 80)) << "\">";
-    page << "<figcaption>" << text(picture.file.filename().string()) << "<br>"
+    page << "<figcaption>" << html_escaped(picture.file.filename().string()) << "<br>"
          << name_of(classes, picture.truth, "a stranger") << " taken for "
          << name_of(classes, picture.best, "nothing")
          << fmt::format(", {:.0f} % sure</figcaption></figure>\n", 100 * picture.probability);

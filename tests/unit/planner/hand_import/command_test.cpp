@@ -10,6 +10,8 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "common/base/file_text.hpp"
+#include "common/model/hand_model.hpp"
 #include "tests/support/mjcf/mjcf_text.hpp"
 #include "tests/support/paths/paths.hpp"
 #include "tests/unit/planner/hand_import/made_hands.hpp"
@@ -91,6 +93,18 @@ TEST(HandCommand, AddsAForeignGripper) {
   ASSERT_EQ(document["trial_grasps"].size(), 3u);
   EXPECT_TRUE(document["trial_grasps"][0]["held"]) << answer.output;
   EXPECT_TRUE(std::filesystem::exists(folder / "made" / "hand.toml"));
+
+  // The page shows each posture and each trial, and every picture that it names is there.
+  const std::string page = prehend::read_file(folder / "made" / "hand.html").value();
+  std::size_t pictures = 0;
+  for (std::size_t at = 0; (at = page.find("src=\"", at)) != std::string::npos; ++pictures) {
+    at += 5;
+    const path picture = folder / "made" / page.substr(at, page.find('"', at) - at);
+    EXPECT_GT(std::filesystem::file_size(picture), 1000u) << picture;
+  }
+  const auto hand = prehend::model::HandModel::load(folder / "made");
+  ASSERT_TRUE(hand) << hand.error().message();
+  EXPECT_EQ(pictures, hand->postures().size() + document["trial_grasps"].size());
 }
 
 // The folder of a package is said, a file of MuJoCo has a part in another file, and xacro that
