@@ -1,7 +1,6 @@
 #include "tests/architecture/house.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cctype>
 #include <fstream>
 #include <iterator>
@@ -9,8 +8,6 @@
 
 namespace prehend::architecture {
 namespace {
-
-constexpr std::array top_folders{"common", "deploy", "docs", "idl", "services", "tests"};
 
 // What recipes lay over a copy of this tree is no part of this one: tests/recipes/NAME/files.
 constexpr std::string_view recipes = "tests/recipes/";

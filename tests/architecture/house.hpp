@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <map>
 #include <set>
@@ -8,6 +9,9 @@
 #include <vector>
 
 namespace prehend::architecture {
+
+/// Those that are ours.
+inline constexpr std::array top_folders{"common", "deploy", "docs", "idl", "services", "tests"};
 
 struct Include {
   int line = 0;  // from 1, as everywhere here

@@ -17,6 +17,7 @@ constexpr std::array all_rules{
     Rule{"functions", "make smaller ones, or say why not in a comment «Long: ...»",
          broken_functions},
     Rule{"services", "make it like the other services", unlike_services},
+    Rule{"root", "put it into the folder that it belongs to", strays_at_the_root},
     Rule{"pages", "mend the page", broken_pages},
     Rule{"words", "use the word of docs/glossary.md", retired_words},
     Rule{"programs", "return an error; only main() ends a program", process_ends_in_libraries},

@@ -41,6 +41,7 @@ Violations broken_targets(const House& house, const Agreed& agreed);
 Violations broken_namespaces(const House& house, const Agreed& agreed);
 Violations broken_functions(const House& house, const Agreed& agreed);
 Violations unlike_services(const House& house, const Agreed& agreed);
+Violations strays_at_the_root(const House& house, const Agreed& agreed);
 Violations broken_pages(const House& house, const Agreed& agreed);
 Violations retired_words(const House& house, const Agreed& agreed);
 Violations process_ends_in_libraries(const House& house, const Agreed& agreed);

@@ -419,6 +419,11 @@ Breaks word_breaks() {
   };
 }
 
+Breaks root_breaks() {
+  return {{"root", "a file that an option made by mistake", "--help", {{"--help", "x\n"}}},
+          {"root", "a page of its own", "NOTES.md", {{"NOTES.md", "x\n"}}}};
+}
+
 Breaks page_breaks() {
   return {
       {"pages",
@@ -528,6 +533,7 @@ std::vector<Break> breaks() {
   add(all, main_breaks());
   add(all, function_breaks());
   add(all, word_breaks());
+  add(all, root_breaks());
   add(all, page_breaks());
   return all;
 }

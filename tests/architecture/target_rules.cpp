@@ -144,6 +144,11 @@ struct DataFolder {
 constexpr std::array data_folders{DataFolder{"services/mapping", "trained"},
                                   DataFolder{"services/mapping", "schemes"}};
 
+// Beside folders and files whose names begin with a dot, which tools want there.
+constexpr std::array files_of_the_root{"ARCHITECTURE.md",   "CMakeLists.txt", "CMakePresets.json",
+                                       "LICENSE",           "README.md",      "REFERENCES.md",
+                                       "docker-compose.yml"};
+
 bool is_part_of_a_service(std::string_view service, std::string_view name) {
   return std::find(layers.begin(), layers.end(), name) != layers.end() ||
          std::any_of(data_folders.begin(), data_folders.end(), [&](const DataFolder& data) {
@@ -184,6 +189,18 @@ Violations unlike_services(const House& house, const Agreed&) {
     if (!is_part_of_a_service(service, name))
       violations.push_back({path, 1, "is no part that services have"});
   }
+  return violations;
+}
+
+Violations strays_at_the_root(const House& house, const Agreed&) {
+  Violations violations;
+  for (const std::string& path : house.paths)
+    if (path.find('/') == std::string::npos &&
+        std::find(top_folders.begin(), top_folders.end(), path) == top_folders.end() &&
+        !path.starts_with('.') &&
+        std::find(files_of_the_root.begin(), files_of_the_root.end(), path) ==
+            files_of_the_root.end())
+      violations.push_back({path, 1, "is no file of the root"});
   return violations;
 }
 

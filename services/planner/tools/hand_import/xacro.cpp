@@ -48,7 +48,8 @@ std::string last_line(std::string text) {
   return text.substr(text.rfind('\n') + 1);  // npos + 1 is 0
 }
 
-/// Runs xacro and waits. Its exit code; none, with errno, when it cannot be started.
+/// Runs xacro and waits. Its exit code; none, with errno, when it cannot be started. Not by
+/// stage::Process: that comes with DDS, which nothing here needs.
 std::optional<int> run_xacro(const std::vector<std::string>& words, std::FILE* out,
                              std::FILE* complaints) {
   std::vector<char*> arguments;
