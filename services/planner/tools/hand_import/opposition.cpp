@@ -19,7 +19,7 @@ constexpr int kept = 8;                           // of the samples, to be refin
 constexpr std::array radii{0.015, 0.022, 0.033};  // m, of the rods that are tried
 constexpr double good = 0.4;                      // quality of a grip that counts
 constexpr std::size_t judged = 10;  // of all, in the physics: the best by worth come first
-constexpr double enough = 5.75;     // objects held of six, more than which are not looked for
+constexpr double enough = 4;        // objects held of six, more than which are not looked for
 constexpr double clearly = 0.5;     // objects more that another place must hold
 constexpr double better = 0.8;      // by which a found place must surpass the known axes
 constexpr double aside = 0.25;      // what a DoF costs that leaves its rest by its whole range
