@@ -56,7 +56,7 @@ TEST(Report, ShowsFailuresAndEscapesNames) {
   std::ifstream in(folder / "index.html");
   const std::string page{std::istreambuf_iterator<char>(in), {}};
   std::filesystem::remove_all(folder);
-  EXPECT_NE(page.find("a &lt;b> &amp; c"), std::string::npos);
+  EXPECT_NE(page.find("a &lt;b&gt; &amp; c"), std::string::npos);
   EXPECT_EQ(page.find("<two>"), std::string::npos);
   std::size_t figures = 0;
   for (std::size_t at = 0; (at = page.find("<figure>", at)) != std::string::npos; ++at) ++figures;
