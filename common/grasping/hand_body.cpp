@@ -177,7 +177,8 @@ void HandBody::build_drives() {
     motor->finalizeMultiDof();  // otherwise its impulse cannot be read before the first step
     world_.addMultiBodyConstraint(motor.get());
     motors_.push_back(std::move(motor));
-    auto limit = std::make_unique<JointLimit>(multibody_.get(), i, joint.lower, joint.upper);
+    auto limit = std::make_unique<btMultiBodyJointLimitConstraint>(multibody_.get(), i, joint.lower,
+                                                                   joint.upper);
     world_.addMultiBodyConstraint(limit.get());
     limits_.push_back(std::move(limit));
   }

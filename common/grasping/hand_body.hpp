@@ -2,6 +2,7 @@
 
 #include <BulletCollision/BroadphaseCollision/btOverlappingPairCache.h>
 #include <BulletDynamics/Featherstone/btMultiBody.h>
+#include <BulletDynamics/Featherstone/btMultiBodyJointLimitConstraint.h>
 #include <BulletDynamics/Featherstone/btMultiBodyJointMotor.h>
 #include <BulletDynamics/Featherstone/btMultiBodyLinkCollider.h>
 
@@ -14,7 +15,6 @@
 #include "common/base/pose.hpp"
 #include "common/grasping/arm.hpp"
 #include "common/grasping/gear.hpp"
-#include "common/grasping/joint_limit.hpp"
 #include "common/grasping/surface.hpp"
 #include "common/model/hand_model.hpp"
 
@@ -110,7 +110,7 @@ class HandBody {
   std::vector<std::unique_ptr<btMultiBodyLinkCollider>> colliders_;
   std::vector<std::unique_ptr<btMultiBodyJointMotor>> motors_;  // of each joint; null: geared
   std::vector<std::unique_ptr<Gear>> gears_;
-  std::vector<std::unique_ptr<JointLimit>> limits_;
+  std::vector<std::unique_ptr<btMultiBodyJointLimitConstraint>> limits_;
   std::vector<Clutch> clutches_;  // of each DoF
 };
 

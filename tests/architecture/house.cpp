@@ -1,9 +1,12 @@
 #include "tests/architecture/house.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cctype>
+#include <cstdio>
 #include <fstream>
 #include <iterator>
+#include <memory>
 #include <sstream>
 
 namespace prehend::architecture {
@@ -108,6 +111,21 @@ void take_folder(House& house, const std::filesystem::path& root,
   }
 }
 
+// Names at the root that git keeps: who follows a tutorial leaves files of his own there. Empty:
+// git knows nothing of this tree, so that all count.
+std::set<std::string> kept_at_the_root(const std::filesystem::path& root) {
+  std::set<std::string> names;
+  const std::string command = "git -C '" + root.string() + "' ls-files 2>/dev/null";
+  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> git(::popen(command.c_str(), "r"),
+                                                            ::pclose);
+  std::array<char, 4096> line;
+  while (git && std::fgets(line.data(), line.size(), git.get())) {
+    const std::string_view path(line.data());
+    names.emplace(path.substr(0, path.find_first_of("/\n")));
+  }
+  return names;
+}
+
 // The end of the comment or the string that begins at `at`; `at` itself where none does.
 std::size_t end_of_words(std::string_view text, std::size_t at) {
   const auto after = [&](std::string_view end, std::size_t from) {
@@ -144,8 +162,15 @@ std::size_t end_of_words(std::string_view text, std::size_t at) {
 House read_house(const std::filesystem::path& root) {
   House house;
   std::error_code ignored;
-  for (const auto& entry : std::filesystem::directory_iterator(root, ignored))
-    if (entry.is_regular_file()) take(house, root, entry.path());
+  const std::set<std::string> kept = kept_at_the_root(root);
+  for (const auto& entry : std::filesystem::directory_iterator(root, ignored)) {
+    const std::string name = entry.path().filename().string();
+    if (!kept.empty() && !kept.contains(name)) continue;
+    if (entry.is_regular_file())
+      take(house, root, entry.path());
+    else if (name != "build")
+      house.paths.insert(name);
+  }
   for (const char* folder : top_folders)
     if (std::filesystem::is_directory(root / folder)) take_folder(house, root, root / folder);
   const auto by_path = [](const File& a, const File& b) { return a.path < b.path; };

@@ -421,7 +421,8 @@ Breaks word_breaks() {
 
 Breaks root_breaks() {
   return {{"root", "a file that an option made by mistake", "--help", {{"--help", "x\n"}}},
-          {"root", "a page of its own", "NOTES.md", {{"NOTES.md", "x\n"}}}};
+          {"root", "a page of its own", "NOTES.md", {{"NOTES.md", "x\n"}}},
+          {"root", "a folder of its own", "attic", {{"attic/old.txt", "x\n"}}}};
 }
 
 Breaks page_breaks() {

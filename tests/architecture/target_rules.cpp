@@ -200,7 +200,7 @@ Violations strays_at_the_root(const House& house, const Agreed&) {
         !path.starts_with('.') &&
         std::find(files_of_the_root.begin(), files_of_the_root.end(), path) ==
             files_of_the_root.end())
-      violations.push_back({path, 1, "is no file of the root"});
+      violations.push_back({path, 1, "has no place at the root"});
   return violations;
 }
 

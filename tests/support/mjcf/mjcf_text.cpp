@@ -88,6 +88,21 @@ constexpr const char* three_fingers = R"(<mujoco>
   </actuator>
 </mujoco>)";
 
+/// A crank, a coupler and a rocker; the toe on the coupler is tied to the rocker. {0}: the side.
+constexpr const char* linkage = R"(
+      <body name="{0}" pos="0 {1} .015" euler="0 0 {2}">
+        <body name="{0}_crank">
+          <joint name="{0}_crank" class="crank"/><geom pos="0 0 .02"/>
+          <body name="{0}_coupler" pos="0 0 .045">
+            <joint name="{0}_coupler"/><geom pos="0 -.01 .03" size=".01 .004 .025"/>
+            <body name="{0}_toe" pos="0 -.01 0">
+              <joint name="{0}_toe" class="toe"/><geom pos="0 -.005 0" size=".008 .004 .004"/>
+            </body>
+          </body>
+        </body>
+        <body name="{0}_rocker" pos="0 -.02 0"><joint name="{0}_rocker"/><geom pos="0 0 .02"/></body>
+      </body>)";
+
 constexpr const char* linkages = R"(<mujoco model="linkages">
   <compiler angle="radian"/>
   <default>
@@ -98,31 +113,7 @@ constexpr const char* linkages = R"(<mujoco model="linkages">
   </default>
   <worldbody>
     <body name="palm">
-      <geom size=".03 .05 .015"/>
-      <body name="left" pos="0 .03 .015">
-        <body name="left_crank">
-          <joint name="left_crank" class="crank"/><geom pos="0 0 .02"/>
-          <body name="left_coupler" pos="0 0 .045">
-            <joint name="left_coupler"/><geom pos="0 -.01 .03" size=".01 .004 .025"/>
-            <body name="left_toe" pos="0 -.01 0">
-              <joint name="left_toe" class="toe"/><geom pos="0 -.005 0" size=".008 .004 .004"/>
-            </body>
-          </body>
-        </body>
-        <body name="left_rocker" pos="0 -.02 0"><joint name="left_rocker"/><geom pos="0 0 .02"/></body>
-      </body>
-      <body name="right" pos="0 -.03 .015" euler="0 0 3.141592653589793">
-        <body name="right_crank">
-          <joint name="right_crank" class="crank"/><geom pos="0 0 .02"/>
-          <body name="right_coupler" pos="0 0 .045">
-            <joint name="right_coupler"/><geom pos="0 -.01 .03" size=".01 .004 .025"/>
-            <body name="right_toe" pos="0 -.01 0">
-              <joint name="right_toe" class="toe"/><geom pos="0 -.005 0" size=".008 .004 .004"/>
-            </body>
-          </body>
-        </body>
-        <body name="right_rocker" pos="0 -.02 0"><joint name="right_rocker"/><geom pos="0 0 .02"/></body>
-      </body>
+      <geom size=".03 .05 .015"/>{}{}
     </body>
   </worldbody>
   <equality>
@@ -271,7 +262,8 @@ std::string mjcf_three_fingers() {
 }
 
 std::string mjcf_linkages() {
-  return linkages;
+  return fmt::format(linkages, fmt::format(linkage, "left", ".03", "0"),
+                     fmt::format(linkage, "right", "-.03", "3.141592653589793"));
 }
 
 std::string mjcf_of(const planner::Robot& robot, const MjcfStyle& style) {

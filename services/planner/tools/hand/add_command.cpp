@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cctype>
 #include <fstream>
 #include <iostream>
@@ -140,6 +141,19 @@ Expected<void> note_fingers(Robot& robot, const std::vector<std::string>& finger
   return {};
 }
 
+/// Who was told a link beside the fingers would wait for a finger that nobody leads.
+Expected<void> check_fingers(const model::HandModel& hand,
+                             const std::vector<std::string>& fingers) {
+  for (const std::string& told : fingers) {
+    const auto finger = model::finger_from_string(told.substr(0, told.find('=')));
+    if (std::ranges::none_of(hand.fingertips(),
+                             [&](const auto& tip) { return tip.human == finger; }))
+      return fail("is no part of a finger of its own", "--fingers " + told,
+                  "name a link between palm and fingertip, another for each finger");
+  }
+  return {};
+}
+
 int run_add(AddArguments arguments) {
   for (const char c : arguments.name)
     if (!std::isalnum(static_cast<unsigned char>(c)) && c != '_' && c != '-')
@@ -166,6 +180,8 @@ int run_add(AddArguments arguments) {
                hand.error().message());
     return 1;
   }
+  if (const auto led = check_fingers(hand->model, arguments.fingers); !led)
+    return tool::complain(led.error(), exit_wrong_use);
   const auto bodies = planner::catalogue_bodies();
   if (!bodies) return tool::complain(bodies.error(), exit_broken);
   if (const auto written = write_folder(*hand, arguments.output); !written)

@@ -1,5 +1,6 @@
 // `prehend hand` as a user calls it: exit codes, JSON alone on standard output, and the example of
 // services/planner/README.md line by line.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -105,6 +106,31 @@ TEST(HandCommand, AddsAForeignGripper) {
   const auto hand = prehend::model::HandModel::load(folder / "made");
   ASSERT_TRUE(hand) << hand.error().message();
   EXPECT_EQ(pictures, hand->postures().size() + document["trial_grasps"].size());
+}
+
+// Whom a person's fingers lead can be said; what leads nobody is refused, and nothing is written.
+TEST(HandCommand, HumanFingersAreToldByLinks) {
+  const path folder = scratch("fingers");
+  std::ofstream(folder / "palm.obj") << made_hands::palm_mesh();
+  std::ofstream(folder / "gripper.urdf") << made_hands::gripper();
+  const auto add = [&](const std::string& fingers) {
+    return run("prehend hand add " + (folder / "gripper.urdf").string() +
+                   " --name told --candidates 1 --json --output " + (folder / "made").string() +
+                   " --fingers " + fingers,
+               folder);
+  };
+  for (const char* wrong : {"nose=left_finger", "thumb", "thumb=nowhere", "thumb=body"}) {
+    const Answer refused = add(wrong);
+    EXPECT_EQ(refused.code, 2) << wrong;
+    EXPECT_THAT(refused.complaint, testing::HasSubstr("--fingers")) << wrong;
+    EXPECT_FALSE(std::filesystem::exists(folder / "made")) << wrong;
+  }
+  EXPECT_EQ(add("thumb=left_finger,middle=right_finger").code, 0);
+  const auto hand = prehend::model::HandModel::load(folder / "made");
+  ASSERT_TRUE(hand) << hand.error().message();
+  for (const auto& tip : hand->fingertips())
+    EXPECT_EQ(tip.human, tip.name.starts_with("left") ? prehend::model::Finger::thumb
+                                                      : prehend::model::Finger::middle);
 }
 
 // The folder of a package is said, a file of MuJoCo has a part in another file, and xacro that
