@@ -12,6 +12,7 @@
 #include "idl/GlovePubSubTypes.h"
 #include "idl/OperationPubSubTypes.h"
 #include "idl/PerceptionPubSubTypes.h"
+#include "idl/PlanningPubSubTypes.h"
 #include "idl/RobotPubSubTypes.h"
 #include "idl/TrainingPubSubTypes.h"
 #include "idl/WorldPubSubTypes.h"
@@ -55,8 +56,17 @@ inline constexpr Topic<v1::ObjectDetectionPubSubType> object_detection{
     {.name = "object/detection",
      .qos = {.transient_local = true},
      .writers = Role::recognition,
-     .readers = Role::mapping | Role::simulation | Role::demonstration,
+     .readers = Role::mapping | Role::simulation | Role::demonstration | Role::planner,
      .rate = "as camera/image",
+     .remark = "disposed when gone"}};
+
+inline constexpr Topic<v1::GraspCandidatesPubSubType> grasp_candidates{
+    {.name = "grasp/candidates",
+     .qos = {.transient_local = true},
+     .writers = Role::planner,
+     .readers = Role::mapping,
+     .open = true,
+     .rate = "as more are found",
      .remark = "disposed when gone"}};
 
 /// Ownership is shared: an exclusive reader would drop a second writer without a word, while the
@@ -227,11 +237,13 @@ inline constexpr Topic<v1::ServiceStatusPubSubType> service_status{
 /// In the order of the table in idl/README.md. What is not here has no reader and no writer
 /// (a static_assert of Participant).
 inline constexpr std::tuple typed_topics{
-    glove_frame,      hand_posture,  glove_button,     camera_image,        object_detection,
-    robot_command,    robot_state,   robot_gate,       arm_command,         arm_state,
-    scene_state,      object_state,  grasp_report,     demonstration_grasp, demonstration_segment,
-    task_model,       task_progress, mapping_training, operator_command,    operator_reply,
-    operator_consent, lab_clock,     lab_progress,     lab_beacon,          service_status};
+    glove_frame,      hand_posture,     glove_button,        camera_image,
+    object_detection, grasp_candidates, robot_command,       robot_state,
+    robot_gate,       arm_command,      arm_state,           scene_state,
+    object_state,     grasp_report,     demonstration_grasp, demonstration_segment,
+    task_model,       task_progress,    mapping_training,    operator_command,
+    operator_reply,   operator_consent, lab_clock,           lab_progress,
+    lab_beacon,       service_status};
 
 template <class PubSub>
 inline constexpr bool is_listed = std::apply(

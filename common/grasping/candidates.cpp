@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "common/base/random.hpp"
+#include "common/grasping/preshapes.hpp"
 
 namespace prehend::grasping {
 namespace {
@@ -56,20 +57,6 @@ Matrix3d symmetry(const model::Shape& shape, Random& random) {
   return Eigen::AngleAxisd(angle, axis.stableNormalized()).toRotationMatrix();
 }
 
-/// How much of their way the closing DoFs still have before them, on average.
-double left_to_close(const model::HandModel& hand, const VectorXd& posture) {
-  double left = 0;
-  int count = 0;
-  for (Eigen::Index i = 0; i < posture.size(); ++i) {
-    const model::HandDof& dof = hand.dofs()[static_cast<std::size_t>(i)];
-    if (dof.closing == 0) continue;
-    const double way = dof.closing > 0 ? dof.upper - posture[i] : posture[i] - dof.lower;
-    left += way / (dof.upper - dof.lower);
-    ++count;
-  }
-  return count == 0 ? 0 : left / count;
-}
-
 VectorXd sample_preshape(const model::HandModel& hand, const VectorXd& posture, double off_posture,
                          Random& random) {
   VectorXd dof = posture;
@@ -91,13 +78,6 @@ VectorXd sample_preshape(const model::HandModel& hand, const VectorXd& posture, 
 }
 
 }  // namespace
-
-std::vector<std::string> opened_postures(const model::HandModel& hand) {
-  std::vector<std::string> names{"open"};
-  for (const auto& [name, dof] : hand.postures())
-    if (name != "open" && left_to_close(hand, dof) >= 0.5) names.push_back(name);
-  return names;
-}
 
 double narrowest_width(const model::Shape& shape) {
   return 2 * model::half_extents(shape).minCoeff();

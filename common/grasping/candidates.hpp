@@ -30,10 +30,6 @@ struct Candidate {
 Candidate sample_candidate(const model::HandModel& hand, const model::Shape& shape,
                            std::uint64_t seed, int index, double off_posture = 0.7);
 
-/// Named postures from which a hand can close: «open», then all others that have half their way
-/// before them.
-std::vector<std::string> opened_postures(const model::HandModel& hand);
-
 /// Across the object's narrowest side, m.
 double narrowest_width(const model::Shape& shape);
 

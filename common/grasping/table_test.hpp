@@ -9,6 +9,7 @@ struct TableGrasp {
   Pose X_OG;
   Eigen::VectorXd open, dof;  // before it closes, and where its fingers stop
   Eigen::VectorXd closing;    // of each DoF: +1, -1, which way it presses, 0 if it rests
+  double epsilon = -1;        // of the contacts; -1 without force closure
 };
 
 /// Whether the object is held when the fingers close as the mapping has them close: from the open

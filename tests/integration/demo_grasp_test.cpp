@@ -45,6 +45,18 @@ TEST_P(DemoOfHand, HoldsTheObject) {
 
 INSTANTIATE_TEST_SUITE_P(Others, DemoOfHand, testing::Values("dlr", "parallel_jaw"));
 
+// Grasps are planned for what is seen, and the hand follows one.
+TEST_F(Demo, WithPlannedGraspsHoldsTheObject) {
+  ::setenv("XDG_STATE_HOME", (folder_ / "state").c_str(), 1);
+  const Answer answer = demo({"--seed", "1", "--mode", "planned"});
+  ASSERT_EQ(answer.exit_code, 0) << answer.output << answer.log;
+  const json document = json::parse(answer.output);
+  EXPECT_EQ(document["grasp"]["held"], true);
+  EXPECT_EQ(document["mapping"]["mode"], "intelligent");
+  EXPECT_FALSE(std::filesystem::is_empty(folder_ / "state/prehend/grasps/barrett"))
+      << "what was searched is kept";
+}
+
 // The same grasp through devices that have nothing in common but hand/posture.
 class DemoOfDevice : public Demo, public testing::WithParamInterface<const char*> {};
 

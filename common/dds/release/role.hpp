@@ -22,11 +22,13 @@ enum class Role : std::uint16_t {
   demonstration = 1 << 9,
   performer = 1 << 10,  // does tasks: `prehend tasks run`
   console = 1 << 11,    // reads everything, and gives the orders of its page
+  planner = 1 << 12,    // says how the lab's hand may take what is seen
 };
-inline constexpr std::array<std::pair<Role, std::string_view>, 12> role_names{{
+inline constexpr std::array<std::pair<Role, std::string_view>, 13> role_names{{
     {Role::glove, "glove"},
     {Role::recognition, "recognition"},
     {Role::mapping, "mapping"},
+    {Role::planner, "planner"},
     {Role::simulation, "simulation"},
     {Role::demonstration, "demonstration"},
     {Role::performer, "performer"},
@@ -74,6 +76,6 @@ constexpr Roles operator|(Role a, Role b) {
 inline constexpr Roles services = Role::glove | Role::recognition | Role::mapping |
                                   Role::simulation | Role::demonstration | Role::performer |
                                   Role::robot | Role::recorder | Role::replayer | Role::operator_ |
-                                  Role::console;
+                                  Role::console | Role::planner;
 
 }  // namespace prehend::dds

@@ -11,6 +11,7 @@ struct Listener::State {
   dds::Participant participant;
   std::optional<dds::Reader<v1::GloveFrame>> frames;
   std::optional<dds::Reader<v1::ObjectDetection>> detections;
+  std::optional<dds::Reader<v1::GraspCandidates>> candidates;
   std::optional<dds::Reader<v2::HandCommand>> commands;
   std::optional<dds::Reader<v1::GraspReport>> reports;
   std::optional<dds::Reader<v1::ArmState>> arms;
@@ -20,7 +21,7 @@ struct Listener::State {
 Expected<Listener> Listener::create(const service::Config& config, bool everything) {
   auto participant = dds::Participant::create(service::membership(config, "prehend", "viewer"));
   if (!participant) return tl::unexpected(participant.error());
-  auto state = std::make_unique<State>(State{std::move(*participant), {}, {}, {}, {}, {}, {}});
+  auto state = std::make_unique<State>(State{std::move(*participant), {}, {}, {}, {}, {}, {}, {}});
   std::optional<Error> error;
   const auto open = [&](auto& reader, const auto& topic) {
     auto made = state->participant.reader(topic);
@@ -33,6 +34,7 @@ Expected<Listener> Listener::create(const service::Config& config, bool everythi
   if (everything) {
     open(state->frames, dds::glove_frame);
     open(state->detections, dds::object_detection);
+    open(state->candidates, dds::grasp_candidates);
     open(state->commands, dds::robot_command);
     open(state->reports, dds::grasp_report);
     if (!config.text("robot.arm").empty()) open(state->arms, dds::arm_state);
@@ -60,6 +62,7 @@ void Listener::poll(Observer& observer) {
   }
   take(state_->frames);
   take(state_->detections);
+  take(state_->candidates);
   take(state_->commands);
   // What is heard of the arm ends with the report, so that comes last.
   take(state_->arms);

@@ -65,6 +65,10 @@ void Observer::hear(const v1::GraspReport& report) {
   if (!report_) report_ = report;
 }
 
+void Observer::hear(const v1::GraspCandidates& planned) {
+  planned_[planned.object().to_string()] = planned.complete();
+}
+
 void Observer::hear(const v1::ArmState& state) {
   if (arm_ && !report_) arm_->hear(state);
 }
@@ -101,6 +105,14 @@ bool Observer::has_counted(std::string_view name, std::string_view what) const {
 
 bool Observer::commanded() const {
   return command_ && command_->mode() != v1::MODE_HOLD;
+}
+
+bool Observer::planned() const {
+  return !detections_.empty() &&
+         std::all_of(detections_.begin(), detections_.end(), [this](const auto& seen) {
+           const auto found = planned_.find(seen.first);
+           return found != planned_.end() && found->second;
+         });
 }
 
 bool Observer::latency_is_in() const {

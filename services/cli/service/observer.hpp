@@ -12,6 +12,7 @@
 #include "idl/Glove.h"
 #include "idl/Operation.h"
 #include "idl/Perception.h"
+#include "idl/Planning.h"
 #include "idl/Robot.h"
 #include "idl/World.h"
 #include "services/cli/service/outcome.hpp"
@@ -31,6 +32,7 @@ class Observer {
   void hear(const v1::ObjectDetection& detection);
   void hear(const v2::HandCommand& command);
   void hear(const v1::GraspReport& report);
+  void hear(const v1::GraspCandidates& planned);
   void hear(const v1::ArmState& state);
   void hear(const v1::ServiceStatus& status);
   void lost_service(const std::string& key);
@@ -41,6 +43,8 @@ class Observer {
   bool has_counted(std::string_view service, std::string_view what) const;
   /// A command that follows the hand (not: hold) has been heard.
   bool commanded() const;
+  /// Something is seen, and of all that is seen the planner looks for no better grasps.
+  bool planned() const;
   /// The first grasp has been judged.
   bool judged() const { return report_.has_value(); }
   /// The simulation has told its latency since the grasp closed.
@@ -59,6 +63,7 @@ class Observer {
   std::optional<model::Scene> truth_;
   std::map<std::string, v1::ServiceStatus> services_;                  // by key
   std::map<std::string, std::deque<v1::ObjectDetection>> detections_;  // by name, in order of stamp
+  std::map<std::string, bool> planned_;                                // by name: completely
   std::optional<v2::HandCommand> command_;
   std::optional<v1::GraspReport> report_;
   std::optional<stage::ArmUse> arm_;

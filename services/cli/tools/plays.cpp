@@ -13,7 +13,7 @@ namespace {
 
 /// What decides who plays; the play itself reads all arguments.
 struct Choice {
-  std::string task, record, robot, hand;
+  std::string task, record, robot, hand, mode;
   bool watch = false, targets = false;
 };
 
@@ -26,6 +26,7 @@ Choice chosen_by(std::vector<std::string> arguments) {
   app.add_option("--record", choice.record);
   app.add_option("--robot", choice.robot);
   app.add_option("--hand", choice.hand);
+  app.add_option("--mode", choice.mode);
   app.add_flag("--watch", choice.watch);
   app.add_flag("--targets", choice.targets);
   std::reverse(arguments.begin(), arguments.end());  // as CLI11 takes them
@@ -42,6 +43,7 @@ std::string targets_of(const Choice& choice) {
   std::string targets = "lab";
   if (!choice.record.empty()) targets += " prehend-record";
   if (!choice.robot.empty()) targets += " prehend-robot prehend-robot-tool";
+  if (choice.mode == "planned") targets += " prehend-planner";
   // A user's hand is trained on first use.
   const auto ours = model::hand_names();
   if (!choice.hand.empty() && std::find(ours.begin(), ours.end(), choice.hand) == ours.end())

@@ -1,5 +1,6 @@
 #include "services/mapping/core/mapping.hpp"
 
+#include <algorithm>
 #include <utility>
 
 #include "common/model/human_hand.hpp"
@@ -183,7 +184,7 @@ Pose Mapping::clutch(const Pose& X_WG, Duration elapsed) {
 std::optional<GraspTarget> Mapping::select_target(const Pose& X_WG, Time now) {
   if (!options_.modes.intelligent && !options_.modes.placement) return std::nullopt;
   tracks_.forget_old(now);
-  return targets_.select(tracks_, X_WG);
+  return targets_.select(tracks_, planned_, X_WG);
 }
 
 /// Moves the weight of the intelligent answer.
@@ -207,14 +208,37 @@ Expected<NetworkAnswer> Mapping::answer(const Posture& posture, const Features& 
   NetworkAnswer made{std::move(*direct), joints.extrapolating};
   const GraspTarget* target = known_object();
   if (target != nullptr && options_.modes.intelligent) {
-    // select() lets through only shapes that have a network.
-    const NetworkAnswer known =
-        *model_.intelligent(features, target->object.detection.shape, target->X_OG);
+    const NetworkAnswer known = known_answer(features, *target);
     made.dof += weight() * (known.dof - made.dof);
     made.extrapolating = known.extrapolating || (joints.extrapolating && weight() < 1);
   }
-  made.dof = model_.limited(made.dof);
+  made.dof = limited(made.dof);
   return made;
+}
+
+/// Within what the model was trained to, or, where an answer was planned, what the hand can.
+Eigen::VectorXd Mapping::limited(const Eigen::VectorXd& dof) const {
+  const GraspTarget* target = known_object();
+  const bool planned = options_.modes.intelligent && target != nullptr && target->planned;
+  return planned ? hand_.clamp(dof) : model_.limited(dof);
+}
+
+/// What is right for the object: as it was planned, as far as the person has closed, or else its
+/// network's answer.
+NetworkAnswer Mapping::known_answer(const Features& features, const GraspTarget& target) const {
+  const model::Shape& shape = target.object.detection.shape;
+  // select() lets through only what is planned and shapes that have a network.
+  if (!target.planned) return *model_.intelligent(features, shape, target.X_OG);
+  const Candidate& grasp = *target.planned;
+  const ClosingAnswer closed = *model_.closing(features, shape, target.X_OG);
+  Eigen::VectorXd end = grasp.dof;
+  for (Eigen::Index i = 0; i < end.size(); ++i)
+    end[i] += grasp.closing[i] * hand_.dofs()[static_cast<std::size_t>(i)].squeeze;
+  end = hand_.clamp(end);
+  // Whoever has closed nearly as far as it takes wants to hold it.
+  constexpr double nearly = 0.8;
+  const double share = std::min(1.0, closed.share / nearly);
+  return {grasp.preshape + share * (end - grasp.preshape), closed.extrapolating};
 }
 
 /// Corrects where the hand goes.
@@ -224,7 +248,8 @@ void Mapping::place(const Pose& X_WG, const std::optional<GraspTarget>& seen, Du
   if (phase() == Phase::direct || !options_.modes.placement) {
     placement_.release();
   } else if (seen && phase() != Phase::leaving) {
-    if (options_.modes.intelligent)
+    // Planned fingers arrive together.
+    if (options_.modes.intelligent && !seen->planned)
       placement_.yield(*seen, targets_.engaged()->object.detection, distances_, command_.dof);
     placement_.aim(X_WG, *seen);
   }
@@ -239,13 +264,13 @@ Eigen::VectorXd Mapping::follow_through(const Eigen::VectorXd& dof, Duration ela
     return dof;
   }
   const bool closed = closes_on(distances_, dof, command_.X_WB, target->object.detection);
-  return model_.limited(follow_through_.go_on(dof, closed, grip_.touching(), elapsed));
+  return limited(follow_through_.go_on(dof, closed, grip_.touching(), elapsed));
 }
 
 /// As far as the hand may go in this time.
 void Mapping::move_toward(const Eigen::VectorXd& dof, const Pose& X_WB, Duration elapsed) {
   const double together = options_.modes.intelligent ? weight() : 0;
-  command_.dof = motion_.fingers(command_.dof, model_.limited(dof), together, elapsed);
+  command_.dof = motion_.fingers(command_.dof, limited(dof), together, elapsed);
   command_.X_WB = motion_.base(command_.X_WB, X_WB, elapsed);
 }
 

@@ -14,6 +14,7 @@
 #include "services/mapping/core/features.hpp"
 #include "services/mapping/core/finger_distances.hpp"
 #include "services/mapping/core/follow_through.hpp"
+#include "services/mapping/core/grasp_candidates.hpp"
 #include "services/mapping/core/grasp_type.hpp"
 #include "services/mapping/core/grip_controller.hpp"
 #include "services/mapping/core/hold_timer.hpp"
@@ -95,6 +96,11 @@ class Mapping {
   /// Refuses what ObjectTracks::observe does.
   Expected<void> on_detection(const Detection& detection) { return tracks_.observe(detection); }
   void on_detection_gone(std::uint32_t track) { tracks_.remove(track); }
+  /// Refuses what CandidateBook::observe does.
+  Expected<void> on_candidates(Candidates planned) {
+    return planned_.observe(std::move(planned), hand_);
+  }
+  void on_candidates_gone(std::uint32_t track) { planned_.remove(track); }
   /// Refuses what has not this hand's sizes or is not finite.
   Expected<void> on_state(const RobotState& state);
   /// Whether the robot hand obeys anybody, as its gate says. While it does not, commands stay where
@@ -121,8 +127,10 @@ class Mapping {
   void weigh(const std::optional<GraspTarget>& seen, Duration elapsed);  // 5, 6
   Expected<NetworkAnswer> answer(const Posture& posture, const Features& features,
                                  Duration elapsed);                                        // 7, 8
+  NetworkAnswer known_answer(const Features& features, const GraspTarget& target) const;   // 8
   void place(const Pose& X_WG, const std::optional<GraspTarget>& seen, Duration elapsed);  // 10, 11
-  Eigen::VectorXd follow_through(const Eigen::VectorXd& dof, Duration elapsed);            // 12
+  Eigen::VectorXd limited(const Eigen::VectorXd& dof) const;
+  Eigen::VectorXd follow_through(const Eigen::VectorXd& dof, Duration elapsed);      // 12
   void move_toward(const Eigen::VectorXd& dof, const Pose& X_WB, Duration elapsed);  // 14 to 16
 
   /// Of the intelligent answer, 0 to 1.
@@ -135,6 +143,7 @@ class Mapping {
   MappingOptions options_;
   FingerDistances distances_;
   ObjectTracks tracks_;
+  CandidateBook planned_;
   TargetSelector targets_;
   Arbitration arbitration_;
   Trust trust_;

@@ -13,6 +13,8 @@ constexpr double tolerance = 0.05;     // of a feature's range: noise, no extrap
 constexpr double same_limit = 1e-9;    // rad
 constexpr double little_apart = 0.15;  // less bent than the index finger: it stays out of a grasp
 
+const int closing_inputs = feature_count + size_count(SizeInput::seen, model::ShapeKind::unknown);
+
 NetworkAnswer answer(const MappingNetwork& network, const Eigen::VectorXd& asked) {
   const Eigen::VectorXd& low = network.input.minimum();
   const Eigen::VectorXd& high = network.input.maximum();
@@ -48,6 +50,11 @@ Expected<MappingModel> MappingModel::create(const model::HandModel& hand, ModelT
     return fail("weights for precision grasps are not finite", traits.scheme);
   for (const PalmOffset& place : traits.places)
     if (auto ok = check(place); !ok) return fail(ok.error().what, traits.scheme);
+  if (const auto& closing = traits.closing;
+      closing &&
+      (closing->network.inputs() != closing_inputs || closing->network.outputs() != 1 ||
+       closing->input.minimum().size() != closing_inputs || closing->output.minimum().size() != 1))
+    return fail("wrong number of inputs or outputs", "closing");
   std::set<model::ShapeKind> shapes;
   for (const MappingNetwork& network : networks) {
     const bool direct = network.shape == model::ShapeKind::unknown;
@@ -101,6 +108,16 @@ std::optional<NetworkAnswer> MappingModel::intelligent(const Features& features,
       return made;
     }
   return std::nullopt;
+}
+
+std::optional<ClosingAnswer> MappingModel::closing(const Features& features,
+                                                   const model::Shape& shape,
+                                                   const Pose& X_OG) const {
+  if (!traits_.closing) return std::nullopt;
+  Eigen::VectorXd input(closing_inputs);
+  input << features, size_numbers(SizeInput::seen, shape, X_OG);
+  const NetworkAnswer made = answer(*traits_.closing, input);
+  return ClosingAnswer{std::clamp(made.dof[0], 0.0, 1.0), made.extrapolating};
 }
 
 bool MappingModel::knows(model::ShapeKind shape) const {

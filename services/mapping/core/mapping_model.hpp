@@ -39,6 +39,16 @@ struct ModelTraits {
   Eigen::VectorXd precision;
   std::vector<PalmOffset> places;  // where the hand stands to grasp what
   std::string made_for;            // digest of the user's hand; empty: not said
+  /// How far a person has closed on an object, whatever robot hand answers: one output, 0 open to
+  /// 1, at which the robot's fingers shall be past contact. Told of the object: SizeInput::seen.
+  /// None: not learnt; planned grasps are then of no use.
+  std::optional<MappingNetwork> closing;
+};
+
+/// How far a person has closed, 0 to 1, and whether that lay outside what was trained.
+struct ClosingAnswer {
+  double share = 0;
+  bool extrapolating = false;
 };
 
 /// A robot posture, and whether the question lay outside what was trained.
@@ -67,6 +77,9 @@ class MappingModel {
   std::optional<NetworkAnswer> intelligent(const Features& features, const model::Shape& shape,
                                            const Pose& X_OG) const;
   bool knows(model::ShapeKind shape) const;
+  /// The same inputs: how far the person has closed on it. nullopt: not learnt.
+  std::optional<ClosingAnswer> closing(const Features& features, const model::Shape& shape,
+                                       const Pose& X_OG) const;
   /// The nearest posture within the scheme's limits; answers are already.
   Eigen::VectorXd limited(const Eigen::VectorXd& dof) const;
   /// Whether these fingers, above an object, make a precision grasp rather than a circular sphere.

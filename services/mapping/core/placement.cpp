@@ -44,7 +44,7 @@ void Placement::release() {
 
 /// Where the hand's grasp frame should stand.
 Pose Placement::place_of(const GraspTarget& target) const {
-  return target.X_WG * Eigen::Translation3d(target.p_GR + Eigen::Vector3d(0, yielded_, 0));
+  return target.X_WG * Eigen::Translation3d(0, yielded_, 0) * target.X_GR;
 }
 
 void Placement::yield(const GraspTarget& target, const Detection& object,

@@ -50,7 +50,8 @@ class Placement {
   /// does not push the object (see yielding()).
   void yield(const GraspTarget& target, const Detection& object, const FingerDistances& fingers,
              const Eigen::VectorXd& dof);
-  /// Corrects toward the target's grasp, shifted by its palm offset and by how far the hand yields.
+  /// Corrects toward the target's grasp, from where this hand stands in it, and by how far the hand
+  /// yields.
   void aim(const Pose& X_WG, const GraspTarget& target);
   /// The correction goes on to where it shall be. weight: share of it, 0 to 1.
   void follow(double weight, Duration elapsed);

@@ -7,8 +7,9 @@
 
 namespace prehend::mapping {
 
-std::optional<GraspTarget> TargetSelector::within_reach(const ObjectTrack& track, const Pose& X_WG,
-                                                        bool engaged) const {
+std::optional<GraspTarget> TargetSelector::within_reach(const ObjectTrack& track,
+                                                        const CandidateBook& planned,
+                                                        const Pose& X_WG, bool engaged) const {
   const Detection& detection = track.detection;
   const auto X_OG =
       model::nearest_grasp(detection.shape, detection.X_WO.inverse() * X_WG, hand_.reach());
@@ -19,17 +20,25 @@ std::optional<GraspTarget> TargetSelector::within_reach(const ObjectTrack& track
   if (distance > (engaged ? options_.leave : options_.enter) ||
       angle > (engaged ? options_.leave_angle : options_.enter_angle))
     return std::nullopt;
-  return GraspTarget{track, distance, X_WG_grasp, *X_OG,
-                     place_for(model_.traits().places, detection.shape, *X_OG)};
+  if (auto candidate = planned.answer(detection.track, detection.shape, *X_OG);
+      candidate && model_.traits().closing) {
+    const Pose X_OG_planned = candidate->X_OG;
+    const Pose X_GR = X_OG_planned.inverse() * candidate->X_OR;
+    return GraspTarget{track,        distance, detection.X_WO * X_OG_planned,
+                       X_OG_planned, X_GR,     std::move(candidate)};
+  }
+  if (!model_.knows(detection.shape.kind)) return std::nullopt;
+  const Pose X_GR = make_pose(place_for(model_.traits().places, detection.shape, *X_OG));
+  return GraspTarget{track, distance, X_WG_grasp, *X_OG, X_GR, std::nullopt};
 }
 
 std::optional<GraspTarget> TargetSelector::select(const ObjectTracks& tracks,
+                                                  const CandidateBook& planned,
                                                   const Pose& X_WG) const {
   std::optional<GraspTarget> nearest, kept;
   for (const auto& [number, track] : tracks.known()) {
-    if (!model_.knows(track.detection.shape.kind)) continue;
     const bool engaged = engaged_ && engaged_->object.detection.track == number;
-    auto found = within_reach(track, X_WG, engaged);
+    auto found = within_reach(track, planned, X_WG, engaged);
     if (!found) continue;
     if (engaged) kept = found;
     if (!nearest || found->distance < nearest->distance) nearest = std::move(found);

@@ -6,6 +6,7 @@
 #include "common/base/pose.hpp"
 #include "common/model/hand_model.hpp"
 #include "services/mapping/core/arbitration.hpp"
+#include "services/mapping/core/grasp_candidates.hpp"
 #include "services/mapping/core/mapping_model.hpp"
 #include "services/mapping/core/object_tracks.hpp"
 
@@ -28,10 +29,11 @@ struct TargetOptions {
 /// An object within reach, and how to grasp it.
 struct GraspTarget {
   ObjectTrack object;
-  double distance = 0;                             // m, from the hand to its nearest grasp
-  Pose X_WG = Pose::Identity();                    // that grasp
-  Pose X_OG = Pose::Identity();                    // the same on the object
-  Eigen::Vector3d p_GR = Eigen::Vector3d::Zero();  // m: where this hand stands in it (PalmOffset)
+  double distance = 0;               // m, from the hand to its nearest grasp
+  Pose X_WG = Pose::Identity();      // that grasp
+  Pose X_OG = Pose::Identity();      // the same on the object
+  Pose X_GR = Pose::Identity();      // where this hand stands in it: as planned, or PalmOffset
+  std::optional<Candidate> planned;  // the fingers of this grasp
 };
 
 /// Chooses the object that the hand reaches for, and stays with it. Keeps references to the hand
@@ -43,8 +45,10 @@ class TargetSelector {
       : hand_(hand), model_(model), options_(options) {}
 
   /// The object within reach of the human grasp frame X_WG: the nearest one; while one is reached
-  /// for, that one or none. Objects whose shape the model does not know are not there.
-  std::optional<GraspTarget> select(const ObjectTracks& tracks, const Pose& X_WG) const;
+  /// for, that one or none. Objects whose shape the model does not know, and for which nothing is
+  /// planned, are not there.
+  std::optional<GraspTarget> select(const ObjectTracks& tracks, const CandidateBook& planned,
+                                    const Pose& X_WG) const;
 
   /// Takes what select() gave for what is reached for, after Arbitration's phase went from `before`
   /// to `now`. A grip keeps its object as it was seen last: a hand hides what it grips.
@@ -54,8 +58,8 @@ class TargetSelector {
   const std::optional<GraspTarget>& engaged() const { return engaged_; }
 
  private:
-  std::optional<GraspTarget> within_reach(const ObjectTrack& track, const Pose& X_WG,
-                                          bool engaged) const;
+  std::optional<GraspTarget> within_reach(const ObjectTrack& track, const CandidateBook& planned,
+                                          const Pose& X_WG, bool engaged) const;
 
   const model::HandModel& hand_;
   const MappingModel& model_;

@@ -21,6 +21,18 @@ void write(const learning::Scaling& scaling, messages::ScalingRange& to) {
   to.set_kind(std::string(to_string(scaling.kind())));
 }
 
+void write(const MappingNetwork& network, messages::MappingNetwork& to) {
+  if (network.shape != model::ShapeKind::unknown)
+    to.set_shape(std::string(to_string(network.shape)));
+  to.set_shortcut(network.network.wiring() == learning::Wiring::shortcut);
+  learning::write(network.network, *to.mutable_layers());
+  write(network.input, *to.mutable_input());
+  write(network.output, *to.mutable_output());
+  to.mutable_errors()->set_training(network.errors.training);
+  to.mutable_errors()->set_validation(network.errors.validation);
+  to.mutable_errors()->set_test(network.errors.test);
+}
+
 Expected<learning::Scaling> read(const messages::ScalingRange& from) {
   const auto scaling_kind = learning::scaling_from_string(from.kind());
   if (!scaling_kind) return fail(fmt::format("unknown scaling «{}»", from.kind()));
@@ -107,6 +119,11 @@ Expected<MappingModel> load_mapping_model(const std::filesystem::path& file,
     traits.places.push_back({*shape, Eigen::Vector4d::Map(from.seen().data()),
                              Eigen::Vector3d::Map(from.place().data())});
   }
+  if (message.has_closing()) {
+    auto closing = read(message.closing());
+    if (!closing) return refuse(closing.error().message());
+    traits.closing = std::move(*closing);
+  }
   auto made = MappingModel::create(hand, std::move(traits), std::move(networks));
   if (!made) return refuse(made.error().message());
   return made;
@@ -143,18 +160,8 @@ Expected<void> save_mapping_model(const std::filesystem::path& file, const Mappi
     to.mutable_seen()->Add(place.seen.begin(), place.seen.end());
     to.mutable_place()->Add(place.p_GR.begin(), place.p_GR.end());
   }
-  for (const MappingNetwork& network : model.networks()) {
-    messages::MappingNetwork& to = *message.add_networks();
-    if (network.shape != model::ShapeKind::unknown)
-      to.set_shape(std::string(to_string(network.shape)));
-    to.set_shortcut(network.network.wiring() == learning::Wiring::shortcut);
-    learning::write(network.network, *to.mutable_layers());
-    write(network.input, *to.mutable_input());
-    write(network.output, *to.mutable_output());
-    to.mutable_errors()->set_training(network.errors.training);
-    to.mutable_errors()->set_validation(network.errors.validation);
-    to.mutable_errors()->set_test(network.errors.test);
-  }
+  for (const MappingNetwork& network : model.networks()) write(network, *message.add_networks());
+  if (traits.closing) write(*traits.closing, *message.mutable_closing());
   return proto::write_sealed(file, kind, message.SerializeAsString());
 }
 

@@ -79,6 +79,8 @@ class Service::Topics {
                     Handler<v1::HandPosture>([this](auto& s, auto& i) { on_posture(s, i); }));
     shell.subscribe(dds::object_detection,
                     Handler<v1::ObjectDetection>([this](auto& s, auto& i) { on_detection(s, i); }));
+    shell.subscribe(dds::grasp_candidates, Handler<v1::GraspCandidates>(
+                                               [this](auto& s, auto& i) { on_candidates(s, i); }));
     shell.subscribe(dds::robot_state,
                     Handler<v1::HandState>([this](auto& s, auto& i) { on_state(s, i); }));
     // In lockstep there is none.
@@ -138,6 +140,17 @@ class Service::Topics {
     if (seen_.size() < max_tracks) seen_[message.track()] = shell_.now();
     const auto taken = detection_from_message(message).and_then(
         [&](const Detection& detection) { return mapping_.on_detection(detection); });
+    if (!taken) shell_.status().drop(taken.error().what);
+  }
+
+  void on_candidates(const v1::GraspCandidates& message, const dds::SampleInfo& info) {
+    if (message.hand().to_string() != hand_name_) return;
+    if (info.gone) return mapping_.on_candidates_gone(message.track());
+    // Of another kind of hand, whose DoF may be as many.
+    if (message.model().to_string() != hand_->name().substr(0, 63))
+      return shell_.status().drop("grasp candidates of another hand");
+    const auto taken = candidates_from_message(message).and_then(
+        [&](Candidates planned) { return mapping_.on_candidates(std::move(planned)); });
     if (!taken) shell_.status().drop(taken.error().what);
   }
 

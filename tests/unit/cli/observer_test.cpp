@@ -252,5 +252,25 @@ TEST(Observer, OfAnArmTellsTheFastestJointAndHowLongItWasHindered) {
   EXPECT_EQ(arm->out_of_reach, 0.25);
 }
 
+// Who waits for plans reaches neither before anything is seen nor while one is looked for.
+TEST(Observer, PlannedIsWhenAllThatIsSeenIs) {
+  const auto planned = [](const std::string& object, bool complete) {
+    v1::GraspCandidates message;
+    message.object(object);
+    message.complete(complete);
+    return message;
+  };
+  Observer observer(truth());
+  EXPECT_FALSE(observer.planned());
+  observer.hear(detection("Talc", 0.1, 0, 1));
+  observer.hear(detection("Cup", -0.3, 0.2, 1));
+  observer.hear(planned("Talc", true));
+  EXPECT_FALSE(observer.planned());
+  observer.hear(planned("Cup", false));
+  EXPECT_FALSE(observer.planned());
+  observer.hear(planned("Cup", true));
+  EXPECT_TRUE(observer.planned());
+}
+
 }  // namespace
 }  // namespace prehend::cli

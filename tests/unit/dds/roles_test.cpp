@@ -29,6 +29,7 @@ const std::map<std::string, Roles> roles_of_path{
     {"services/recognition", Role::recognition},
     {"services/mapping", Role::mapping},
     {"services/mapping/tools/teach", Role::operator_},
+    {"services/planner", Role::planner},
     {"services/simulation", Role::simulation},
     {"services/demonstration", Role::demonstration},
     {"services/demonstration/tools/demonstrate", Role::operator_},
@@ -132,7 +133,7 @@ Names in_list(Role role, bool writes) {
 TEST(Roles, AreTheCallsOfEachService) {
   for (const Role role :
        {Role::glove, Role::recognition, Role::mapping, Role::simulation, Role::demonstration,
-        Role::performer, Role::recorder, Role::replayer, Role::console}) {
+        Role::performer, Role::planner, Role::recorder, Role::replayer, Role::console}) {
     EXPECT_EQ(in_code(role, true), in_list(role, true)) << name_of(role) << " writes";
     EXPECT_EQ(in_code(role, false), in_list(role, false)) << name_of(role) << " reads";
   }

@@ -7,6 +7,7 @@
 
 #include <numbers>
 
+#include "common/grasping/table_closing.hpp"
 #include "tests/support/shared_data.hpp"
 
 namespace prehend::mapping {
@@ -37,7 +38,7 @@ RobotGrasp grasp_of(GraspType type, double radius) {
   grasp.object = "can";
   grasp.type = type;
   grasp.shape = {model::ShapeKind::cylinder, {radius, radius, 0.2}};
-  const auto ways = approaches(grasp.shape, model::Reach{});
+  const auto ways = grasping::approaches(grasp.shape, model::Reach{});
   grasp.X_OG = type == GraspType::power_wrap ? ways.back() : ways.front();
   return grasp;
 }

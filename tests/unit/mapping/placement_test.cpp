@@ -119,7 +119,7 @@ TEST_P(PlacementOf, GoesToTheHandAndThenToTheGraspAtItsSpeed) {
     Pose X_WG = any_pose(random_, 0.5, 3);
     EXPECT_TRUE(placement.X_WB(X_WG).isApprox(X_WG * hand_.X_BG().inverse(), 1e-9));
     GraspTarget target;
-    target.p_GR = random_.normal3(0.003);
+    target.X_GR = make_pose(random_.normal3(0.003));
     Pose off = any_pose(random_, 1, 0.9 * options_.max_angle);
     off.translation() *= 0.015 / off.translation().norm();
     target.X_WG = X_WG * off;
@@ -138,13 +138,13 @@ TEST_P(PlacementOf, GoesToTheHandAndThenToTheGraspAtItsSpeed) {
       placement.aim(X_WG, target);
       follow(1);
     }
-    const Pose grasp = target.X_WG * Eigen::Translation3d(target.p_GR);
+    const Pose grasp = target.X_WG * target.X_GR;
     const Pose robot = placement.X_WB(X_WG) * hand_.X_BG();
     EXPECT_LT((robot.translation() - grasp.translation()).norm(), 1e-9);
     EXPECT_LT(angle_between(robot.linear(), grasp.linear()), 1e-6);
     // Half of it for half the weight.
     for (int i = 0; i < 50; ++i) follow(0.5);
-    EXPECT_NEAR(last.translation().norm(), 0.5 * (off * target.p_GR).norm(), 1e-9);
+    EXPECT_NEAR(last.translation().norm(), 0.5 * (off * target.X_GR.translation()).norm(), 1e-9);
     // What was corrected stays with the hand until the object is released.
     const Pose kept = correction(placement, X_WG);
     X_WG = any_pose(random_, 0.5, 3);

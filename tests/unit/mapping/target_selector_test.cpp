@@ -16,7 +16,7 @@
 namespace prehend::mapping {
 namespace {
 
-Pose from_the_side(const Eigen::Vector3d& p) {
+Pose coming_from_the_side(const Eigen::Vector3d& p) {
   Eigen::Matrix3d R;
   R << 0, 0, 1, 0, 1, 0, -1, 0, 0;
   return make_pose(p, R);
@@ -57,7 +57,7 @@ TEST_P(TargetSelectorOf, TakesTheNearestWithinReachAndThenStaysWithIt) {
     for (std::uint32_t track = 0; track < 3; ++track)
       ASSERT_TRUE(tracks.observe(standing(track, shapes[random.index(3)], random.uniform(-0.3, 0.3),
                                           random.uniform(-0.3, 0.3))));
-    const Pose X_WG = from_the_side({0, 0, random.uniform(0.05, 0.2)}) *
+    const Pose X_WG = coming_from_the_side({0, 0, random.uniform(0.05, 0.2)}) *
                       Eigen::AngleAxisd(random.normal(0.4), Eigen::Vector3d::UnitX());
     std::map<std::uint32_t, Way> ways;
     for (const auto& [number, track] : tracks.known())
@@ -69,7 +69,7 @@ TEST_P(TargetSelectorOf, TakesTheNearestWithinReachAndThenStaysWithIt) {
     };
     // Nothing is reached for: the nearest one that can be entered.
     TargetSelector fresh = selector_;
-    const auto first = fresh.select(tracks, X_WG);
+    const auto first = fresh.select(tracks, {}, X_WG);
     std::optional<std::uint32_t> nearest;
     for (const auto& [number, way] : ways)
       if (in_reach(number, options_.enter, options_.enter_angle) &&
@@ -86,7 +86,7 @@ TEST_P(TargetSelectorOf, TakesTheNearestWithinReachAndThenStaysWithIt) {
     for (const std::uint32_t engaged : {0u, 1u, 2u}) {
       TargetSelector busy = selector_;
       busy.update(GraspTarget{tracks.known().at(engaged)}, Phase::direct, Phase::engaging);
-      const auto again = busy.select(tracks, X_WG);
+      const auto again = busy.select(tracks, {}, X_WG);
       bool another = false;
       for (const auto& [number, way] : ways)
         another = another || (number != engaged && ways.contains(engaged) &&
@@ -116,10 +116,10 @@ TEST(TargetSelectorTest, SaysWhereTheHandStands) {
   ObjectTracks tracks({});
   ASSERT_TRUE(tracks.observe(standing(1, talc, 0, 0)));
   const auto target =
-      TargetSelector(barrett(), *model, {}).select(tracks, from_the_side({0, 0, 0.06}));
+      TargetSelector(barrett(), *model, {}).select(tracks, {}, coming_from_the_side({0, 0, 0.06}));
   ASSERT_TRUE(target);
-  EXPECT_EQ(target->p_GR, place_for(traits.places, talc, target->X_OG));
-  EXPECT_NEAR(target->p_GR.y(), -0.012, 1e-12);  // a single place is its own mean
+  EXPECT_EQ(target->X_GR.translation(), place_for(traits.places, talc, target->X_OG));
+  EXPECT_NEAR(target->X_GR.translation().y(), -0.012, 1e-12);  // a single place is its own mean
 }
 
 TEST(TargetSelectorTest, AGripKeepsItsObjectAsItWasSeenLast) {

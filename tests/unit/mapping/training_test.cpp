@@ -8,6 +8,7 @@
 #include <map>
 #include <set>
 
+#include "common/grasping/table_closing.hpp"
 #include "services/mapping/files/mapping_model_file.hpp"
 #include "services/mapping/tools/training/trainer.hpp"
 #include "tests/support/paths/paths.hpp"
@@ -46,10 +47,11 @@ learning::TrainingSet people(std::uint64_t seed, int users, int takes) {
 
 TEST(Approaches, CoverAboveAndSides) {
   const model::Reach reach = barrett().reach();
-  EXPECT_EQ(approaches({model::ShapeKind::cylinder, {0.024, 0.024, 0.105}}, reach).size(), 2u);
+  EXPECT_EQ(grasping::approaches({model::ShapeKind::cylinder, {0.024, 0.024, 0.105}}, reach).size(),
+            2u);
   // Too wide for the hand.
-  EXPECT_TRUE(approaches({model::ShapeKind::cylinder, {0.1, 0.1, 0.1}}, reach).empty());
-  for (const Pose& X_OG : approaches({model::ShapeKind::box, {0.04, 0.123, 0.2}}, reach))
+  EXPECT_TRUE(grasping::approaches({model::ShapeKind::cylinder, {0.1, 0.1, 0.1}}, reach).empty());
+  for (const Pose& X_OG : grasping::approaches({model::ShapeKind::box, {0.04, 0.123, 0.2}}, reach))
     EXPECT_NEAR(std::abs(X_OG.linear()(0, 1)), 1, 1e-9) << "closes across the only face that fits";
 }
 
@@ -285,7 +287,7 @@ TEST(TrainedModel, OpensWithTheHand) {
   const Features open = *features(tips({}), 1);
   EXPECT_LT(model->direct(open).dof.tail<3>().maxCoeff(), 0.175);
   for (const model::CatalogueObject& object : catalogue().objects())
-    for (const Pose& X_OG : approaches(object.shape, barrett().reach()))
+    for (const Pose& X_OG : grasping::approaches(object.shape, barrett().reach()))
       if (const auto answer = model->intelligent(open, object.shape, X_OG)) {
         EXPECT_LT(answer->dof.tail<3>().maxCoeff(), 0.175) << object.name;
       }
@@ -302,7 +304,7 @@ TEST(TrainedModel, TellsGraspTypesOfOtherPeople) {
     for (unsigned person = 0; person < 40; ++person) {
       Demonstrator demonstrator("unseen", 7'000'000 + person, {});
       for (const model::CatalogueObject& object : catalogue().objects())
-        for (const Pose& X_OG : approaches(object.shape, hand.reach()))
+        for (const Pose& X_OG : grasping::approaches(object.shape, hand.reach()))
           for (const GraspType type : types_from(X_OG))
             if (const auto grasp = demonstrator.reach(object.shape, X_OG, type)) {
               const bool precision = model->is_precision(demonstrator.read(grasp->closure));

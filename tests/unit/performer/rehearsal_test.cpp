@@ -12,6 +12,7 @@
 
 #include "common/arm/mounting.hpp"
 #include "common/base/paths.hpp"
+#include "common/grasping/preshapes.hpp"
 #include "common/model/catalogue.hpp"
 #include "common/model/placement.hpp"
 #include "services/demonstration/tools/trials/trial.hpp"
@@ -84,35 +85,10 @@ TEST(Rehearsal, PutsAnObjectBesideAnother) {
   EXPECT_LT(made->verdicts[0].error, 0.005);
 }
 
-TEST(Preshapes, AreOpenWithAndWithoutWhatDoesNotCloseAndThoseThatTheHandHas) {
-  const auto& spread = barrett().dofs().front();
-  ASSERT_EQ(spread.closing, 0);
-  const auto made = preshapes_of(barrett());
-  ASSERT_EQ(made.size(), 4u);
-  EXPECT_EQ(made[0], barrett().postures().at("open"));
-  EXPECT_NEAR(made[1][0], (spread.upper - spread.lower) / 12, 1e-9);
-  EXPECT_NEAR(made[2][0], (spread.upper - spread.lower) / 2, 1e-9);
-  EXPECT_NEAR(made[3][0], (spread.upper - spread.lower) / 3, 1e-9);
-  for (const auto& each : made) EXPECT_EQ(each.tail(3), made[0].tail(3)) << "fingers are open";
-  // All its DoFs close: only its own postures are left, and of these not the closed one.
-  const auto jaw = model::HandModel::load(model::hand_directory("parallel_jaw")).value();
-  const auto of_jaw = preshapes_of(jaw);
-  ASSERT_EQ(of_jaw.size(), 1u) << "the jaws must have half their way before them";
-  EXPECT_EQ(of_jaw[0], jaw.postures().at("open"));
-}
-
-TEST(Preshapes, KeepTheLimitsOfEveryHand) {
-  for (const std::string& name : model::hand_names()) {
-    const auto hand = model::HandModel::load(model::hand_directory(name)).value();
-    for (const Eigen::VectorXd& each : preshapes_of(hand))
-      EXPECT_EQ(each, hand.clamp(each)) << name;
-  }
-}
-
 TEST(GraspCandidates, ThePersonsComesFirstAndEachPoseMeetsEachPreshapeOnce) {
   const model::Shape& cube = objects().find("Wood cube")->shape;
   const auto made = grasp_candidates(barrett(), cube, from_the_side());
-  const auto preshapes = preshapes_of(barrett());
+  const auto preshapes = grasping::preshapes_of(barrett());
   const Pose persons = model::nearest_grasp(cube, from_the_side(), barrett().reach()).value() *
                        barrett().X_BG().inverse();
   ASSERT_FALSE(made.empty());

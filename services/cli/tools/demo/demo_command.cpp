@@ -107,8 +107,10 @@ int demo_command(const std::vector<std::string>& arguments) {
       ->type_size(1)
       ->allow_extra_args(false);
   add_devices(app, demo);
-  app.add_option("--mode", mode, "direct: the mapping does not use what is recognised")
-      ->check(CLI::IsMember({"direct", "intelligent"}));
+  app.add_option("--mode", mode,
+                 "direct: the mapping does not use what is recognised; planned: grasps are\n"
+                 "planned for what is seen before the hand reaches, and it follows the nearest")
+      ->check(CLI::IsMember({"direct", "intelligent", "planned"}));
   app.add_option("--timeout", demo.timeout, "s until it ends without a grasp")
       ->check(CLI::Range(1.0, 3600.0));
   app.add_option("--record", demo.record, "record all topics into this file");
@@ -124,6 +126,7 @@ int demo_command(const std::vector<std::string>& arguments) {
                "with --seeds: each once more with direct mapping");
   if (const auto code = service::parse(app, arguments)) return *code;
   demo.direct = mode == "direct";
+  demo.planned = mode == "planned";
 
   Screen screen(quiet);
   const stage::Progress progress = [&screen](const std::string& text) { screen.show(text); };

@@ -178,7 +178,18 @@ Expected<void> GraspPlay::put_up() {
         return Error{missing() + " did not come up", "demo", ""};
       });
   if (!up || in(options_.without, "glove")) return up;
+  if (auto planned = await_plans(); !planned) return planned;
   return start_glove(scene_file, truth);
+}
+
+/// Nor before there are grasps for what they see.
+Expected<void> GraspPlay::await_plans() {
+  if (!options_.planned || in(options_.without, "recognition")) return {};
+  return stage_.until(
+      "planning grasps", [&] { return observer_.planned(); },
+      [] {
+        return Error{"nothing was planned for what is seen", "demo", ""};
+      });
 }
 
 std::string GraspPlay::missing() const {
@@ -231,8 +242,8 @@ Expected<void> GraspPlay::start_console(const std::string& truth) {
 Expected<void> GraspPlay::start_services(const std::string& truth) {
   if (options_.watch)
     if (auto started = start_console(truth); !started) return started;
-  for (const std::string service : {"recognition", "mapping", "simulation"}) {
-    if (in(options_.without, service)) continue;
+  for (const std::string service : {"recognition", "planner", "mapping", "simulation"}) {
+    if (in(options_.without, service) || (service == "planner" && !options_.planned)) continue;
     // A real camera sees a table that nobody described: the world is built from what it sees.
     const bool told = camera_row_.synthetic || service != "simulation";
     std::vector<std::string> own{told ? truth : std::string("lab.scene=")};

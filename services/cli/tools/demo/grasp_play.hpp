@@ -53,6 +53,7 @@ class GraspPlay {
   Expected<void> start_console(const std::string& truth);
   Expected<void> start_services(const std::string& truth);
   Expected<void> start_robot();
+  Expected<void> await_plans();
   Expected<void> start_glove(const std::filesystem::path& scene_file, const std::string& truth);
   /// Starts a device that is not there, and waits until it is plugged in.
   Expected<void> emulate(const GloveRow& row, const std::filesystem::path& scene_file,

@@ -25,6 +25,7 @@
 #include "services/mapping/tools/benchmark/own_by_messages.hpp"
 #include "services/mapping/tools/benchmark/people.hpp"
 #include "services/mapping/tools/benchmark/take_file.hpp"
+#include "services/mapping/tools/judging/planned_grasps.hpp"
 #include "services/mapping/tools/judging/real_reach.hpp"
 #include "services/mapping/tools/judging/summary_json.hpp"
 #include "services/mapping/tools/training/first_use.hpp"
@@ -49,7 +50,8 @@ struct Arguments {
     lab.add_to(app);
     app.add_option("--mapping", mappings,
                    "who is judged: external, and for comparison direct, cartesian, combined,\n"
-                   "retargeting or intelligent; MODE+placement: also corrects where the hand is")
+                   "retargeting, intelligent or planned; MODE+placement: also corrects where the\n"
+                   "hand is")
         ->delimiter(',')
         ->capture_default_str();
     app.add_option("--hand", hand, "kind of robot hand; default: the lab's");
@@ -170,11 +172,16 @@ Expected<std::vector<TrialResult>> judge_own(const Judged& judged, const Benchma
     return tl::unexpected(allowed.error());
   std::vector<TrialResult> results(judged.takes.size());
   std::vector<Error> errors(results.size());
+  PlannedGrasps planned(judged.hand, judged.catalogue);
   Progress progress(std::string(to_string(mode.mode)));
   share_work(
       results.size(), threads,
       [&](std::size_t i) {
-        auto mapping = Mapping::create(judged.hand, judged.model, mapping_options(mode));
+        auto mapping = planned.mapping_for(judged.parts(), mode, judged.takes[i]);
+        if (!mapping) {
+          errors[i] = mapping.error();
+          return;
+        }
         OwnByMessages own(judged.hand, std::move(*mapping));
         auto result = judge_take(judged.parts(), judged.takes[i], mode, own);
         if (result)

@@ -11,6 +11,7 @@
 #include "common/analysis/resistance.hpp"
 #include "common/grasping/hold_test.hpp"
 #include "common/grasping/world.hpp"
+#include "services/mapping/tools/judging/planned_grasps.hpp"
 
 namespace prehend::mapping {
 
@@ -150,7 +151,8 @@ Expected<std::unique_ptr<grasping::World>> world_of(const BenchmarkedHand& parts
 
 MappingOptions mapping_options(const BenchmarkedMode& mode) {
   MappingOptions options;
-  options.modes.intelligent = mode.mode == BenchmarkMode::intelligent;
+  options.modes.intelligent =
+      mode.mode == BenchmarkMode::intelligent || mode.mode == BenchmarkMode::planned;
   options.modes.placement = mode.placement;
   if (const auto fingers = finger_modes.value(to_string(mode.mode)))
     options.modes.fingers = *fingers;
@@ -222,10 +224,11 @@ Expected<void> check_mode(const BenchmarkedHand& parts, const BenchmarkedMode& m
 
 static Expected<std::optional<TrialResult>> answer_take(const BenchmarkedHand& parts,
                                                         const GraspBenchmarkOptions& options,
-                                                        int number, const BenchmarkedMode& mode) {
+                                                        int number, const BenchmarkedMode& mode,
+                                                        PlannedGrasps& planned) {
   const auto take = make_take(parts.grasps, options, number);
   if (!take) return std::nullopt;
-  auto mapping = Mapping::create(parts.hand, parts.model, mapping_options(mode));
+  auto mapping = planned.mapping_for(parts, mode, *take);
   if (!mapping) return tl::unexpected(mapping.error());
   OwnMapping own(parts.hand, std::move(*mapping));
   auto result = judge_take(parts, *take, mode, own);
@@ -242,13 +245,14 @@ Expected<std::vector<TrialResult>> run_grasp_benchmark(const BenchmarkedHand& pa
     if (auto allowed = check_mode(parts, mode); !allowed) return tl::unexpected(allowed.error());
 
   std::vector<std::optional<TrialResult>> results(options.takes.size() * options.modes.size());
+  PlannedGrasps planned(parts.hand, parts.catalogue);
   std::mutex mutex;
   Error failed;
   for_each(results.size(), [&](std::size_t index) {
     // Modes of the same take stand together.
     const int number = options.takes[index / options.modes.size()];
     const BenchmarkedMode& mode = options.modes[index % options.modes.size()];
-    auto result = answer_take(parts, options, number, mode);
+    auto result = answer_take(parts, options, number, mode, planned);
     const std::lock_guard lock(mutex);
     if (!result) {
       failed = result.error();

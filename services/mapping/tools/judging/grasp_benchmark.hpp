@@ -15,9 +15,17 @@
 namespace prehend::mapping {
 
 /// The mapping that is judged: the ways to answer with the fingers, which know nothing of the
-/// object, the intelligent mapping, and somebody else's. `direct` was trained on exactly the pairs
-/// of `intelligent`, without shape and size.
-enum class BenchmarkMode { direct, cartesian, retargeting, combined, intelligent, external };
+/// object, the intelligent mapping, the same with planned grasps, and somebody else's. `direct` was
+/// trained on exactly the pairs of `intelligent`, without shape and size.
+enum class BenchmarkMode {
+  direct,
+  cartesian,
+  retargeting,
+  combined,
+  intelligent,
+  planned,
+  external
+};
 /// In the order of reports. Named as FingerMode where they are one.
 inline constexpr auto benchmark_modes = named_values<BenchmarkMode>(
     {{BenchmarkMode::direct, "direct"},
@@ -25,6 +33,7 @@ inline constexpr auto benchmark_modes = named_values<BenchmarkMode>(
      {BenchmarkMode::combined, finger_modes.name(FingerMode::combined)},
      {BenchmarkMode::retargeting, finger_modes.name(FingerMode::retargeting)},
      {BenchmarkMode::intelligent, "intelligent"},
+     {BenchmarkMode::planned, "planned"},
      {BenchmarkMode::external, "external"}});
 std::string_view to_string(BenchmarkMode mode);
 

@@ -6,6 +6,7 @@
 #include <limits>
 #include <numeric>
 
+#include "common/grasping/table_closing.hpp"
 #include "common/model/placement.hpp"
 #include "services/mapping/tools/study/experiment.hpp"
 #include "services/mapping/tools/training/demonstrator.hpp"
@@ -116,7 +117,7 @@ Followed follow(const StudiedHand& hand, const RealTake& take, const Sensors& se
                 bool intelligent) {
   // Pringles, from the side: every hand has learnt to grasp it so.
   const model::Shape pringles{model::ShapeKind::cylinder, {0.037, 0.037, 0.230}};
-  const Pose X_OG = approaches(pringles, hand.hand.reach()).back();
+  const Pose X_OG = grasping::approaches(pringles, hand.hand.reach()).back();
   Followed made;
   std::optional<Eigen::VectorXd> before;
   double time = 0;

@@ -5,9 +5,8 @@
 #include <algorithm>
 #include <optional>
 
-#include "common/grasping/closing.hpp"
-#include "common/grasping/table_test.hpp"
-#include "common/model/placement.hpp"
+#include "common/grasping/table_closing.hpp"
+#include "common/model/past_contact.hpp"
 #include "common/proto/pose_numbers.hpp"
 #include "common/proto/robot_grasps.pb.h"
 #include "common/proto/sealed_file.hpp"
@@ -19,7 +18,6 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr std::string_view kind = "robot-grasps";
-constexpr double max_closing = 3;                // s, until the fingers must have stopped
 constexpr double aside = 0.012, nearer = 0.015;  // m, where else the hand is tried
 constexpr double unsure = 0.008;    // m, beside its place where a grasp shall hold as well
 constexpr double short_hold = 0.5;  // s: drops what it drops at once
@@ -58,25 +56,6 @@ Expected<RobotGrasp> read(const messages::RobotGrasp& from, const model::HandMod
   return grasp;
 }
 
-/// True if no part of the hand is below the table, z = bottom in O, anywhere between the two
-/// postures. Parts count as boxes; the palm is where the reach of the hand allows it to be.
-bool above_table(const model::HandModel& hand, const Pose& X_OB, const Eigen::VectorXd& from,
-                 const Eigen::VectorXd& to, double bottom) {
-  constexpr int steps = 8;
-  for (int step = 0; step <= steps; ++step) {
-    const Eigen::VectorXd dof = from + (to - from) * (static_cast<double>(step) / steps);
-    const std::vector<Pose> X_BL = hand.link_poses(hand.joint_angles(dof));
-    for (std::size_t link = 1; link < X_BL.size(); ++link)
-      for (const model::CollisionShape& part : hand.links()[link].collision) {
-        const Pose X_OS = X_OB * X_BL[link] * part.X_LS;
-        const double below =
-            X_OS.linear().row(2).cwiseAbs().dot(model::half_extents(part.shape).transpose());
-        if (X_OS.translation().z() - below < bottom) return false;
-      }
-  }
-  return true;
-}
-
 /// Held on the table. The hand stands `beside` its place, m, in the direction in which it closes.
 bool survives(const model::HandModel& hand, const Eigen::VectorXd& open,
               const grasping::Body& object, const RobotGrasp& grasp, double beside,
@@ -88,71 +67,26 @@ bool survives(const model::HandModel& hand, const Eigen::VectorXd& open,
 /// Closes the hand from a preshape on the object where it stands; fills in what comes of it.
 Expected<void> close(const model::HandModel& hand, const grasping::Body& object,
                      const Preshape& preshape, RobotGrasp& grasp) {
-  const Pose X_BO = hand.X_BG() * grasp.X_OR().inverse();
-  const double table = -model::half_extents(object.shape).z();
-  const auto reaches_into_table = [&](const Eigen::VectorXd& dof) {
-    return !above_table(hand, X_BO.inverse(), preshape.robot, dof, table);
-  };
-  const auto refused = [&] { return fail("fingers would reach into the table", object.name); };
-  if (reaches_into_table(preshape.robot)) return refused();
-  grasping::ClosingOptions options;
-  options.volume = false;
-  options.fixed_object = true;
-  options.longest = max_closing;
-  options.resting = preshape.resting;
-  const auto closed = grasping::close_hand(hand, object, X_BO, preshape.robot, options);
+  auto closed =
+      grasping::close_on_table(hand, object, {grasp.X_OR(), preshape.robot, preshape.resting});
   if (!closed) return tl::unexpected(closed.error());
-  if (reaches_into_table(closed->dof)) return refused();
   grasp.preshape = preshape.robot;
-  grasp.dof = hand.clamp(closed->dof);  // what pushes bends a joint a little past its end
-  grasp.epsilon = closed->quality.epsilon;
-  grasp.closing.resize(grasp.dof.size());
-  for (std::size_t i = 0; i < hand.dofs().size(); ++i)
-    grasp.closing[static_cast<Eigen::Index>(i)] = preshape.resting[i] ? 0 : hand.dofs()[i].closing;
+  grasp.dof = std::move(closed->dof);
+  grasp.closing = std::move(closed->closing);
+  grasp.epsilon = closed->epsilon;
   return {};
 }
 
 }  // namespace
 
-std::vector<Pose> approaches(const model::Shape& shape, const model::Reach& reach) {
-  const Vector3d x = Vector3d::UnitX(), y = Vector3d::UnitY(), z = Vector3d::UnitZ();
-  std::vector<Pose> seeds{make_pose(Vector3d::Zero(), model::grasp_axes(-z, y)),
-                          make_pose(Vector3d::Zero(), model::grasp_axes(x, y))};
-  // Turning about the axis of what is round or square is nothing new.
-  if (shape.kind == model::ShapeKind::box && shape.size.x() != shape.size.y()) {
-    seeds.push_back(make_pose(Vector3d::Zero(), model::grasp_axes(-z, x)));
-    seeds.push_back(make_pose(Vector3d::Zero(), model::grasp_axes(y, x)));
-  }
-  std::vector<Pose> found;
-  for (const Pose& seed : seeds) {
-    const auto grasp = model::nearest_grasp(shape, seed, reach);
-    const auto same = [&](const Pose& other) {
-      return angle_between(other.linear(), grasp->linear()) < 0.1;
-    };
-    // What came out far from what was asked answers another approach.
-    if (grasp && angle_between(seed.linear(), grasp->linear()) < 0.1 &&
-        std::none_of(found.begin(), found.end(), same))
-      found.push_back(*grasp);
-  }
-  return found;
-}
-
 std::vector<GraspType> types_from(const Pose& X_OG) {
-  if (X_OG.linear()(2, 2) > -0.7) return {GraspType::power_wrap};
+  if (!grasping::is_from_above(X_OG)) return {GraspType::power_wrap};
   return {GraspType::circular_sphere, GraspType::precision};
 }
 
 Eigen::VectorXd past_contact(const model::HandModel& hand, const RobotGrasp& grasp,
                              const Eigen::VectorXd& open, double angle) {
-  constexpr double least = 0.1;  // rad, so that every finger presses
-  Eigen::VectorXd unit(grasp.dof.size());
-  for (Eigen::Index i = 0; i < unit.size(); ++i)
-    unit[i] = model::radian_of(hand.dofs()[static_cast<std::size_t>(i)]);
-  const Eigen::ArrayXd way =
-      ((grasp.dof - open).array() * grasp.closing.array() / unit.array()).max(0.0);
-  const double longest = std::max(way.maxCoeff(), 1e-9);
-  const Eigen::ArrayXd further = (angle * way / longest).max(std::min(least, angle));
-  return hand.clamp(grasp.dof + (further * grasp.closing.array() * unit.array()).matrix());
+  return model::past_contact(hand, open, grasp.dof, grasp.closing, angle);
 }
 
 std::vector<Vector3d> places_to_try() {
@@ -226,7 +160,7 @@ std::vector<RobotGrasp> close_on_catalogue(const model::HandModel& hand, const S
   // What is approached in the same way; its types go one after the other.
   std::vector<std::vector<Task>> approached;
   for (const model::CatalogueObject& object : catalogue.objects()) {
-    const auto ways = approaches(object.shape, hand.reach());
+    const auto ways = grasping::approaches(object.shape, hand.reach());
     if (ways.empty()) report({"does not fit into the hand", object.name, "left out"});
     for (const Pose& X_OG : ways) {
       auto& tasks = approached.emplace_back();

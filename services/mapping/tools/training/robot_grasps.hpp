@@ -30,15 +30,9 @@ struct RobotGrasp {
   Pose X_OR() const { return X_OG * Eigen::Translation3d(p_GR); }
 };
 
-/// The grasp with its closing fingers past contact: the one that has come farthest from the open
-/// hand by so much, rad or what stands for it where a jaw slides, the others in proportion, so that
-/// on the straight way there all of them arrive at the object together; at most the hand's limits.
+/// As model::past_contact, from this open hand.
 Eigen::VectorXd past_contact(const model::HandModel& hand, const RobotGrasp& grasp,
                              const Eigen::VectorXd& open, double angle);
-
-/// Places a hand's grasp frame everywhere where the object can be grasped in another way: from
-/// above and from the side, across each pair of faces.
-std::vector<Pose> approaches(const model::Shape& shape, const model::Reach& reach);
 
 /// The types that a hand makes from there: power wrap from the side; circular sphere, with all
 /// fingers, and precision, with the fingertips of some, from above.

@@ -8,6 +8,7 @@
 #include <set>
 #include <utility>
 
+#include "common/grasping/table_closing.hpp"
 #include "common/proto/sealed_file.hpp"
 
 namespace prehend::mapping {
@@ -218,7 +219,7 @@ Eigen::VectorXd precision_discriminant(const model::Catalogue& catalogue, const 
   for (int person = 0; person < options.users; ++person) {
     Demonstrator demonstrator("", seed_of(options, person), options.demonstrator);
     for (const model::CatalogueObject& object : catalogue.objects())
-      for (const Pose& X_OG : approaches(object.shape, reach))
+      for (const Pose& X_OG : grasping::approaches(object.shape, reach))
         for (const GraspType type : types_from(X_OG)) {
           if (type == GraspType::power_wrap) continue;
           if (const auto grasp = demonstrator.reach(object.shape, X_OG, type))
@@ -289,7 +290,8 @@ Expected<MappingModel> train_mapping(const model::HandModel& hand, const Scheme&
   ModelTraits traits{scheme.name,        proto::digest(learning::serialise(sets.training)),
                      options.size_input, scheme.lower,
                      scheme.upper,       options.precision,
-                     options.places,     options.made_for};
+                     options.places,     options.made_for,
+                     options.closing};
   return MappingModel::create(hand, std::move(traits), std::move(networks));
 }
 

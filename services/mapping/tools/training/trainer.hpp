@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string_view>
 #include <vector>
 
@@ -67,6 +68,7 @@ struct TrainerOptions {
   Eigen::VectorXd precision;                                            // see ModelTraits
   std::vector<PalmOffset> places;                                       // see palm_offsets()
   std::string made_for;                                                 // see ModelTraits
+  std::optional<MappingNetwork> closing;                                // see ModelTraits
 };
 
 /// A set for each purpose; their users are disjoint.

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "common/base/log.hpp"
+#include "services/mapping/tools/training/closing_lessons.hpp"
 #include "services/mapping/tools/training/teach.hpp"
 
 namespace prehend::mapping {
@@ -76,6 +77,12 @@ Expected<TrainedMapping> run_training(const TrainingRun& run, const model::HandM
   trainer.precision = precision_discriminant(*catalogue, hand.reach(), run.people);
   trainer.places = palm_offsets(*grasps);
   trainer.made_for = run.closures.made_for;
+  ClosingLessonOptions closing;
+  closing.complete = run.people.complete;
+  closing.seed = run.people.seed;
+  auto learnt = train_closing(closing, trainer.network);
+  if (!learnt) return tl::unexpected(learnt.error());
+  trainer.closing = std::move(*learnt);
   auto model = train_mapping(hand, scheme, *sets, trainer, for_each, progress);
   if (!model) return tl::unexpected(model.error());
   return TrainedMapping{std::move(*grasps), std::move(*sets), std::move(*model)};

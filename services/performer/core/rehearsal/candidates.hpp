@@ -8,11 +8,6 @@
 
 namespace prehend::performer {
 
-/// How a hand may be before it closes, the likeliest first: open; open with all that does not close
-/// (spread, abduction) by 1/12, 1/2 and 1/3 of its range towards the farther one of its limits; its
-/// other named postures that can close. Each once.
-std::vector<Eigen::VectorXd> preshapes_of(const model::HandModel& hand);
-
 /// How this hand may take an object that a person took at X_OG: that way with the open hand first,
 /// then turned about the object's axis, then from above; what is low also a little lower; and each
 /// with other preshapes. The likeliest come first. What its reach does not allow is left out; may

@@ -6,6 +6,7 @@ int main(int argc, char** argv) {
   prehend::tool::Program program("grasp", "What can be said of a grasp.");
   add_quality(program);
   add_plan(program);
+  add_candidates(program);
   add_export(program);
   add_picture(program);
   add_table(program);

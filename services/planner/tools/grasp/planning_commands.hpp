@@ -6,6 +6,7 @@ namespace prehend::planner {
 
 /// Subcommands of `prehend grasp` about planned grasps; see tool.hpp.
 void add_plan(tool::Program& program);
+void add_candidates(tool::Program& program);
 void add_export(tool::Program& program);
 void add_picture(tool::Program& program);
 void add_table(tool::Program& program);

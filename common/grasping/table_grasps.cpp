@@ -1,0 +1,214 @@
+#include "common/grasping/table_grasps.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include "common/grasping/preshapes.hpp"
+#include "common/model/past_contact.hpp"
+
+namespace prehend::grasping {
+namespace {
+
+using Eigen::AngleAxisd;
+using Eigen::Vector3d;
+
+constexpr double pressed_on = 0.1;      // rad, past where fingers shall stop
+constexpr double follow_through = 0.5;  // rad, that fingers go on when nothing stops them
+// Near enough to what is usual that the mapping may correct a person's hand to it.
+constexpr double beside = 0.010, nearer = 0.012, higher = 0.012;  // m
+constexpr double turned = 0.17;                                   // rad
+constexpr double steady =
+    0.010;  // m, that the object may move while it is grasped, and in the hand
+
+/// What may be otherwise than it was said: how the hand stands in its grasp frame, and the object.
+struct Deviation {
+  Vector3d moved = Vector3d::Zero();   // m
+  Vector3d turned = Vector3d::Zero();  // rad
+  double larger = 1, heavier = 1;
+};
+
+/// The likeliest to matter first: who is no better anyway is not tried with all.
+std::vector<Deviation> deviations() {
+  constexpr double off = 0.003, askew = 0.0349;  // m, rad
+  return {{.moved = {0, off, 0}, .turned = {0, 0, askew}},
+          {.moved = {0, -off, 0}, .turned = {0, 0, -askew}},
+          {.heavier = 1.5},
+          {.larger = 0.8},
+          {.larger = 1.2},
+          {.moved = {off, 0, 0}, .turned = {0, askew, 0}},
+          {.moved = {-off, 0, 0}, .turned = {0, -askew, 0}},
+          {.moved = {0, 0, -off}, .turned = {askew, 0, 0}}};
+}
+
+Pose displaced(const Vector3d& by, const Vector3d& turn) {
+  const double angle = turn.norm();
+  const Eigen::Matrix3d R = angle > 0 ? AngleAxisd(angle, turn / angle).toRotationMatrix()
+                                      : Eigen::Matrix3d::Identity().eval();
+  return make_pose(by, R);
+}
+
+/// Where a hand may stand in the grasp frame of an approach, the likeliest first. From the side,
+/// where x leads down, also higher: fingers that curl may need more room above the table.
+std::vector<Pose> places_to_stand(bool from_above) {
+  const auto at = [](double x, double y, double z, double about_x = 0, double about_y = 0) {
+    return displaced({x, y, z}, {about_x, about_y, 0});
+  };
+  std::vector<Pose> places{at(0, 0, 0), at(0, 0, -nearer), at(0, 0, nearer)};
+  if (!from_above)
+    for (const double up : {higher, 2 * higher})
+      places.insert(places.end(), {at(-up, 0, 0), at(-up, 0, -nearer)});
+  places.insert(places.end(),
+                {at(0, beside, 0), at(0, -beside, 0), at(0, 0, 0, turned), at(0, 0, 0, -turned),
+                 at(0, 0, 0, 0, turned), at(0, 0, 0, 0, -turned), at(0, beside, nearer),
+                 at(0, -beside, nearer), at(0, beside, -nearer), at(0, -beside, -nearer)});
+  return places;
+}
+
+std::vector<TableApproach> attempts_from(const model::HandModel& hand, const Pose& X_OG,
+                                         std::size_t most) {
+  const std::vector<Pose> everywhere = places_to_stand(is_from_above(X_OG));
+  const std::vector<Preshape> preshapes = ways_to_close(hand);
+  std::vector<TableApproach> made;
+  // Along diagonals: what is likely in both respects first.
+  for (std::size_t rank = 0; rank < everywhere.size() + preshapes.size(); ++rank)
+    for (std::size_t k = 0; k < preshapes.size() && k <= rank; ++k)
+      if (rank - k < everywhere.size() && made.size() < most)
+        made.push_back({X_OG * everywhere[rank - k], preshapes[k].dof, preshapes[k].resting});
+  return made;
+}
+
+bool holds(const model::HandModel& hand, const Body& object, const TableGrasp& grasp,
+           const Deviation& deviation) {
+  Body other = object;
+  other.mass *= deviation.heavier;
+  other.shape.size *= deviation.larger;
+  TableGrasp there = grasp;
+  // The hand goes where the object was said to be; the other one stands on the same table.
+  const double higher =
+      model::half_extents(other.shape).z() - model::half_extents(object.shape).z();
+  there.X_OG =
+      make_pose({0, 0, -higher}) * grasp.X_OG * displaced(deviation.moved, deviation.turned);
+  if (deviation.larger < 1)
+    there.dof = model::past_contact(hand, grasp.open, grasp.dof, grasp.closing, follow_through);
+  // Drops what it drops at once.
+  return held_on_table(hand, other, there, {.lift = 0.05, .hold = 0.3, .max_slip = steady});
+}
+
+/// What came of an attempt.
+struct Outcome {
+  std::optional<TableGrasp> grasp;
+  std::string reason;
+};
+
+Outcome try_out(const model::HandModel& hand, const Body& object, const TableApproach& approach) {
+  auto closed = close_on_table(hand, object, approach);
+  if (!closed) return {{}, closed.error().what};
+  if (!held_on_table(hand, object, *closed, {.hold = 1, .max_slip = steady, .shake = true}))
+    return {{}, "does not hold"};
+  // The mapping's fingers go on until they are stopped.
+  TableGrasp harder = *closed;
+  harder.dof = model::past_contact(hand, harder.open, harder.dof, harder.closing, pressed_on);
+  if (!held_on_table(hand, object, harder, {.lift = 0.05, .hold = 0.3}))
+    return {{}, "does not hold when fingers press on"};
+  return {std::move(*closed), {}};
+}
+
+}  // namespace
+
+bool TableGraspSearch::Approach::is_done(const SearchOptions& options) const {
+  if (judged >= options.judged || (!best.empty() && best.front().room >= options.enough))
+    return true;
+  return unjudged.empty() && next >= untried.size();
+}
+
+Expected<TableGraspSearch> TableGraspSearch::create(const model::HandModel& hand,
+                                                    const Body& object,
+                                                    const SearchOptions& options) {
+  if (options.attempts < 1 || options.attempts > 1000 || options.at_once < 1 || options.judged < 1)
+    return fail("attempts must be 1 to 1000", object.name);
+  if (!is_valid(object.shape) || !(object.mass > 0) || !std::isfinite(object.mass))
+    return fail("an object needs a size and a mass", object.name);
+  TableGraspSearch made(hand, object, options);
+  for (const Pose& X_OG : approaches(object.shape, hand.reach()))
+    made.approaches_.push_back(
+        {X_OG,
+         attempts_from(hand, X_OG, static_cast<std::size_t>(options.attempts)),
+         0,
+         {},
+         {},
+         0});
+  return made;
+}
+
+bool TableGraspSearch::try_next(const ForEach& for_each) {
+  // Either an attempt, or a small error that a grasp shall stand: each a task of its own, so that
+  // all threads have something to do.
+  struct Task {
+    Approach* approach;
+    std::size_t number;
+    bool judges;
+    Outcome outcome;
+    char held = 0;
+  };
+  const std::vector<Deviation> errors = deviations();
+  std::vector<Task> round;
+  for (Approach& approach : approaches_) {
+    if (approach.is_done(options_)) continue;
+    const bool judges = !approach.unjudged.empty();
+    for (std::size_t i = 0; judges && i < errors.size(); ++i)
+      round.push_back({&approach, i, true, {}});
+    for (int i = 0; !judges && i < options_.at_once && approach.next < approach.untried.size(); ++i)
+      round.push_back({&approach, approach.next++, false, {}});
+  }
+  for_each(round.size(), [&](std::size_t i) {
+    Task& task = round[i];
+    const Approach& of = *task.approach;
+    if (task.judges)
+      task.held = holds(hand_, object_, of.unjudged.front().grasp, errors[task.number]);
+    else
+      task.outcome = try_out(hand_, object_, of.untried[task.number]);
+  });
+  std::map<Approach*, std::vector<char>> judged;
+  for (Task& task : round) {
+    Approach& to = *task.approach;
+    if (task.judges) {
+      judged[&to].push_back(task.held);
+      continue;
+    }
+    ++attempts_;
+    if (task.outcome.grasp)
+      to.unjudged.push_back(
+          {to.X_OG, std::move(*task.outcome.grasp), 0, static_cast<int>(task.number)});
+    else
+      ++refused_[task.outcome.reason];
+  }
+  for (const auto& [approach, held] : judged) judge(*approach, held);
+  return std::any_of(approaches_.begin(), approaches_.end(),
+                     [&](const Approach& approach) { return !approach.is_done(options_); });
+}
+
+void TableGraspSearch::judge(Approach& approach, const std::vector<char>& held) {
+  SureGrasp grasp = std::move(approach.unjudged.front());
+  approach.unjudged.erase(approach.unjudged.begin());
+  ++approach.judged;
+  grasp.room = static_cast<double>(std::count(held.begin(), held.end(), 1)) /
+               static_cast<double>(held.size());
+  if (approach.best.empty() || grasp.room > approach.best.front().room)
+    approach.best = {std::move(grasp)};
+}
+
+std::vector<SureGrasp> TableGraspSearch::found() const {
+  std::vector<SureGrasp> all;
+  for (const Approach& approach : approaches_) {
+    const auto& known = approach.best.empty() ? approach.unjudged : approach.best;
+    if (!known.empty()) all.push_back(known.front());
+  }
+  std::stable_sort(all.begin(), all.end(),
+                   [](const SureGrasp& a, const SureGrasp& b) { return a.room > b.room; });
+  return all;
+}
+
+}  // namespace prehend::grasping

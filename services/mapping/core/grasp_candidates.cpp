@@ -1,0 +1,85 @@
+#include "services/mapping/core/grasp_candidates.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+namespace prehend::mapping {
+namespace {
+
+constexpr double farthest = 0.03, max_turn = 0.35;  // m, rad: as far as a placement may correct
+constexpr double sure_enough = 0.6;    // room; below it the network's answer holds more often
+constexpr double same_approach = 0.2;  // rad
+constexpr double other_size = 0.01;    // m, and as a share:
+constexpr double other_share = 0.25;
+constexpr double end_tolerance = 1e-6;  // rad or m
+constexpr std::size_t max_known = 1000;
+
+Expected<void> check(const Candidate& candidate, const model::HandModel& hand) {
+  const auto dofs = static_cast<Eigen::Index>(hand.dofs().size());
+  for (const Eigen::VectorXd* values : {&candidate.preshape, &candidate.dof, &candidate.closing})
+    if (values->size() != dofs || !values->allFinite())
+      return fail("grasp candidate of another hand");
+  for (const Eigen::VectorXd* values : {&candidate.preshape, &candidate.dof})
+    if ((hand.clamp(*values) - *values).cwiseAbs().maxCoeff() > end_tolerance)
+      return fail("grasp candidate beyond the hand's limits");
+  if (!is_finite(candidate.X_OG) || !is_finite(candidate.X_OR) || !(candidate.room >= 0))
+    return fail("grasp candidate not finite");
+  const Pose off = candidate.X_OG.inverse() * candidate.X_OR;
+  if (!(off.translation().norm() <= farthest) ||
+      !(angle_between(off.linear(), Eigen::Matrix3d::Identity().eval()) <= max_turn))
+    return fail("grasp candidate away from its approach");
+  return {};
+}
+
+/// Turns about z after which the object looks the same: the one that brings R_from nearest to R_to.
+Eigen::Matrix3d turn_to(const model::Shape& shape, const Eigen::Matrix3d& R_from,
+                        const Eigen::Matrix3d& R_to) {
+  const Eigen::Matrix3d R = R_to * R_from.transpose();
+  double angle = std::atan2(R(1, 0) - R(0, 1), R(0, 0) + R(1, 1));
+  if (shape.kind == model::ShapeKind::box) {
+    const bool square = std::abs(shape.size.x() - shape.size.y()) < 1e-3;
+    const double step = square ? std::numbers::pi / 2 : std::numbers::pi;
+    angle = step * std::round(angle / step);
+  }
+  return Eigen::AngleAxisd(angle, Eigen::Vector3d::UnitZ()).toRotationMatrix();
+}
+
+bool is_like(const model::Shape& a, const model::Shape& b) {
+  return a.kind == b.kind &&
+         ((a.size - b.size).array().abs() <= (other_share * a.size.array()).max(other_size)).all();
+}
+
+}  // namespace
+
+Expected<void> CandidateBook::observe(Candidates planned, const model::HandModel& hand) {
+  for (const Candidate& candidate : planned.candidates)
+    if (auto ok = check(candidate, hand); !ok) return ok;
+  if (!known_.contains(planned.track) && known_.size() >= max_known)
+    return fail("grasp candidates of too many objects");
+  known_[planned.track] = std::move(planned);
+  return {};
+}
+
+std::optional<Candidate> CandidateBook::answer(std::uint32_t track, const model::Shape& shape,
+                                               const Pose& X_OG) const {
+  const auto known = known_.find(track);
+  if (known == known_.end() || !is_like(known->second.shape, shape)) return std::nullopt;
+  std::optional<Candidate> best;
+  for (const Candidate& candidate : known->second.candidates) {
+    const Eigen::Matrix3d turn = turn_to(shape, candidate.X_OG.linear(), X_OG.linear());
+    if (candidate.room < sure_enough) continue;
+    if (angle_between(Eigen::Matrix3d(turn * candidate.X_OG.linear()), X_OG.linear()) >
+            same_approach ||
+        (best && best->room >= candidate.room))
+      continue;
+    best = candidate;
+    const Pose X = make_pose(Eigen::Vector3d::Zero(), turn);
+    best->X_OG = X * candidate.X_OG;
+    best->X_OR = X * candidate.X_OR;
+  }
+  return best;
+}
+
+}  // namespace prehend::mapping

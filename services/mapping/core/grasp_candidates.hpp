@@ -1,0 +1,53 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <vector>
+
+#include "common/base/error.hpp"
+#include "common/base/pose.hpp"
+#include "common/model/hand_model.hpp"
+#include "common/model/shape.hpp"
+
+namespace prehend::mapping {
+
+/// A planned way in which the robot hand may take an object, as grasp/candidates says it.
+struct Candidate {
+  Pose X_OG = Pose::Identity();  // the approach that it answers
+  Pose X_OR = Pose::Identity();  // where the hand's own grasp frame stands, near it
+  Eigen::VectorXd preshape;      // DoF values before the fingers close, rad or m
+  Eigen::VectorXd dof;           // where they touch
+  Eigen::VectorXd closing;       // of each: +1, -1, which way it closes, 0 if it rests
+  double room = 0;               // share of small errors with which it holds as well
+};
+
+/// Of an object, as it was when it was planned for.
+struct Candidates {
+  std::uint32_t track = 0;
+  model::Shape shape;
+  std::vector<Candidate> candidates;
+};
+
+/// What has been planned for which object.
+class CandidateBook {
+ public:
+  /// Takes the place of what was known of this object. Refuses, all of them, values that are not
+  /// finite, are not this hand's, or place the hand farther from its approach than a correction
+  /// may go.
+  Expected<void> observe(Candidates planned, const model::HandModel& hand);
+  void remove(std::uint32_t track) { known_.erase(track); }
+
+  /// The candidate that answers a hand whose nearest grasp is X_OG (model::nearest_grasp), as it
+  /// lies there: objects look the same from some sides. The one with the most room of those that
+  /// come from there. None where nothing is planned for this object and approach, or where the
+  /// object is now said to have quite another size.
+  std::optional<Candidate> answer(std::uint32_t track, const model::Shape& shape,
+                                  const Pose& X_OG) const;
+
+ private:
+  std::map<std::uint32_t, Candidates> known_;
+};
+
+}  // namespace prehend::mapping

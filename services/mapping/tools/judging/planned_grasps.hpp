@@ -1,0 +1,40 @@
+#pragma once
+
+#include <map>
+#include <memory>
+#include <mutex>
+#include <string>
+
+#include "common/base/error.hpp"
+#include "services/mapping/core/mapping.hpp"
+#include "services/mapping/tools/judging/grasp_benchmark.hpp"
+
+namespace prehend::mapping {
+
+/// The grasps that prehend-planner finds for the objects of takes, as they are seen there. Each is
+/// searched once, whoever asks first; several threads may ask. Keeps references to the hand and the
+/// catalogue.
+class PlannedGrasps {
+ public:
+  PlannedGrasps(const model::HandModel& hand, const model::Catalogue& catalogue)
+      : hand_(hand), catalogue_(catalogue) {}
+
+  /// The mapping of this mode as it is before the take: `planned` has heard of all grasps.
+  Expected<Mapping> mapping_for(const BenchmarkedHand& parts, const BenchmarkedMode& mode,
+                                const BenchmarkTake& take);
+
+ private:
+  struct Entry {
+    std::once_flag once;
+    Candidates found;
+  };
+  Candidates of(const BenchmarkTake& take);
+  Candidates search(const std::string& object, const model::Shape& shape) const;
+
+  const model::HandModel& hand_;
+  const model::Catalogue& catalogue_;
+  std::mutex mutex_;  // of the entries
+  std::map<std::string, std::shared_ptr<Entry>> entries_;
+};
+
+}  // namespace prehend::mapping

@@ -1,0 +1,65 @@
+#include "services/planner/service/messages.hpp"
+
+#include <algorithm>
+
+#include "common/convert/convert.hpp"
+
+namespace prehend::planner {
+namespace {
+
+constexpr std::size_t max_candidates = 16;  // of the message
+
+/// What a person would call it: see idl/Robot.idl.
+v1::GraspType type_of(const grasping::SureGrasp& grasp) {
+  constexpr int few = 3;  // fingers of a precision grasp
+  if (!grasping::is_from_above(grasp.X_OG)) return v1::GRASP_POWER_WRAP;
+  return (grasp.grasp.closing.array() != 0).count() > few ? v1::GRASP_CIRCULAR_SPHERE
+                                                          : v1::GRASP_PRECISION;
+}
+
+v1::GraspCandidate to_message(const grasping::SureGrasp& grasp) {
+  v1::GraspCandidate message;
+  message.X_OG(convert::to_message(grasp.X_OG));
+  message.X_OR(convert::to_message(grasp.grasp.X_OG));
+  message.preshape(convert::to_message(grasp.grasp.open));
+  message.dof(convert::to_message(grasp.grasp.dof));
+  message.closing(convert::to_message(grasp.grasp.closing));
+  message.grasp_type(type_of(grasp));
+  message.epsilon(grasp.grasp.epsilon);
+  message.room(grasp.room);
+  return message;
+}
+
+}  // namespace
+
+Expected<SeenObject> seen_from_message(const v1::ObjectDetection& message) {
+  auto X_WO = convert::from_message(message.X_WO());
+  if (!X_WO) return fail("pose of a detection not usable");
+  return SeenObject{message.track(),
+                    message.name().to_string(),
+                    {convert::from_message(message.shape()), convert::from_message(message.size())},
+                    *X_WO,
+                    message.probability(),
+                    from_ns(message.stamp_ns())};
+}
+
+v1::GraspCandidates to_message(const TrackPlan& planned, const std::string& hand,
+                               const std::string& model) {
+  v1::GraspCandidates message;
+  message.hand(hand);
+  message.track(planned.seen.track);
+  message.stamp_ns(to_ns(planned.seen.stamp));
+  message.model(model.substr(0, 63));
+  message.object(planned.seen.name.substr(0, 63));
+  message.shape(convert::to_message(planned.plan.object.shape.kind));
+  message.size(convert::to_message(planned.plan.object.shape.size));
+  message.mass(planned.plan.object.mass);
+  message.complete(planned.plan.complete);
+  message.reason(planned.plan.reason.substr(0, 254));
+  const std::size_t count = std::min(planned.plan.grasps.size(), max_candidates);
+  for (std::size_t i = 0; i < count; ++i)
+    message.candidates().push_back(to_message(planned.plan.grasps[i]));
+  return message;
+}
+
+}  // namespace prehend::planner

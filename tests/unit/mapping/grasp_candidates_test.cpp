@@ -1,0 +1,282 @@
+// Planned grasps answer a hand from the side that they were planned for, however the object is
+// turned; the fingers follow the person's closing along them; and what is nonsense is refused
+// whole.
+#include "services/mapping/core/grasp_candidates.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <numbers>
+
+#include "common/model/placement.hpp"
+#include "services/mapping/core/mapping.hpp"
+#include "services/mapping/tools/training/closing_lessons.hpp"
+#include "tests/unit/mapping/fixtures.hpp"
+
+namespace prehend::mapping {
+namespace {
+
+using Eigen::Vector3d;
+using model::ShapeKind;
+
+const model::Shape can{ShapeKind::cylinder, {0.03, 0.03, 0.15}};
+const model::Shape brick{ShapeKind::box, {0.04, 0.08, 0.16}};
+
+Pose turned(double angle) {
+  return make_pose(Vector3d::Zero(),
+                   Eigen::AngleAxisd(angle, Vector3d::UnitZ()).toRotationMatrix());
+}
+
+/// The grasp frame of a hand that comes along this direction, fingers closing horizontally.
+Pose grasp_along(const model::Shape& shape, const Vector3d& approach, const Vector3d& closing) {
+  return *model::nearest_grasp(
+      shape, make_pose(Vector3d::Zero(), model::grasp_axes(approach, closing)), barrett().reach());
+}
+
+Candidate candidate(const Pose& X_OG, double room = 0.75) {
+  Candidate made;
+  made.X_OG = X_OG;
+  made.X_OR = X_OG * make_pose({0, 0.006, -0.004});
+  made.preshape = barrett().postures().at("open");
+  made.preshape[0] = 0.2;
+  made.dof = Eigen::Vector4d(0.2, 1.1, 1.2, 1.3);
+  made.closing = Eigen::Vector4d(0, 1, 1, 1);
+  made.room = room;
+  return made;
+}
+
+class GraspCandidatesTest : public testing::Test {
+ protected:
+  CandidateBook book;
+  std::string refused(const Candidate& wrong) {
+    const auto taken = book.observe({7, can, {candidate(from_aside), wrong}}, barrett());
+    return taken ? "taken" : taken.error().what;
+  }
+  const Pose from_aside = grasp_along(can, Vector3d::UnitX(), Vector3d::UnitY());
+  const Pose from_above = grasp_along(can, -Vector3d::UnitZ(), Vector3d::UnitY());
+};
+
+TEST_F(GraspCandidatesTest, AnswerFromAnySideOfWhatIsRound) {
+  ASSERT_TRUE(book.observe({7, can, {candidate(from_aside), candidate(from_above)}}, barrett()));
+  for (double angle = -3; angle < 3.2; angle += 0.37)
+    for (const Pose& planned : {from_aside, from_above}) {
+      const Pose X_OG = turned(angle) * planned;
+      const auto found = book.answer(7, can, X_OG);
+      ASSERT_TRUE(found) << angle;
+      EXPECT_TRUE(found->X_OG.isApprox(X_OG, 1e-9));
+      EXPECT_TRUE((found->X_OG.inverse() * found->X_OR)
+                      .isApprox(planned.inverse() * candidate(planned).X_OR, 1e-9))
+          << "it stands in its approach as it was planned";
+    }
+}
+
+TEST_F(GraspCandidatesTest, OfABoxAnswerFromBothEndsAndNotFromOthers) {
+  const Vector3d x = Vector3d::UnitX(), y = Vector3d::UnitY();
+  const Pose along_y = grasp_along(brick, y, x);
+  ASSERT_TRUE(book.observe({7, brick, {candidate(along_y)}}, barrett()));
+  EXPECT_TRUE(book.answer(7, brick, along_y));
+  const auto other_end = book.answer(7, brick, grasp_along(brick, -y, -x));
+  ASSERT_TRUE(other_end);
+  EXPECT_TRUE(other_end->X_OG.isApprox(turned(std::numbers::pi) * along_y, 1e-9));
+  EXPECT_FALSE(book.answer(7, brick, grasp_along(brick, x, y)));
+  EXPECT_FALSE(book.answer(7, brick, grasp_along(brick, -Vector3d::UnitZ(), x)));
+  EXPECT_FALSE(book.answer(7, brick, grasp_along(brick, y, -x))) << "the palm upside down";
+}
+
+TEST_F(GraspCandidatesTest, PullTheHandToWhereTheyWerePlanned) {
+  const Pose X_OG = grasp_along(brick, -Vector3d::UnitZ(), Vector3d::UnitX());
+  ASSERT_TRUE(book.observe({7, brick, {candidate(X_OG)}}, barrett()));
+  Pose beside = X_OG;
+  beside.translation().y() += 0.015;
+  const auto found = book.answer(7, brick, beside);
+  ASSERT_TRUE(found);
+  EXPECT_TRUE(found->X_OG.isApprox(X_OG, 1e-9));
+}
+
+TEST_F(GraspCandidatesTest, TheOneWithTheMostRoomAnswers) {
+  ASSERT_TRUE(
+      book.observe({7, can, {candidate(from_aside, 0.2), candidate(from_aside, 0.9)}}, barrett()));
+  EXPECT_EQ(book.answer(7, can, from_aside)->room, 0.9);
+}
+
+// The network's answer holds more often than a grasp that stands no small error.
+TEST_F(GraspCandidatesTest, UnsureOnesDoNotAnswer) {
+  ASSERT_TRUE(book.observe({7, can, {candidate(from_aside, 0.5)}}, barrett()));
+  EXPECT_FALSE(book.answer(7, can, from_aside));
+}
+
+TEST_F(GraspCandidatesTest, OfAnotherObjectOrQuiteAnotherSizeDoNotAnswer) {
+  ASSERT_TRUE(book.observe({7, can, {candidate(from_aside)}}, barrett()));
+  EXPECT_FALSE(book.answer(8, can, from_aside));
+  model::Shape other = can;
+  other.size *= 1.1;
+  EXPECT_TRUE(book.answer(7, other, from_aside)) << "a camera that errs";
+  other.size *= 1.6;
+  EXPECT_FALSE(book.answer(7, other, from_aside));
+  other = {ShapeKind::box, 2 * can.size};
+  EXPECT_FALSE(book.answer(7, other, from_aside));
+  book.remove(7);
+  EXPECT_FALSE(book.answer(7, can, from_aside));
+}
+
+TEST_F(GraspCandidatesTest, NonsenseIsRefusedAndWhatWasKnownStays) {
+  ASSERT_TRUE(book.observe({7, can, {candidate(from_aside, 0.75)}}, barrett()));
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  Candidate wrong = candidate(from_above);
+  wrong.dof.resize(3);
+  EXPECT_EQ(refused(wrong), "grasp candidate of another hand");
+  wrong = candidate(from_above);
+  wrong.preshape[1] = nan;
+  EXPECT_EQ(refused(wrong), "grasp candidate of another hand");
+  wrong = candidate(from_above);
+  wrong.dof[2] = 9;
+  EXPECT_EQ(refused(wrong), "grasp candidate beyond the hand's limits");
+  wrong = candidate(from_above);
+  wrong.X_OR.translation().z() = nan;
+  EXPECT_EQ(refused(wrong), "grasp candidate not finite");
+  wrong = candidate(from_above, nan);
+  EXPECT_EQ(refused(wrong), "grasp candidate not finite");
+  wrong = candidate(from_above);
+  wrong.X_OR.translation().x() += 0.1;
+  EXPECT_EQ(refused(wrong), "grasp candidate away from its approach");
+  wrong = candidate(from_above);
+  wrong.X_OR = wrong.X_OR * turned(0.5);
+  EXPECT_EQ(refused(wrong), "grasp candidate away from its approach");
+  EXPECT_EQ(book.answer(7, can, from_aside)->room, 0.75);
+}
+
+/// A mapping with a network that knows how far people have closed, in reach of a can.
+class PlannedMappingTest : public testing::Test {
+ protected:
+  static const MappingModel& model() {
+    static const MappingModel made = [] {
+      const MappingModel plain = random_model(21);
+      ModelTraits traits = plain.traits();
+      ClosingLessonOptions people;
+      people.people = 40;
+      traits.closing = train_closing(people, {.hidden = 10, .epochs = 300}).value();
+      return MappingModel::create(barrett(), std::move(traits), plain.networks()).value();
+    }();
+    return made;
+  }
+
+  Time at(int ms) const { return Time(std::chrono::milliseconds(1'000'000 + ms)); }
+
+  /// The robot hand is where the human one is.
+  void begin(Mapping& mapping, const Pose& X_WG) const {
+    const auto joints = static_cast<Eigen::Index>(barrett().joints().size());
+    const Eigen::VectorXd none = Eigen::VectorXd::Zero(joints);
+    ASSERT_TRUE(mapping.on_state(
+        {at(-1), barrett().postures().at("open"), none, none, X_WG * barrett().X_BG().inverse()}));
+  }
+
+  /// Commands while the hand, at X_WG, goes from one closure to another.
+  Command after(Mapping& mapping, int& ms, const Pose& X_WG, double from, double to) {
+    Command last;
+    for (int i = 0; i < 60; ++i, ms += 33) {
+      (void)mapping.on_detection({1, "can", can, X_WO, 0.95, at(ms)});
+      const double c = from + (to - from) * std::min(1.0, i / 20.0);
+      const Pose X_WH = X_WG * model::HumanHand(1.0).X_HG().inverse();
+      const auto answer =
+          mapping.on_posture({at(ms), at(ms - 3), X_WH, 1.0, tips({c, c, c, c, c})}, at(ms));
+      EXPECT_TRUE(answer);
+      if (answer) last = *answer;
+    }
+    return last;
+  }
+
+  const Pose X_WO = make_pose({0, 0, 0.075});
+  const Pose X_OG = grasp_along(can, Vector3d::UnitX(), Vector3d::UnitY());
+};
+
+TEST_F(PlannedMappingTest, FingersGoFromThePreshapePastTheContactAndThePalmToItsPlace) {
+  Mapping mapping = Mapping::create(barrett(), model(), {}).value();
+  const Candidate planned = candidate(X_OG);
+  ASSERT_TRUE(mapping.on_candidates({1, can, {planned}}));
+  int ms = 0;
+  const Pose X_WG = X_WO * X_OG * make_pose({0.004, -0.006, 0.005});
+  begin(mapping, X_WG);
+  const Command open = after(mapping, ms, X_WG, 0, 0);
+  EXPECT_EQ(open.object, "can");
+  EXPECT_NEAR(open.weight, 1, 1e-9);
+  EXPECT_NEAR(open.dof[0], planned.preshape[0], 0.02) << "spread as planned";
+  EXPECT_LT(open.dof.tail(3).maxCoeff(), 0.45) << "and open";
+  EXPECT_LT(
+      (open.X_WB.translation() - (X_WO * planned.X_OR * barrett().X_BG().inverse()).translation())
+          .norm(),
+      0.002);
+  const Command closed = after(mapping, ms, X_WG, 0, 1);
+  for (int i = 1; i < 4; ++i) EXPECT_GT(closed.dof[i], planned.dof[i]) << "past the contact";
+  EXPECT_NEAR(closed.dof[0], planned.dof[0], 0.02) << "what does not close stays";
+}
+
+TEST_F(PlannedMappingTest, WithoutCandidatesItAnswersAsBefore) {
+  Mapping with = Mapping::create(barrett(), model(), {}).value();
+  const MappingModel plain = random_model(21);
+  Mapping without = Mapping::create(barrett(), plain, {}).value();
+  ASSERT_TRUE(with.on_candidates({2, can, {candidate(X_OG)}})) << "of another track";
+  int ms = 0, ms_without = 0;
+  begin(with, X_WO * X_OG);
+  begin(without, X_WO * X_OG);
+  const Command a = after(with, ms, X_WO * X_OG, 0, 0.6);
+  const Command b = after(without, ms_without, X_WO * X_OG, 0, 0.6);
+  EXPECT_EQ(a.dof, b.dof);
+  EXPECT_EQ(a.X_WB.matrix(), b.X_WB.matrix());
+}
+
+// A camera and a planner may come and go while the hand closes: limits hold all the same.
+TEST_F(PlannedMappingTest, NothingJumpsWhenCandidatesComeAndGo) {
+  Mapping mapping = Mapping::create(barrett(), model(), {}).value();
+  std::optional<Command> last;
+  Random random(3);
+  for (int ms = 0; ms < 6000; ms += 20) {
+    (void)mapping.on_detection({1, "can", can, X_WO, 0.95, at(ms)});
+    if (random.index(10) == 0) {
+      Candidate any = candidate(X_OG);
+      any.dof.tail(3) << random.uniform(0.5, 2), random.uniform(0.5, 2), random.uniform(0.5, 2);
+      ASSERT_TRUE(mapping.on_candidates({1, can, {any}}));
+    } else if (random.index(20) == 0) {
+      mapping.on_candidates_gone(1);
+    }
+    const double c = 0.5 + 0.5 * std::sin(ms * 1e-3);
+    const Pose X_WH = X_WO * X_OG * model::HumanHand(1.0).X_HG().inverse();
+    const auto answer =
+        mapping.on_posture({at(ms), at(ms), X_WH, 1.0, tips({c, c, c, c, c})}, at(ms));
+    if (!answer) continue;
+    if (last) {
+      const double t = to_seconds(answer->stamp - last->stamp);
+      for (Eigen::Index i = 0; i < 4; ++i) {
+        const double most = barrett().dofs()[static_cast<std::size_t>(i)].max_velocity;
+        EXPECT_LE(std::abs(answer->dof[i] - last->dof[i]), most * t + 1e-9) << ms;
+      }
+      EXPECT_LE((answer->X_WB.translation() - last->X_WB.translation()).norm(), 1.0 * t + 1e-9);
+    }
+    last = *answer;
+  }
+  ASSERT_TRUE(last);
+}
+
+TEST(ClosingLessons, AreTheSameForASeedAndSpanOpenToClosed) {
+  ClosingLessonOptions options;
+  options.people = 10;
+  const auto one = closing_lessons(options), again = closing_lessons(options);
+  EXPECT_EQ(one.inputs, again.inputs);
+  EXPECT_EQ(one.outputs, again.outputs);
+  EXPECT_GT(one.inputs.cols(), 100);
+  EXPECT_EQ(one.outputs.maxCoeff(), 1);
+  EXPECT_LT(one.outputs.minCoeff(), 0.1);
+  options.seed = 2;
+  EXPECT_NE(closing_lessons(options).outputs.size(), 0);
+}
+
+// Of people who were not there, on things whose sizes nobody trained: within 15 % of the closing.
+TEST(ClosingLessons, TellOfOtherPeopleHowFarTheyHaveClosed) {
+  ClosingLessonOptions options;
+  const auto trained = train_closing(options, {.hidden = 16, .epochs = 600});
+  ASSERT_TRUE(trained);
+  EXPECT_LT(std::sqrt(trained->errors.test), 0.15);
+}
+
+}  // namespace
+}  // namespace prehend::mapping
