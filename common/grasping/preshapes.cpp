@@ -6,6 +6,8 @@
 #include <optional>
 #include <utility>
 
+#include "common/model/finger_chain.hpp"
+
 namespace prehend::grasping {
 namespace {
 
@@ -48,6 +50,13 @@ bool alike(const model::HandModel& hand, const VectorXd& one, const VectorXd& ot
   return true;
 }
 
+/// Unless there is one like it.
+void offer(const model::HandModel& hand, const VectorXd& dof, std::vector<VectorXd>& to) {
+  if (std::none_of(to.begin(), to.end(),
+                   [&](const VectorXd& other) { return alike(hand, dof, other); }))
+    to.push_back(dof);
+}
+
 /// With all that closes as far open as it goes.
 VectorXd opened_wide(const model::HandModel& hand, VectorXd dof) {
   for (Eigen::Index i = 0; i < dof.size(); ++i) {
@@ -62,13 +71,11 @@ std::vector<std::vector<int>> closing_of_fingers(const model::HandModel& hand) {
   std::vector<std::vector<int>> fingers;
   for (const model::HandFingertip& tip : hand.fingertips()) {
     std::vector<int>& dofs = fingers.emplace_back();
-    for (int link = tip.link; hand.links()[static_cast<std::size_t>(link)].joint >= 0;) {
-      const auto& joint = hand.joints()[static_cast<std::size_t>(
-          hand.links()[static_cast<std::size_t>(link)].joint)];
-      if (hand.dofs()[static_cast<std::size_t>(joint.dof)].closing != 0 &&
-          std::find(dofs.begin(), dofs.end(), joint.dof) == dofs.end())
-        dofs.insert(dofs.begin(), joint.dof);
-      link = joint.parent;
+    for (const int joint : model::joints_to(hand, tip.link)) {
+      const int dof = hand.joints()[static_cast<std::size_t>(joint)].dof;
+      if (hand.dofs()[static_cast<std::size_t>(dof)].closing != 0 &&
+          std::find(dofs.begin(), dofs.end(), dof) == dofs.end())
+        dofs.push_back(dof);
     }
   }
   return fingers;
@@ -138,30 +145,20 @@ std::vector<std::string> opened_postures(const model::HandModel& hand) {
 
 std::vector<VectorXd> preshapes_of(const model::HandModel& hand) {
   std::vector<VectorXd> made;
-  const auto offer = [&](const VectorXd& dof) {
-    if (std::none_of(made.begin(), made.end(),
-                     [&](const VectorXd& other) { return alike(hand, dof, other); }))
-      made.push_back(dof);
-  };
   const VectorXd& open = hand.postures().at("open");
-  offer(open);
-  for (const double share : turned_aside) offer(aside(hand, open, share));
-  for (const std::string& name : opened_postures(hand)) offer(hand.postures().at(name));
+  offer(hand, open, made);
+  for (const double share : turned_aside) offer(hand, aside(hand, open, share), made);
+  for (const std::string& name : opened_postures(hand)) offer(hand, hand.postures().at(name), made);
   return made;
 }
 
 std::vector<Preshape> ways_to_close(const model::HandModel& hand) {
   std::vector<VectorXd> postures;
-  const auto offer = [&](const VectorXd& dof) {
-    if (std::none_of(postures.begin(), postures.end(),
-                     [&](const VectorXd& other) { return alike(hand, dof, other); }))
-      postures.push_back(dof);
-  };
   const auto named = opened_postures(hand);
   for (std::size_t i = 1; i < named.size(); ++i)
-    offer(opened_wide(hand, hand.postures().at(named[i])));
+    offer(hand, opened_wide(hand, hand.postures().at(named[i])), postures);
   const std::size_t wide = std::max<std::size_t>(postures.size(), 1);
-  for (const VectorXd& dof : preshapes_of(hand)) offer(dof);
+  for (const VectorXd& dof : preshapes_of(hand)) offer(hand, dof, postures);
   std::vector<Preshape> likely, others;
   for (std::size_t i = 0; i < postures.size(); ++i)
     for (Preshape& way : closings(hand, postures[i]))

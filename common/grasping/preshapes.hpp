@@ -26,7 +26,7 @@ struct Preshape {
 /// How a hand may close on what stands before it, the likeliest first: from preshapes_of(), and
 /// from its postures with all fingers opened wide (the thumb stays turned against the others); by
 /// all fingers, by thumb and fingers near the index finger, and by nearly straight fingers that
-/// turn about their bases, since bent ones press on nothing behind what is thin. Each once.
+/// turn about their bases, since bent ones press on nothing behind what is thin.
 std::vector<Preshape> ways_to_close(const model::HandModel& hand);
 
 }  // namespace prehend::grasping

@@ -7,17 +7,13 @@
 #include "common/proto/pose_numbers.hpp"
 #include "common/proto/sealed_file.hpp"
 #include "common/proto/training_set.pb.h"
+#include "common/proto/vectors.hpp"
 
 namespace prehend::learning {
 
 namespace {
 
 constexpr std::string_view kind = "training-set";
-
-template <class Repeated>
-Eigen::VectorXd to_vector(const Repeated& values) {
-  return Eigen::VectorXd::Map(values.data(), values.size());
-}
 
 }  // namespace
 
@@ -76,9 +72,9 @@ Expected<TrainingSet> parse_training_set(const std::string& bytes) {
     if (from.size_size() != 3) return fail("an object's size is not three numbers");
     auto X_OG = proto::pose_from_numbers({from.grasp_frame().begin(), from.grasp_frame().end()});
     if (!X_OG) return tl::unexpected(X_OG.error());
-    set.pairs.push_back({to_vector(from.features()), to_vector(from.dof()), from.user(),
-                         from.take(), from.posture(), from.object(), from.shape(),
-                         to_vector(from.size()), from.source(), *X_OG});
+    set.pairs.push_back({proto::to_vector(from.features()), proto::to_vector(from.dof()),
+                         from.user(), from.take(), from.posture(), from.object(), from.shape(),
+                         proto::to_vector(from.size()), from.source(), *X_OG});
   }
   if (auto ok = check(set); !ok) return tl::unexpected(ok.error());
   return set;

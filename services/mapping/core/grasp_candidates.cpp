@@ -9,9 +9,9 @@ namespace prehend::mapping {
 namespace {
 
 constexpr double farthest = 0.03, max_turn = 0.35;  // m, rad: as far as a placement may correct
-constexpr double sure_enough = 0.6;    // room; below it the network's answer holds more often
-constexpr double same_approach = 0.2;  // rad
-constexpr double other_size = 0.01;    // m, and as a share:
+constexpr double sure_enough = 0.6;                 // room, below which the network answers
+constexpr double same_approach = 0.2;               // rad
+constexpr double other_size = 0.01;                 // m, and as a share:
 constexpr double other_share = 0.25;
 constexpr double end_tolerance = 1e-6;  // rad or m
 constexpr std::size_t max_known = 1000;

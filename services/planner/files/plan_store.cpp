@@ -10,6 +10,7 @@
 #include "common/proto/grasp_candidates.pb.h"
 #include "common/proto/pose_numbers.hpp"
 #include "common/proto/sealed_file.hpp"
+#include "common/proto/vectors.hpp"
 
 namespace prehend::planner {
 namespace {
@@ -20,13 +21,6 @@ using grasping::SureGrasp;
 constexpr std::string_view kind = "grasp-candidates";
 /// Changes when the same hand and object come to other grasps.
 constexpr std::string_view searcher = "1";
-
-template <class Repeated>
-Eigen::VectorXd to_vector(const Repeated& values) {
-  Eigen::VectorXd vector(values.size());
-  std::copy(values.begin(), values.end(), vector.begin());
-  return vector;
-}
 
 template <class Numbers, class Repeated>
 void put(const Numbers& numbers, Repeated& to) {
@@ -50,8 +44,8 @@ Expected<SureGrasp> read(const messages::GraspCandidate& from, const model::Hand
   auto place = proto::pose_from_numbers({from.place().begin(), from.place().end()});
   if (!X_OG || !place) return fail("a grasp without a place");
   made.X_OG = *X_OG;
-  made.grasp = {*place, to_vector(from.preshape()), to_vector(from.dof()),
-                to_vector(from.closing()), from.epsilon()};
+  made.grasp = {*place, proto::to_vector(from.preshape()), proto::to_vector(from.dof()),
+                proto::to_vector(from.closing()), from.epsilon()};
   made.room = from.room();
   made.tried = from.attempt();
   for (const Eigen::VectorXd* values : {&made.grasp.open, &made.grasp.dof, &made.grasp.closing})

@@ -145,7 +145,7 @@ class Service::Topics {
   }
 
   void publish(const TrackPlan& planned) {
-    v1::GraspCandidates message = to_message(planned, hand_name_, hand_->name());
+    v1::GraspCandidates message = to_message(planned, hand_name_, *hand_);
     message.sequence_number(sequence_number_++);
     told_.insert(planned.seen.track);
     output_.publish(message);

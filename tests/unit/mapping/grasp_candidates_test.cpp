@@ -100,7 +100,7 @@ TEST_F(GraspCandidatesTest, TheOneWithTheMostRoomAnswers) {
   EXPECT_EQ(book.answer(7, can, from_aside)->room, 0.9);
 }
 
-// The network's answer holds more often than a grasp that stands no small error.
+// A grasp that stands few small errors leaves the answer to the network.
 TEST_F(GraspCandidatesTest, UnsureOnesDoNotAnswer) {
   ASSERT_TRUE(book.observe({7, can, {candidate(from_aside, 0.5)}}, barrett()));
   EXPECT_FALSE(book.answer(7, can, from_aside));

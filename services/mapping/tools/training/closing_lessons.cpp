@@ -2,17 +2,15 @@
 
 #include <algorithm>
 #include <array>
-#include <utility>
 #include <vector>
 
 #include "common/grasping/table_closing.hpp"
 #include "services/mapping/core/size_input.hpp"
+#include "services/mapping/tools/training/network_training.hpp"
 #include "services/mapping/tools/training/robot_grasps.hpp"
 
 namespace prehend::mapping {
 namespace {
-
-constexpr double share_margin = 0.1;  // beside the range, so that the sigmoid reaches its ends
 
 model::Shape drawn_shape(Random& random) {
   constexpr std::array kinds{model::ShapeKind::cylinder, model::ShapeKind::box,
@@ -80,44 +78,14 @@ learning::Samples closing_lessons(const ClosingLessonOptions& options) {
 
 Expected<MappingNetwork> train_closing(const ClosingLessonOptions& options,
                                        const learning::TrainingOptions& network) {
-  std::array<learning::Samples, 3> sets;  // to learn from, to end by, to judge by
-  for (std::size_t i = 0; i < sets.size(); ++i) {
+  const auto lessons_of = [&](std::uint64_t others, int share) {
     ClosingLessonOptions people = options;
-    people.seed += i;
-    if (i > 0) people.people = std::max(1, options.people / 4);
-    sets[i] = closing_lessons(people);
-  }
-  auto input = learning::Scaling::fit(sets[0].inputs, learning::ScalingKind::each_feature);
-  if (!input) return tl::unexpected(input.error());
-  auto output =
-      learning::Scaling::fit(sets[0].outputs, learning::ScalingKind::each_feature, share_margin);
-  if (!output) return tl::unexpected(output.error());
-  const auto scaled = [&](const learning::Samples& samples) {
-    learning::Samples made = samples;
-    for (Eigen::Index k = 0; k < made.inputs.cols(); ++k) {
-      made.inputs.col(k) = input->to_unit(samples.inputs.col(k));
-      made.outputs.col(k) = output->to_unit(samples.outputs.col(k));
-    }
-    return made;
+    people.seed += others;
+    people.people = std::max(1, options.people / share);
+    return closing_lessons(people);
   };
-  auto best = learning::train(scaled(sets[0]), scaled(sets[1]), network);
-  if (!best) return tl::unexpected(best.error());
-  MappingNetwork made{model::ShapeKind::unknown,
-                      std::move(best->network),
-                      std::move(*input),
-                      std::move(*output),
-                      {}};
-  const auto error = [&](const learning::Samples& samples) {
-    double sum = 0;
-    for (Eigen::Index k = 0; k < samples.inputs.cols(); ++k)
-      sum +=
-          (made.output.from_unit(made.network.evaluate(made.input.to_unit(samples.inputs.col(k)))) -
-           samples.outputs.col(k))
-              .squaredNorm();
-    return sum / static_cast<double>(std::max<Eigen::Index>(samples.inputs.cols(), 1));
-  };
-  made.errors = {error(sets[0]), error(sets[1]), error(sets[2])};
-  return made;
+  return train_network({lessons_of(0, 1), lessons_of(1, 4), lessons_of(2, 4)},
+                       model::ShapeKind::unknown, learning::ScalingKind::each_feature, network);
 }
 
 }  // namespace prehend::mapping

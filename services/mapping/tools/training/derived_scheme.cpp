@@ -6,6 +6,8 @@
 #include <optional>
 #include <set>
 
+#include "common/model/finger_chain.hpp"
+
 namespace prehend::mapping {
 
 namespace {
@@ -19,16 +21,6 @@ constexpr double half_closed = 0.5;  // share from which a posture is no beginni
 
 std::size_t number(Driver driver) {
   return static_cast<std::size_t>(driver);
-}
-
-/// The joints that move a link, from the base to it.
-std::vector<int> chain(const model::HandModel& hand, int link) {
-  std::vector<int> joints;
-  while (hand.links()[static_cast<std::size_t>(link)].joint >= 0) {
-    joints.insert(joints.begin(), hand.links()[static_cast<std::size_t>(link)].joint);
-    link = hand.joints()[static_cast<std::size_t>(joints.front())].parent;
-  }
-  return joints;
 }
 
 /// What each DoF can still close from the open hand, rad or m, with its sign; 0: does not close.
@@ -56,7 +48,8 @@ std::vector<Tip> tips_of(const model::HandModel& hand) {
   const auto p_open = hand.fingertip_positions(open);
   const auto p_closing = hand.fingertip_positions(hand.clamp(open + part * closing_ways(hand)));
   std::vector<std::vector<int>> chains;
-  for (const model::HandFingertip& tip : hand.fingertips()) chains.push_back(chain(hand, tip.link));
+  for (const model::HandFingertip& tip : hand.fingertips())
+    chains.push_back(model::joints_to(hand, tip.link));
   // Joints that move every fingertip belong to a wrist, not to a finger.
   const auto moves_all = [&](int joint) {
     return chains.size() > 1 && std::all_of(chains.begin(), chains.end(), [&](const auto& other) {

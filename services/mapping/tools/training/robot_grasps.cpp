@@ -10,6 +10,7 @@
 #include "common/proto/pose_numbers.hpp"
 #include "common/proto/robot_grasps.pb.h"
 #include "common/proto/sealed_file.hpp"
+#include "common/proto/vectors.hpp"
 
 namespace prehend::mapping {
 
@@ -22,13 +23,6 @@ constexpr double aside = 0.012, nearer = 0.015;  // m, where else the hand is tr
 constexpr double unsure = 0.008;    // m, beside its place where a grasp shall hold as well
 constexpr double short_hold = 0.5;  // s: drops what it drops at once
 
-template <class Repeated>
-Eigen::VectorXd to_vector(const Repeated& values) {
-  Eigen::VectorXd vector(values.size());
-  std::copy(values.begin(), values.end(), vector.begin());
-  return vector;
-}
-
 Expected<RobotGrasp> read(const messages::RobotGrasp& from, const model::HandModel& hand) {
   RobotGrasp grasp;
   grasp.object = from.object();
@@ -36,14 +30,14 @@ Expected<RobotGrasp> read(const messages::RobotGrasp& from, const model::HandMod
   const auto shape = model::shape_from_string(from.shape());
   if (!type || !shape || from.size_size() != 3) return fail("a grasp without type or shape");
   grasp.type = *type;
-  grasp.shape = {*shape, to_vector(from.size())};
+  grasp.shape = {*shape, proto::to_vector(from.size())};
   if (!is_valid(grasp.shape)) return fail("a grasp of what has no size");
   auto X_OG = proto::pose_from_numbers({from.grasp_frame().begin(), from.grasp_frame().end()});
   if (!X_OG) return tl::unexpected(X_OG.error());
   grasp.X_OG = *X_OG;
-  grasp.preshape = to_vector(from.preshape());
-  grasp.dof = to_vector(from.dof());
-  grasp.closing = to_vector(from.closing());
+  grasp.preshape = proto::to_vector(from.preshape());
+  grasp.dof = proto::to_vector(from.dof());
+  grasp.closing = proto::to_vector(from.closing());
   const auto dofs = static_cast<Eigen::Index>(hand.dofs().size());
   if (grasp.preshape.size() != dofs || grasp.dof.size() != dofs || grasp.closing.size() != dofs)
     return fail("a grasp with another number of DoF");

@@ -10,6 +10,7 @@
 
 #include "common/grasping/table_closing.hpp"
 #include "common/proto/sealed_file.hpp"
+#include "services/mapping/tools/training/network_training.hpp"
 
 namespace prehend::mapping {
 
@@ -52,27 +53,6 @@ learning::Samples columns(const learning::TrainingSet& set, model::ShapeKind sha
   return samples;
 }
 
-learning::Samples scaled(const learning::Samples& samples, const learning::Scaling& input,
-                         const learning::Scaling& output) {
-  learning::Samples result = samples;
-  for (Eigen::Index k = 0; k < samples.inputs.cols(); ++k) {
-    result.inputs.col(k) = input.to_unit(samples.inputs.col(k));
-    result.outputs.col(k) = output.to_unit(samples.outputs.col(k));
-  }
-  return result;
-}
-
-/// [Thesis, eq. 5.1], rad².
-double error(const MappingNetwork& network, const learning::Samples& samples) {
-  double sum = 0;
-  for (Eigen::Index k = 0; k < samples.inputs.cols(); ++k)
-    sum += (network.output.from_unit(
-                network.network.evaluate(network.input.to_unit(samples.inputs.col(k)))) -
-            samples.outputs.col(k))
-               .squaredNorm();
-  return sum / static_cast<double>(std::max<Eigen::Index>(samples.inputs.cols(), 1));
-}
-
 /// Seeds of people must not meet those of other sets' people.
 std::uint64_t seed_of(const SetOptions& options, int person) {
   return options.seed * 1000003 + static_cast<std::uint64_t>(person);
@@ -90,27 +70,14 @@ std::vector<std::size_t> drawn(std::size_t count, int wanted, Random& random) {
 /// Name of pairs between the open hand and a posture.
 const std::string on_the_way_to = "on the way to ";
 
-/// Room beside the outputs' range, so that the sigmoid can reach its ends.
-constexpr double output_margin = 0.1;
-
-Expected<MappingNetwork> train_network(const Sets& sets, model::ShapeKind shape,
-                                       const TrainerOptions& options,
-                                       const std::function<void(double)>& progress) {
-  const learning::Samples training = columns(sets.training, shape, options.size_input);
-  const learning::Samples validation = columns(sets.validation, shape, options.size_input);
-  auto input = learning::Scaling::fit(training.inputs, options.scaling);
-  if (!input) return tl::unexpected(input.error());
-  auto output =
-      learning::Scaling::fit(training.outputs, learning::ScalingKind::each_feature, output_margin);
-  if (!output) return tl::unexpected(output.error());
-
-  auto best = learning::train(scaled(training, *input, *output),
-                              scaled(validation, *input, *output), options.network, progress);
-  if (!best) return tl::unexpected(best.error());
-  MappingNetwork made{shape, std::move(best->network), std::move(*input), std::move(*output), {}};
-  made.errors = {error(made, training), error(made, validation),
-                 error(made, columns(sets.test, shape, options.size_input))};
-  return made;
+Expected<MappingNetwork> network_of(const Sets& sets, model::ShapeKind shape,
+                                    const TrainerOptions& options,
+                                    const std::function<void(double)>& progress) {
+  const auto samples = [&](const learning::TrainingSet& set) {
+    return columns(set, shape, options.size_input);
+  };
+  return train_network({samples(sets.training), samples(sets.validation), samples(sets.test)},
+                       shape, options.scaling, options.network, progress);
 }
 
 /// What one person shows in one take: pairs of postures, and of others on the way to them.
@@ -275,7 +242,7 @@ Expected<MappingModel> train_mapping(const model::HandModel& hand, const Scheme&
   std::vector<double> shares(kinds.size());
   std::mutex mutex;  // of the shares
   for_each(kinds.size(), [&](std::size_t i) {
-    trained[i] = train_network(sets, kinds[i], options, [&](double share) {
+    trained[i] = network_of(sets, kinds[i], options, [&](double share) {
       const std::lock_guard lock(mutex);
       shares[i] = share;
       progress("training", std::accumulate(shares.begin(), shares.end(), 0.0) /
