@@ -23,8 +23,8 @@ double skewness(const Eigen::Matrix3d& second_moments_O, const Eigen::Vector3d& 
 
 double skewness(const model::Shape& shape, const Eigen::Vector3d& approach_O) {
   Eigen::Vector3d moments =
-      model::half_extents(shape).array().square() / 3;                      // a box, a volume of 1
-  if (shape.kind == model::ShapeKind::cylinder) moments.head<2>() *= 0.75;  // r²/4
+      model::half_extents(shape).array().square() / 3;                 // a box, a volume of 1
+  if (model::is_upright_round(shape.kind)) moments.head<2>() *= 0.75;  // r²/4
   return skewness(Eigen::Matrix3d(moments.asDiagonal()), approach_O);
 }
 

@@ -1,5 +1,6 @@
 #include "common/analysis/wrench_space.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "common/analysis/contact_wrenches.hpp"
@@ -29,6 +30,11 @@ double torque_scale(const model::Shape& shape) {
   if (shape.kind == model::ShapeKind::cylinder)
     return std::hypot(shape.size.x(), 0.5 * shape.size.z());
   if (shape.kind == model::ShapeKind::sphere) return shape.size.x();
+  if (shape.kind == model::ShapeKind::cone) {
+    const double half = 0.5 * shape.size.z(), middle = model::centre_of_mass(shape).z();
+    return std::max(std::hypot(shape.size.x(), half + middle),
+                    std::hypot(shape.size.y(), half - middle));
+  }
   return model::half_extents(shape).norm();
 }
 

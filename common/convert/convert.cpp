@@ -38,6 +38,8 @@ v1::ShapeKind to_message(model::ShapeKind kind) {
       return v1::SHAPE_BOX;
     case model::ShapeKind::sphere:
       return v1::SHAPE_SPHERE;
+    case model::ShapeKind::cone:
+      return v1::SHAPE_CONE;
     case model::ShapeKind::unknown:
       break;
   }
@@ -52,6 +54,8 @@ model::ShapeKind from_message(v1::ShapeKind kind) {
       return model::ShapeKind::box;
     case v1::SHAPE_SPHERE:
       return model::ShapeKind::sphere;
+    case v1::SHAPE_CONE:
+      return model::ShapeKind::cone;
     default:  // a newer sender may know more
       return model::ShapeKind::unknown;
   }

@@ -168,8 +168,10 @@ class RawReader::Listener : public fdds::DataReaderListener {
       samples[i].kind = kind_of(samples, infos, i);
       if (samples[i].kind != RawSample::Kind::data) end(samples[i].instance);
     }
-    count(samples);
-    for (RawSample& sample : samples) take_(std::move(sample));
+    for (RawSample& sample : as_written(std::move(samples))) {
+      count(sample);
+      take_(std::move(sample));
+    }
   }
 
   std::size_t writers() {
@@ -235,13 +237,20 @@ class RawReader::Listener : public fdds::DataReaderListener {
       it = disposed_.erase(it);
   }
 
-  /// What has come at once comes instance by instance: losses are gaps in the order of the numbers.
-  void count(const std::vector<RawSample>& samples) {
-    std::vector<const RawSample*> ordered;
-    for (const RawSample& sample : samples) ordered.push_back(&sample);
-    std::sort(ordered.begin(), ordered.end(),
-              [](const auto* a, const auto* b) { return a->sequence < b->sequence; });
-    for (const RawSample* sample : ordered) count(*sample);
+  /// What has come at once comes instance by instance: gives each writer's samples, where they are
+  /// among those of others, the order in which it wrote them.
+  static std::vector<RawSample> as_written(std::vector<RawSample> samples) {
+    std::map<Guid, std::vector<std::size_t>> places;  // of each writer's samples, ascending
+    for (std::size_t i = 0; i < samples.size(); ++i) places[samples[i].writer].push_back(i);
+    std::vector<RawSample> ordered(samples.size());
+    for (const auto& [writer, at] : places) {
+      std::vector<std::size_t> by_number = at;
+      std::sort(by_number.begin(), by_number.end(), [&](std::size_t a, std::size_t b) {
+        return samples[a].sequence < samples[b].sequence;
+      });
+      for (std::size_t i = 0; i < at.size(); ++i) ordered[at[i]] = std::move(samples[by_number[i]]);
+    }
+    return ordered;
   }
 
   void count(const RawSample& sample) {

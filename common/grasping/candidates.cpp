@@ -50,7 +50,7 @@ std::vector<Way> ways(const Vector3d& half, double opening) {
 /// A turn that leaves the shape as it is.
 Matrix3d symmetry(const model::Shape& shape, Random& random) {
   const double angle = random.uniform(0, 2 * std::numbers::pi);
-  if (shape.kind == model::ShapeKind::cylinder)
+  if (model::is_upright_round(shape.kind))
     return Eigen::AngleAxisd(angle, Vector3d::UnitZ()).toRotationMatrix();
   if (shape.kind != model::ShapeKind::sphere) return Matrix3d::Identity();
   const Vector3d axis = random.normal3(1);

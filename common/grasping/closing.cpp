@@ -86,9 +86,11 @@ bool close_until_still(World& world, const ClosingOptions& options) {
 
 Expected<analysis::Quality> judge(const std::vector<analysis::Contact>& contacts,
                                   const Body& object, bool volume) {
-  if (volume) return analysis::grasp_quality(contacts, torque_scale(object));
+  if (volume)
+    return analysis::grasp_quality(about_centre_of_mass(contacts, object), torque_scale(object));
   auto resistance = analysis::l1_resistance(analysis::contact_wrenches(
-      analysis::spread_contacts(contacts, analysis::max_contacts), torque_scale(object)));
+      analysis::spread_contacts(about_centre_of_mass(contacts, object), analysis::max_contacts),
+      torque_scale(object)));
   if (!resistance) return tl::unexpected(resistance.error());
   return analysis::Quality{std::move(*resistance)};
 }

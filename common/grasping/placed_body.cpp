@@ -3,13 +3,14 @@
 #include <Eigen/Eigenvalues>
 #include <cmath>
 
+#include "common/grasping/mesh_body.hpp"
 #include "common/grasping/surface.hpp"
 
 namespace prehend::grasping {
 
 Expected<void> check_body(const Body& body, const Pose& X_WO) {
   if (!model::is_valid(body.shape)) return fail("shape is not valid", body.name);
-  if (body.mesh && (body.mesh->parts.parts.empty() || !body.mesh->inertia_O.allFinite()))
+  if (body.mesh && (body.mesh->parts.parts.empty() || !body.mesh->inertia_C.allFinite()))
     return fail("mesh is not valid", body.name, "see load_body");
   if (!std::isfinite(body.mass) || body.mass < 0) return fail("mass must be 0 or more", body.name);
   if (!is_finite(X_WO)) return fail("pose must be finite", body.name);
@@ -30,16 +31,17 @@ PlacedBody::PlacedBody(const Body& placed, const Pose& X_WO) : body(placed) {
 btVector3 PlacedBody::build_shapes() {
   const double mass = body.mass;
   btVector3 inertia(0, 0, 0);
+  if (!body.mesh && body.shape.kind == model::ShapeKind::cone) body.mesh = cone_mesh(body.shape);
   if (!body.mesh) {
     shapes.push_back(make_shape(body.shape));
     if (mass > 0) shapes.back()->calculateLocalInertia(mass, inertia);
     return inertia;
   }
   const SolidMesh& mesh = *body.mesh;
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> principal(mesh.inertia_O);
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> principal(mesh.inertia_C);
   Eigen::Matrix3d R_OC = principal.eigenvectors();
   if (R_OC.determinant() < 0) R_OC.col(0) *= -1;
-  X_OC.linear() = R_OC;
+  X_OC = make_pose(mesh.p_OC, R_OC);
   auto compound = std::make_unique<btCompoundShape>();
   for (const auto& corners : mesh.parts.parts) {
     shapes.push_back(make_shape(corners));
@@ -59,8 +61,10 @@ void PlacedBody::move_to(const Pose& X_WO) {
 }
 
 BodyMotion PlacedBody::motion() const {
-  return {from_bullet(rigid->getWorldTransform()) * X_OC.inverse(),
-          from_bullet(rigid->getLinearVelocity()), from_bullet(rigid->getAngularVelocity())};
+  const Pose X_WO = from_bullet(rigid->getWorldTransform()) * X_OC.inverse();
+  const Eigen::Vector3d turning = from_bullet(rigid->getAngularVelocity());
+  const Eigen::Vector3d p_CO_W = -(X_WO.linear() * X_OC.translation());
+  return {X_WO, from_bullet(rigid->getLinearVelocity()) + turning.cross(p_CO_W), turning};
 }
 
 }  // namespace prehend::grasping

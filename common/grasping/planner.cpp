@@ -152,8 +152,8 @@ Expected<PlannedGrasp> test(const model::HandModel& hand, const Body& object,
                        {},
                        std::move(grasp->quality),
                        std::move(*grasp->hold)};
-  planned.wrenches =
-      analysis::contact_wrenches(planned.contacts, analysis::torque_scale(object.shape));
+  planned.wrenches = analysis::contact_wrenches(about_centre_of_mass(planned.contacts, object),
+                                                torque_scale(object));
   return planned;
 }
 

@@ -4,14 +4,15 @@
 #include <btBulletCollisionCommon.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "common/grasping/bullet.hpp"
 
 namespace prehend::grasping {
 namespace {
 
-constexpr double collision_margin = 0.0005;  // m; Bullet's default of 0.04 is far too much here
 constexpr double rolling_friction = 0.0002;  // m; keeps a standing or lying cylinder where it is
 
 double friction_between(const Surface& a, const Surface& b) {
@@ -42,6 +43,23 @@ void install_friction() {
 
 }  // namespace
 
+std::vector<Eigen::Vector3d> cone_corners(const model::Shape& cone) {
+  constexpr int corners = 48;
+  // The wall moves inwards by the margin; where it would pass the axis, the cone ends there.
+  const double rise = model::slope(cone), inwards = collision_margin * std::hypot(1, rise);
+  const double half = 0.5 * cone.size.z() - collision_margin;
+  std::vector<Eigen::Vector3d> points;
+  for (const double end : {-half, half}) {
+    double z = end, radius = model::radius_at(cone, end) - inwards;
+    if (radius < 0) z -= radius / rise, radius = 0;
+    for (int i = 0; i < (radius > 0 ? corners : 1); ++i) {
+      const double angle = 2 * std::numbers::pi * i / corners;
+      points.emplace_back(radius * std::cos(angle), radius * std::sin(angle), z);
+    }
+  }
+  return points;
+}
+
 std::unique_ptr<btCollisionShape> make_shape(const model::Shape& shape) {
   std::unique_ptr<btCollisionShape> made;
   switch (shape.kind) {
@@ -52,6 +70,8 @@ std::unique_ptr<btCollisionShape> make_shape(const model::Shape& shape) {
       made = std::make_unique<btCylinderShapeZ>(
           btVector3(shape.size.x(), shape.size.x(), 0.5 * shape.size.z()));
       break;
+    case model::ShapeKind::cone:
+      return make_shape(cone_corners(shape));
     default:
       return std::make_unique<btSphereShape>(shape.size.x());
   }

@@ -21,7 +21,13 @@ struct Surface {
   int link = -1;                   // of the hand; -1: not the hand
 };
 
-/// Bullet's shape of a solid about its centre; without the thick margin that Bullet likes.
+/// m, that Bullet adds to what is made of corners; its default of 0.04 is far too much here.
+inline constexpr double collision_margin = 0.0005;
+
+/// Of a cone as Bullet collides it: 48 at each end, smaller by the margin. O: as the shape's.
+std::vector<Eigen::Vector3d> cone_corners(const model::Shape& cone);
+
+/// Bullet's shape of a solid about O; without the thick margin that Bullet likes.
 std::unique_ptr<btCollisionShape> make_shape(const model::Shape& shape);
 
 /// The same of a convex solid with these corners.

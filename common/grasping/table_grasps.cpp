@@ -6,6 +6,7 @@
 #include <optional>
 #include <utility>
 
+#include "common/grasping/mesh_body.hpp"
 #include "common/grasping/preshapes.hpp"
 #include "common/model/past_contact.hpp"
 
@@ -82,9 +83,8 @@ std::vector<TableApproach> attempts_from(const model::HandModel& hand, const Pos
 
 bool holds(const model::HandModel& hand, const Body& object, const TableGrasp& grasp,
            const Deviation& deviation) {
-  Body other = object;
+  Body other = scaled(object, deviation.larger);
   other.mass *= deviation.heavier;
-  other.shape.size *= deviation.larger;
   TableGrasp there = grasp;
   // The hand goes where the object was said to be; the other one stands on the same table.
   const double higher =

@@ -50,6 +50,16 @@ double torque_scale(const Body& body) {
   return body.mesh ? body.mesh->radius : analysis::torque_scale(body.shape);
 }
 
+Eigen::Vector3d centre_of_mass(const Body& body) {
+  return body.mesh ? body.mesh->p_OC : model::centre_of_mass(body.shape);
+}
+
+std::vector<analysis::Contact> about_centre_of_mass(std::vector<analysis::Contact> contacts,
+                                                    const Body& body) {
+  for (analysis::Contact& contact : contacts) contact.p_OC -= centre_of_mass(body);
+  return contacts;
+}
+
 struct World::State {
   const model::HandModel& hand;
   WorldOptions options;

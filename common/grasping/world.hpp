@@ -12,18 +12,17 @@
 #include "common/grasping/arm.hpp"
 #include "common/grasping/convex_parts.hpp"
 #include "common/model/hand_model.hpp"
-#include "common/model/mesh.hpp"
 #include "common/model/shape.hpp"
 
 namespace prehend::grasping {
 
-/// A mesh made fit for the world, in the body's frame O, which lies in its centre of mass.
+/// What touches where a shape of Bullet's does not: a mesh, or a cone. O: the middle of the box
+/// that bounds it. C: the centre of mass, with the axes of O.
 struct SolidMesh {
-  model::Mesh surface;
-  ConvexParts parts;          // what touches; Bullet adds its margin of 0.5 mm to them
-  Eigen::Matrix3d inertia_O;  // per kg, m²
-  Eigen::Vector3d p_FO;       // of the centre of mass in the file's frame, m
-  double radius = 0;          // of the farthest vertex, m
+  ConvexParts parts;          // in O; Bullet adds its margin of 0.5 mm to them
+  Eigen::Vector3d p_OC;       // m
+  Eigen::Matrix3d inertia_C;  // per kg, m²
+  double radius = 0;          // of the vertex that is farthest from C, m
 };
 
 /// A rigid body besides the hand.
@@ -38,6 +37,14 @@ struct Body {
 
 /// ρ of its wrenches: the largest distance of a point of the body from its centre of mass, m.
 double torque_scale(const Body& body);
+
+/// Of a body of uniform density, in O, m.
+Eigen::Vector3d centre_of_mass(const Body& body);
+
+/// Contacts, which say where they are in O, as they are seen from the centre of mass C: what
+/// wrenches are about.
+std::vector<analysis::Contact> about_centre_of_mass(std::vector<analysis::Contact> contacts,
+                                                    const Body& body);
 
 struct WorldOptions {
   double rate = 500;                          // Hz, physics steps

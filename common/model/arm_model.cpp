@@ -22,6 +22,7 @@ Capsule capsule_around(const CollisionShape& shape) {
   Capsule capsule;
   switch (shape.shape.kind) {
     case ShapeKind::cylinder:
+    case ShapeKind::cone:
       along.z() = half.z();
       capsule.radius = half.x();
       break;

@@ -1,5 +1,6 @@
 #include "common/model/catalogue.hpp"
 
+#include <fmt/format.h>
 #include <toml++/toml.h>
 
 #include <algorithm>
@@ -20,17 +21,44 @@ std::optional<Eigen::Vector3d> three_numbers(const toml::node_view<const toml::n
   return v;
 }
 
-Expected<CatalogueObject> read_object(const toml::table& table) {
+/// As large as the shape that bounds it, within rounding of what people write.
+bool fills(const Mesh& mesh, const Shape& shape) {
+  constexpr double tolerance = 0.0015;  // m
+  const Eigen::Vector3d off = bounds(mesh).sizes() - 2 * half_extents(shape);
+  return off.cwiseAbs().maxCoeff() <= tolerance;
+}
+
+/// beside: the folder that names of files are relative to.
+Expected<std::shared_ptr<const Mesh>> read_mesh(const toml::table& table, const Shape& shape,
+                                                const std::filesystem::path& beside) {
+  const std::string name = table["mesh"].value_or("");
+  if (name.empty()) return fail("mesh needs the name of a file");
+  auto mesh = load_mesh(beside / name, table["mesh_scale"].value_or(1.0));
+  if (!mesh) return tl::unexpected(mesh.error());
+  const Eigen::Vector3d mm = 1e3 * bounds(*mesh).sizes();
+  if (!fills(*mesh, shape))
+    return fail(fmt::format("mesh is {:.1f} x {:.1f} x {:.1f} mm, which is not its size", mm.x(),
+                            mm.y(), mm.z()));
+  return std::make_shared<const Mesh>(moved(*mesh, -bounds(*mesh).center()));
+}
+
+Expected<CatalogueObject> read_object(const toml::table& table,
+                                      const std::filesystem::path& beside) {
   CatalogueObject object;
   object.name = table["name"].value_or("");
   if (object.name.empty() || object.name.size() > 64) return fail("needs a name of 1 to 64 bytes");
   const auto kind = shape_from_string(table["shape"].value_or(""));
-  if (!kind) return fail("shape is none of cylinder, box, sphere");
+  if (!kind) return fail("shape is no " + shape_words());
   object.shape.kind = *kind;
   const auto size = three_numbers(table["size"]);
   if (!size) return fail("size needs three numbers in metres");
   object.shape.size = *size;
-  if (!is_valid(object.shape)) return fail("every size must be positive");
+  if (!is_valid(object.shape)) return fail("sizes must be positive");
+  if (table.contains("mesh")) {
+    auto mesh = read_mesh(table, object.shape, beside);
+    if (!mesh) return tl::unexpected(mesh.error());
+    object.mesh = std::move(*mesh);
+  }
   object.mass = table["mass"].value_or(0.0);
   if (!(object.mass > 0)) return fail("mass must be positive, in kg");
   object.material = table["material"].value_or("");
@@ -64,7 +92,7 @@ Expected<Catalogue> Catalogue::load(const std::filesystem::path& file) {
   for (const toml::node& entry : *entries) {
     const toml::table* table = entry.as_table();
     if (!table) return fail("object is no table", file.string());
-    auto object = read_object(*table);
+    auto object = read_object(*table, file.parent_path());
     if (!object)
       return fail(
           "object " + std::to_string(catalogue.objects_.size() + 1) + ": " + object.error().what,

@@ -1,11 +1,13 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "common/base/error.hpp"
+#include "common/model/mesh.hpp"
 #include "common/model/shape.hpp"
 
 namespace prehend::model {
@@ -20,7 +22,9 @@ struct Appearance {
 /// An everyday object, standing upright: z of its frame is up.
 struct CatalogueObject {
   std::string name;
-  Shape shape;
+  Shape shape;  // what bounds it, if it has a mesh
+  /// What it is like more exactly, its origin in the middle of the box that bounds it; or none.
+  std::shared_ptr<const Mesh> mesh;
   double mass = 0;       // kg
   std::string material;  // one of the friction table (see analysis/materials.hpp)
   Appearance appearance;

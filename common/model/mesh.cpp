@@ -139,6 +139,12 @@ Expected<Solid> measure(const Mesh& mesh) {
   return solid;
 }
 
+Eigen::AlignedBox3d bounds(const Mesh& mesh) {
+  Eigen::AlignedBox3d box;
+  for (const Eigen::Vector3d& vertex : mesh.vertices) box.extend(vertex);
+  return box;
+}
+
 Mesh moved(Mesh mesh, const Vector3d& by) {
   for (Vector3d& vertex : mesh.vertices) vertex += by;
   return mesh;

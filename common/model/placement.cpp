@@ -49,23 +49,39 @@ Vector3d horizontal(const Vector3d& v, const Vector3d& otherwise) {
   return flat.norm() < 1e-9 ? otherwise : Vector3d(flat.normalized());
 }
 
-void offer_cylinder(const Shape& shape, const Reach& reach, Nearest& nearest) {
-  const double radius = shape.size.x(), height = shape.size.z();
-  if (2 * radius > reach.opening) return;
+/// Levels at which something round is no wider than this, within from and to; none: an empty range.
+struct Levels {
+  double from, to;
+};
+Levels narrow_enough(const Shape& shape, double width, Levels within) {
+  const auto fits = [&](double z) { return 2 * radius_at(shape, z) <= width; };
+  const double rise = 2 * slope(shape);
+  if (std::abs(rise) < 1e-9) return fits(0) ? within : Levels{1, -1};
+  const double edge = (width - 2 * radius_at(shape, 0)) / rise;  // where it is just as wide
+  return rise > 0 ? Levels{within.from, std::min(within.to, edge)}
+                  : Levels{std::max(within.from, edge), within.to};
+}
+
+/// A cylinder or a cone.
+void offer_round(const Shape& shape, const Reach& reach, Nearest& nearest) {
+  const double height = shape.size.z();
   const Matrix3d& R = nearest.X_OG.linear();
   const Vector3d p = nearest.X_OG.translation();
   const Vector3d down = -Vector3d::UnitZ();
 
-  if (const auto above = height_from_above(height, reach))
+  // Fingers that come from above pass all that is over where they close.
+  const auto above = height_from_above(height, reach);
+  const Levels admitted = narrow_enough(shape, reach.opening, {-height, 0.5 * height});
+  if (above && admitted.from <= *above - 0.5 * height && admitted.to >= 0.5 * height)
     nearest.offer(grasp_axes(down, horizontal(R.col(1), Vector3d::UnitY())),
                   Vector3d(0, 0, *above - 0.5 * height));
   // From the side the palm's width must find room above the table and some of the object to hold.
-  const double lowest = reach.half_width - 0.5 * height;
-  const double highest = 0.5 * height - 0.03;
-  if (lowest > highest) return;
+  const Levels side =
+      narrow_enough(shape, reach.opening, {reach.half_width - 0.5 * height, 0.5 * height - 0.03});
+  if (side.from > side.to) return;
   const Vector3d toward_axis = horizontal(R.col(2), Vector3d::UnitX());
   const Vector3d sideways = Vector3d::UnitZ().cross(toward_axis);
-  const double level = std::clamp(p.z(), lowest, highest);
+  const double level = std::clamp(p.z(), side.from, side.to);
   for (const double sign : {1.0, -1.0})
     nearest.offer(grasp_axes(toward_axis, sign * sideways), Vector3d(0, 0, level));
 }
@@ -108,10 +124,7 @@ std::optional<Pose> nearest_grasp(const Shape& shape, const Pose& X_OG, const Re
   if (shape.kind == ShapeKind::box) {
     offer_box(shape, reach, nearest);
   } else {
-    // A sphere is held like a cylinder as high as it is wide.
-    const Shape upright{ShapeKind::cylinder,
-                        2 * half_extents(shape).cwiseProduct(Vector3d(.5, .5, 1))};
-    offer_cylinder(upright, reach, nearest);
+    offer_round(is_upright_round(shape.kind) ? shape : like_known(shape), reach, nearest);
   }
   return nearest.best;
 }

@@ -24,10 +24,10 @@ struct Reach {
 Eigen::Matrix3d grasp_axes(const Eigen::Vector3d& approach, const Eigen::Vector3d& closing);
 
 /// The grasp frame nearest to X_OG among those from which a standing object can be grasped:
-/// cylinders and boxes from above if they are as high as the clearance, cylinders taller than the
-/// palm from any side, boxes across any pair of faces that fits into the opening. Freedoms that do
-/// not matter (turn about a cylinder, place along a long side) keep the values of X_OG. None if
-/// nothing fits. «Nearest» minimises the angle first.
+/// cylinders, cones and boxes from above if they are as high as the clearance, cylinders and cones
+/// taller than the palm from any side where the opening admits them, boxes across any pair of faces
+/// that fits into the opening. Freedoms that do not matter (turn about a cylinder, place along a
+/// long side) keep the values of X_OG. None if nothing fits. «Nearest» minimises the angle first.
 std::optional<Pose> nearest_grasp(const Shape& shape, const Pose& X_OG, const Reach& reach);
 
 }  // namespace prehend::model

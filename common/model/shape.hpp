@@ -2,17 +2,19 @@
 
 #include <Eigen/Core>
 #include <optional>
+#include <string>
 #include <string_view>
 
 namespace prehend::model {
 
-enum class ShapeKind { unknown, cylinder, box, sphere };
+enum class ShapeKind { unknown, cylinder, box, sphere, cone };
 
-/// A primitive solid centred on its own frame O.
+/// A primitive solid. O: the middle of the box that bounds it.
 struct Shape {
   ShapeKind kind = ShapeKind::unknown;
   /// m. Cylinder: radius, radius, height (axis z). Box: depth (x), length (y), height (z).
-  /// Sphere: radius three times.
+  /// Sphere: radius three times. Cone: radius below, radius above, height (axis z); one
+  /// radius may be 0. A cup is such a cone, too.
   Eigen::Vector3d size = Eigen::Vector3d::Zero();
 
   bool operator==(const Shape&) const = default;
@@ -27,8 +29,27 @@ struct Capsule {
 std::string_view to_string(ShapeKind kind);
 std::optional<ShapeKind> shape_from_string(std::string_view name);
 
-/// True if the kind is known and every size is finite and positive.
+/// «cylinder, box, sphere or cone», for messages.
+std::string shape_words();
+
+/// True if the kind is known and every size is finite and positive; one radius of a cone may be 0.
 bool is_valid(const Shape& shape);
+
+/// Round about z: a cylinder, a cone. Turning such a one shows nothing.
+bool is_upright_round(ShapeKind kind);
+
+/// Of what is round about z: its radius at a height over O, m; beyond its ends that of the end.
+double radius_at(const Shape& shape, double z);
+
+/// Of a cylinder or cone: the wall's slope, how much the radius grows a metre of height.
+double slope(const Shape& shape);
+
+/// Where the mass is if it is spread evenly, in O, m.
+Eigen::Vector3d centre_of_mass(const Shape& shape);
+
+/// What is round as a cylinder of the same height and, in its middle, the same radius (a sphere:
+/// as high as it is wide); a box as it is. For those who know no other shapes.
+Shape like_known(const Shape& shape);
 
 /// Half the edges of the box that bounds the shape along its own axes, m.
 Eigen::Vector3d half_extents(const Shape& shape);

@@ -19,6 +19,9 @@ std::string in_words(const model::Shape& shape) {
       return fmt::format("cylinder, {:.0f} mm wide, {:.0f} mm high", 2 * mm.x(), mm.z());
     case model::ShapeKind::box:
       return fmt::format("box, {:.0f} x {:.0f} x {:.0f} mm", mm.x(), mm.y(), mm.z());
+    case model::ShapeKind::cone:
+      return fmt::format("cone, {:.0f} mm wide below and {:.0f} mm above, {:.0f} mm high",
+                         2 * mm.x(), 2 * mm.y(), mm.z());
     case model::ShapeKind::sphere:
       return fmt::format("sphere, {:.0f} mm wide", 2 * mm.x());
     default:

@@ -121,10 +121,11 @@ void add_shape(Json& entity, const model::Shape& shape, const Pose& X_ES, const 
   Json solid{{"pose", to_json(X_ES)}, {"size", to_json(size)}};
   const char* list = "cubes";
   if (shape.kind == model::ShapeKind::sphere) list = "spheres";
-  if (shape.kind == model::ShapeKind::cylinder) {
-    list = "cylinders";
-    solid["bottom_scale"] = 1.0;
-    solid["top_scale"] = 1.0;
+  if (model::is_upright_round(shape.kind)) {
+    list = "cylinders";  // Foxglove's: as wide as the size says, times the scale of each end
+    const double widest = 0.5 * size.x();
+    solid["bottom_scale"] = model::radius_at(shape, -0.5 * size.z()) / widest;
+    solid["top_scale"] = model::radius_at(shape, 0.5 * size.z()) / widest;
   }
   solid["color"] = to_json(colour);
   entity[list].push_back(std::move(solid));

@@ -99,15 +99,13 @@ NetworkAnswer MappingModel::direct(const Features& features) const {
 std::optional<NetworkAnswer> MappingModel::intelligent(const Features& features,
                                                        const model::Shape& shape,
                                                        const Pose& X_OG) const {
-  for (const MappingNetwork& network : networks_)
-    if (network.shape == shape.kind && shape.kind != model::ShapeKind::unknown) {
-      Eigen::VectorXd input(feature_count + size_count(traits_.size_input, shape.kind));
-      input << features, size_numbers(traits_.size_input, shape, X_OG);
-      NetworkAnswer made = answer(network, input);
-      made.dof = limited(made.dof);
-      return made;
-    }
-  return std::nullopt;
+  const auto known = known_as(shape);
+  if (!known) return std::nullopt;
+  Eigen::VectorXd input(feature_count + size_count(traits_.size_input, known->kind));
+  input << features, size_numbers(traits_.size_input, *known, X_OG);
+  NetworkAnswer made = answer(*find(known->kind), input);
+  made.dof = limited(made.dof);
+  return made;
 }
 
 std::optional<ClosingAnswer> MappingModel::closing(const Features& features,
@@ -120,10 +118,18 @@ std::optional<ClosingAnswer> MappingModel::closing(const Features& features,
   return ClosingAnswer{std::clamp(made.dof[0], 0.0, 1.0), made.extrapolating};
 }
 
-bool MappingModel::knows(model::ShapeKind shape) const {
-  return shape != model::ShapeKind::unknown &&
-         std::any_of(networks_.begin(), networks_.end(),
-                     [&](const MappingNetwork& network) { return network.shape == shape; });
+const MappingNetwork* MappingModel::find(model::ShapeKind shape) const {
+  if (shape == model::ShapeKind::unknown) return nullptr;
+  const auto found =
+      std::find_if(networks_.begin(), networks_.end(),
+                   [&](const MappingNetwork& network) { return network.shape == shape; });
+  return found == networks_.end() ? nullptr : &*found;
+}
+
+std::optional<model::Shape> MappingModel::known_as(const model::Shape& shape) const {
+  for (const model::Shape& as : {shape, model::like_known(shape)})
+    if (find(as.kind)) return as;
+  return std::nullopt;
 }
 
 }  // namespace prehend::mapping

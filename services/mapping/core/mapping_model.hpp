@@ -73,10 +73,12 @@ class MappingModel {
   /// at each side, and the answer says so. Sizes are not stretched: the nearest trained one counts.
   NetworkAnswer direct(const Features& features) const;
   /// X_OG: the grasp frame that the hand is at or reaches for, as model::nearest_grasp gives it.
-  /// nullopt: no network knows this shape.
+  /// nullopt: no network knows this shape, nor what it is like.
   std::optional<NetworkAnswer> intelligent(const Features& features, const model::Shape& shape,
                                            const Pose& X_OG) const;
-  bool knows(model::ShapeKind shape) const;
+  /// The shape that a network of this model answers for: this one, or what it is like
+  /// (model::like_known) if there is a network of that kind only.
+  std::optional<model::Shape> known_as(const model::Shape& shape) const;
   /// The same inputs: how far the person has closed on it. nullopt: not learnt.
   std::optional<ClosingAnswer> closing(const Features& features, const model::Shape& shape,
                                        const Pose& X_OG) const;
@@ -88,6 +90,8 @@ class MappingModel {
 
  private:
   MappingModel() = default;
+  /// nullptr: none.
+  const MappingNetwork* find(model::ShapeKind shape) const;
   ModelTraits traits_;
   std::vector<MappingNetwork> networks_;
 };

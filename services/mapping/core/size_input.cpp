@@ -45,7 +45,9 @@ int size_count(SizeInput input, model::ShapeKind shape) {
   return shape == model::ShapeKind::cylinder ? 2 : 3;
 }
 
-Eigen::VectorXd size_numbers(SizeInput input, const model::Shape& shape, const Pose& X_OG) {
+Eigen::VectorXd size_numbers(SizeInput input, const model::Shape& seen, const Pose& X_OG) {
+  const bool cone = seen.kind == model::ShapeKind::cone;
+  const model::Shape shape = cone ? model::like_known(seen) : seen;
   Eigen::VectorXd numbers(size_count(input, shape.kind));
   const Eigen::Matrix3d R = X_OG.linear();
   if (input == SizeInput::seen)

@@ -20,10 +20,10 @@ enum class SizeInput {
 std::string_view to_string(SizeInput input);
 std::optional<SizeInput> size_input_from_string(std::string_view name);
 
-/// The numbers for a network of this shape: lengths in m, the direction as the downward part of
-/// the approach, 0 to 1. X_OG: the grasp frame that the hand is at or reaches for, as
-/// model::nearest_grasp gives it; only `seen` depends on it.
-Eigen::VectorXd size_numbers(SizeInput input, const model::Shape& shape, const Pose& X_OG);
+/// The numbers for a network of this shape, a cone's of the cylinder that it is like: lengths in m,
+/// the direction as the downward part of the approach, 0 to 1. X_OG: the grasp frame that the hand
+/// is at or reaches for, as model::nearest_grasp gives it; only `seen` depends on it.
+Eigen::VectorXd size_numbers(SizeInput input, const model::Shape& seen, const Pose& X_OG);
 
 /// How many these are.
 int size_count(SizeInput input, model::ShapeKind shape);

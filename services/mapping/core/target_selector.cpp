@@ -27,8 +27,9 @@ std::optional<GraspTarget> TargetSelector::within_reach(const ObjectTrack& track
     return GraspTarget{track,        distance, detection.X_WO * X_OG_planned,
                        X_OG_planned, X_GR,     std::move(candidate)};
   }
-  if (!model_.knows(detection.shape.kind)) return std::nullopt;
-  const Pose X_GR = make_pose(place_for(model_.traits().places, detection.shape, *X_OG));
+  const auto known = model_.known_as(detection.shape);
+  if (!known) return std::nullopt;
+  const Pose X_GR = make_pose(place_for(model_.traits().places, *known, *X_OG));
   return GraspTarget{track, distance, X_WG_grasp, *X_OG, X_GR, std::nullopt};
 }
 

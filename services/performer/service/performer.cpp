@@ -12,6 +12,7 @@
 #include "common/base/log.hpp"
 #include "common/convert/convert.hpp"
 #include "common/dds/topics.hpp"
+#include "common/grasping/catalogue_bodies.hpp"
 #include "common/model/arm_choice.hpp"
 #include "common/model/catalogue.hpp"
 #include "common/model/grasp_taxonomy.hpp"
@@ -78,10 +79,10 @@ struct Doing {
 
 class Performer::State {
  public:
-  State(service::Shell& shell, model::Catalogue catalogue, model::GraspTaxonomy taxonomy,
+  State(service::Shell& shell, grasping::CatalogueBodies bodies, model::GraspTaxonomy taxonomy,
         std::optional<model::ArmModel> arm)
       : shell_(shell),
-        catalogue_(std::move(catalogue)),
+        bodies_(std::move(bodies)),
         taxonomy_(std::move(taxonomy)),
         arm_(std::move(arm)),
         hand_name_(shell.config().text("mapping.hand_name")),
@@ -252,9 +253,8 @@ class Performer::State {
         robot_->joint.size() != static_cast<Eigen::Index>(doing.hand->joints().size()))
       return refuse({"has other joints than " + model_, hand_name_, "is it the same description?"});
     for (const auto& [name, X_WO] : places_)
-      if (const auto* known = catalogue_.find(name))
-        doing.things.push_back(
-            {{known->name, known->shape, known->mass, known->material, {}, {}}, X_WO});
+      if (const auto* known = bodies_.find(name))
+        doing.things.push_back({*known, X_WO});
       else
         log::warning("{} is not in the catalogue: it is not looked out for", name);
     doing.from = {robot_->X_WB, doing.hand->clamp(robot_->dof)};
@@ -376,7 +376,7 @@ class Performer::State {
   }
 
   service::Shell& shell_;
-  model::Catalogue catalogue_;
+  grasping::CatalogueBodies bodies_;
   model::GraspTaxonomy taxonomy_;
   const std::optional<model::ArmModel> arm_;  // that carries the hand, if any
   std::string hand_name_, model_;
@@ -398,6 +398,8 @@ class Performer::State {
 Expected<std::unique_ptr<Performer>> Performer::create(service::Shell& shell) {
   auto catalogue = model::Catalogue::load(shell.config().path("lab.catalogue"));
   if (!catalogue) return tl::unexpected(catalogue.error());
+  auto bodies = grasping::CatalogueBodies::create(*catalogue);
+  if (!bodies) return tl::unexpected(bodies.error());
   auto taxonomy = model::GraspTaxonomy::of_the_house();
   if (!taxonomy) return tl::unexpected(taxonomy.error());
   std::optional<model::ArmModel> arm;
@@ -407,7 +409,7 @@ Expected<std::unique_ptr<Performer>> Performer::create(service::Shell& shell) {
     arm = std::move(*loaded);
   }
   return std::unique_ptr<Performer>(new Performer(
-      std::make_unique<State>(shell, std::move(*catalogue), std::move(*taxonomy), std::move(arm))));
+      std::make_unique<State>(shell, std::move(*bodies), std::move(*taxonomy), std::move(arm))));
 }
 
 Performer::Performer(std::unique_ptr<State> state) : state_(std::move(state)) {}

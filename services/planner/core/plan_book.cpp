@@ -9,17 +9,15 @@
 namespace prehend::planner {
 namespace {
 
-constexpr double grain = 0.001;  // m, to which sizes are rounded, so that plans are kept
-constexpr double density = 300;  // kg/m³, of what is in no catalogue: things are hollow
-constexpr double lightest = 0.03, heaviest = 0.6;  // kg
-constexpr double upright = 0.26;                   // rad, that an object may lean and still stand
+constexpr double grain = 0.001;   // m, to which sizes are rounded, so that plans are kept
+constexpr double upright = 0.26;  // rad, that an object may lean and still stand
 constexpr std::size_t max_seen = 1000, max_planned = 200;
 
 /// Objects that share a plan have the same.
 std::string key_for(const grasping::Body& body) {
   const Eigen::Vector3d& size = body.shape.size;
-  return fmt::format("{} {:.3f} {:.3f} {:.3f} {:.3f} {}", to_string(body.shape.kind), size.x(),
-                     size.y(), size.z(), body.mass, body.material);
+  return fmt::format("{} {:.3f} {:.3f} {:.3f} {:.3f} {} {}", to_string(body.shape.kind), size.x(),
+                     size.y(), size.z(), body.mass, body.material, body.mesh ? body.name : "");
 }
 
 std::string reason_of(const grasping::TableGraspSearch& search) {
@@ -33,23 +31,13 @@ std::string reason_of(const grasping::TableGraspSearch& search) {
 
 }  // namespace
 
-PlanBook::PlanBook(const model::HandModel& hand, const model::Catalogue& catalogue, PlanStore store,
-                   const PlanBookOptions& options)
+PlanBook::PlanBook(const model::HandModel& hand, const grasping::CatalogueBodies& catalogue,
+                   PlanStore store, const PlanBookOptions& options)
     : hand_(hand), catalogue_(catalogue), store_(std::move(store)), options_(options) {}
 
 grasping::Body PlanBook::body_of(const SeenObject& seen) const {
-  grasping::Body body;
-  body.name = seen.name;
-  body.shape = seen.shape;
-  body.shape.size = (seen.shape.size / grain).array().round() * grain;
-  if (const model::CatalogueObject* known = catalogue_.find(seen.name)) {
-    body.mass = known->mass;
-    body.material = known->material;
-  } else {
-    body.mass = std::clamp(density * volume(seen.shape), lightest, heaviest);
-    body.material = "plastic";
-  }
-  return body;
+  return catalogue_.seen(seen.name,
+                         {seen.shape.kind, (seen.shape.size / grain).array().round() * grain});
 }
 
 PlanBook::Entry* PlanBook::find(const std::string& key) {
@@ -68,7 +56,7 @@ void PlanBook::forget_one() {
 
 Expected<void> PlanBook::observe(const SeenObject& seen) {
   if (!is_finite(seen.X_WO)) return fail("pose of a detection not finite");
-  if (!is_valid(seen.shape) || seen.shape.size.minCoeff() < grain)
+  if (!is_valid(seen.shape) || model::half_extents(seen.shape).minCoeff() < grain)
     return fail("detection without a shape");
   // Written so that not-a-number fails.
   if (!(seen.probability >= options_.min_probability)) return fail("detection not probable");

@@ -11,8 +11,10 @@
 #include "common/base/error.hpp"
 #include "common/base/pose.hpp"
 #include "common/base/time.hpp"
+#include "common/grasping/catalogue_bodies.hpp"
 #include "common/grasping/table_grasps.hpp"
-#include "common/model/catalogue.hpp"
+#include "common/model/hand_model.hpp"
+#include "common/model/shape.hpp"
 
 namespace prehend::planner {
 
@@ -60,8 +62,8 @@ struct PlanBookOptions {
 /// and the catalogue.
 class PlanBook {
  public:
-  PlanBook(const model::HandModel& hand, const model::Catalogue& catalogue, PlanStore store = {},
-           const PlanBookOptions& options = {});
+  PlanBook(const model::HandModel& hand, const grasping::CatalogueBodies& catalogue,
+           PlanStore store = {}, const PlanBookOptions& options = {});
 
   /// Refuses what is not finite, has no shape, is not probable enough, does not stand, or is older
   /// than what is known of this track. The error's `what` is a short reason to count.
@@ -95,7 +97,7 @@ class PlanBook {
   grasping::Body body_of(const SeenObject& seen) const;
 
   const model::HandModel& hand_;
-  const model::Catalogue& catalogue_;
+  const grasping::CatalogueBodies& catalogue_;
   PlanStore store_;
   PlanBookOptions options_;
   std::map<std::string, Entry> entries_;         // by key

@@ -32,6 +32,10 @@ std::string digest_of(const fs::path& hand_folder, const grasping::Body& object)
                                 fmt::format("{:.4f} {:.4f} {:.4f}", object.shape.size.x(),
                                             object.shape.size.y(), object.shape.size.z()),
                                 object.mass, object.material);
+  if (object.mesh)
+    for (const auto& part : object.mesh->parts.parts)
+      for (const Eigen::Vector3d& corner : part)
+        all += fmt::format("{:.5f} {:.5f} {:.5f}\n", corner.x(), corner.y(), corner.z());
   for (const char* part : {"hand.urdf", "hand.toml"})
     all += proto::digest(read_file(hand_folder / part).value_or(""));
   return proto::digest(all);

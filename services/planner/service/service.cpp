@@ -82,7 +82,7 @@ class Searcher {
 class Service::Topics {
  public:
   Topics(service::Shell& shell, std::unique_ptr<const model::HandModel> hand,
-         std::unique_ptr<const model::Catalogue> catalogue, PlanStore store)
+         std::unique_ptr<const grasping::CatalogueBodies> catalogue, PlanStore store)
       : shell_(shell),
         hand_(std::move(hand)),
         catalogue_(std::move(catalogue)),
@@ -159,7 +159,7 @@ class Service::Topics {
 
   service::Shell& shell_;
   std::unique_ptr<const model::HandModel> hand_;  // the book refers to both
-  std::unique_ptr<const model::Catalogue> catalogue_;
+  std::unique_ptr<const grasping::CatalogueBodies> catalogue_;
   PlanBook book_;
   std::string hand_name_;
   service::Shell::Output<v1::GraspCandidates> output_;
@@ -181,13 +181,15 @@ Expected<std::unique_ptr<Service>> Service::create(service::Shell& shell) {
   if (!hand) return tl::unexpected(hand.error());
   auto catalogue = model::Catalogue::load(config.path("lab.catalogue"));
   if (!catalogue) return tl::unexpected(catalogue.error());
+  auto bodies = grasping::CatalogueBodies::create(*catalogue);
+  if (!bodies) return tl::unexpected(bodies.error());
   auto kept = std::make_unique<const model::HandModel>(std::move(*hand));
   const auto state = state_directory();
   PlanStore store =
       plan_store(state.empty() ? state : state / "grasps" / kept->name(), folder, *kept);
   log::info("grasps of {}", kept->name());
   std::unique_ptr<Service> made(new Service(std::make_unique<Topics>(
-      shell, std::move(kept), std::make_unique<const model::Catalogue>(std::move(*catalogue)),
+      shell, std::move(kept), std::make_unique<const grasping::CatalogueBodies>(std::move(*bodies)),
       std::move(store))));
   shell.status().running();
   return made;

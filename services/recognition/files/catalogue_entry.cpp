@@ -33,7 +33,8 @@ model::CatalogueObject described_by(const std::string& name, const model::Shape&
 }
 
 Expected<void> append_to_catalogue(const std::filesystem::path& file,
-                                   const model::CatalogueObject& object) {
+                                   const model::CatalogueObject& object,
+                                   const std::optional<MeshFile>& mesh) {
   const auto before = model::Catalogue::load(file);
   if (!before) return tl::unexpected(before.error());
   if (before->find(object.name))
@@ -44,18 +45,25 @@ Expected<void> append_to_catalogue(const std::filesystem::path& file,
   const Eigen::Vector3d& size = object.shape.size;
   text += fmt::format(
       "\n[[object]]\nname = \"{}\"\nshape = \"{}\"\nsize = [{:.4f}, {:.4f}, {:.4f}]\n"
-      "mass = {:.3f}\nmaterial = \"{}\"\n[object.appearance]\ncolours = [",
+      "mass = {:.3f}\nmaterial = \"{}\"\n",
       object.name, model::to_string(object.shape.kind), size.x(), size.y(), size.z(), object.mass,
       object.material);
+  std::error_code error;
+  // Beside the real file, which may be reached through a link.
+  const auto real = std::filesystem::canonical(file, error);
+  if (mesh) {
+    const std::string kept = object.name + mesh->file.extension().string();
+    std::filesystem::copy_file(mesh->file, real.parent_path() / kept, error);
+    if (error) return fail(error.message(), kept, "is there a mesh of that name already?");
+    text += fmt::format("mesh = \"{}\"\nmesh_scale = {}\n", kept, mesh->scale);
+  }
+  text += "[object.appearance]\ncolours = [";
   for (std::size_t i = 0; i < object.appearance.colours.size(); ++i) {
     const Eigen::Vector3d& c = object.appearance.colours[i];
     text += fmt::format("{}[{:.2f}, {:.2f}, {:.2f}]", i == 0 ? "" : ", ", c.x(), c.y(), c.z());
   }
   text += fmt::format("]\npattern = \"{}\"\nseed = {}\n", object.appearance.pattern,
                       object.appearance.seed);
-  // Beside the real file, which may be reached through a link.
-  std::error_code error;
-  const auto real = std::filesystem::canonical(file, error);
   const std::filesystem::path fresh = real.string() + ".new";
   std::ofstream out(fresh);
   out << text;

@@ -59,7 +59,8 @@ GraspVerdict judge(Closure& closure) {
   // Contacts come from the simulation and are finite; should the hull fail all the same, the grasp
   // has no force closure that anyone could show.
   if (auto quality =
-          analysis::grasp_quality(closure.contacts, grasping::torque_scale(closure.object)))
+          analysis::grasp_quality(grasping::about_centre_of_mass(closure.contacts, closure.object),
+                                  grasping::torque_scale(closure.object)))
     verdict.quality = std::move(*quality);
   for (const analysis::Contact& contact : closure.contacts)
     verdict.penetration = std::max(verdict.penetration, contact.depth);

@@ -30,10 +30,6 @@ Pose standing(const model::Shape& shape, const Pose& X_WO) {
 
 }  // namespace
 
-grasping::Body body_of(const model::CatalogueObject& object) {
-  return {object.name, object.shape, object.mass, object.material, std::nullopt};
-}
-
 Expected<std::unique_ptr<Simulation>> Simulation::create(
     const model::HandModel& hand, const Options& options,
     std::unique_ptr<carrying::CarryingArm> arm) {
@@ -56,11 +52,12 @@ Simulation::Simulation(const model::HandModel& hand, const Options& options,
       detector_(world_->time_step()),
       period_(seconds(world_->time_step())) {}
 
-Expected<void> Simulation::build(const model::Scene& scene, const model::Catalogue& catalogue) {
+Expected<void> Simulation::build(const model::Scene& scene,
+                                 const grasping::CatalogueBodies& catalogue) {
   for (const model::PlacedObject& placed : scene.objects) {
-    const model::CatalogueObject* object = catalogue.find(placed.name);
+    const grasping::Body* object = catalogue.find(placed.name);
     if (!object) return fail("is not in the catalogue", placed.name);
-    if (auto added = world_->add_body(body_of(*object), placed.X_WO); !added)
+    if (auto added = world_->add_body(*object, placed.X_WO); !added)
       return tl::unexpected(added.error());
   }
   return {};

@@ -11,8 +11,8 @@
 #include "common/base/error.hpp"
 #include "common/base/time.hpp"
 #include "common/carrying/carrying_arm.hpp"
+#include "common/grasping/catalogue_bodies.hpp"
 #include "common/grasping/world.hpp"
-#include "common/model/catalogue.hpp"
 #include "common/model/scene.hpp"
 #include "services/simulation/core/closure.hpp"
 #include "services/simulation/core/command.hpp"
@@ -27,9 +27,6 @@ struct Options {
   double far_away = 0.10;  // m, of the hand from an object that sightings may still move
 };
 
-/// The body that stands for an object of the catalogue.
-grasping::Body body_of(const model::CatalogueObject& object);
-
 /// The world behind the topics: a hand that follows commands, objects from a scene or from
 /// sightings, closures found. Deterministic; asks no clock. Keeps a reference to the hand.
 class Simulation {
@@ -40,7 +37,7 @@ class Simulation {
       std::unique_ptr<carrying::CarryingArm> arm = nullptr);
 
   /// Objects as the scene says. Fails on what cannot be simulated.
-  Expected<void> build(const model::Scene& scene, const model::Catalogue& catalogue);
+  Expected<void> build(const model::Scene& scene, const grasping::CatalogueBodies& catalogue);
 
   /// An object was recognised: the first sight places it on the table, later ones move it while the
   /// hand is far. True if the bodies of the world have changed. Fails when it cannot be placed.

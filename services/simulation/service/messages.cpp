@@ -21,21 +21,14 @@ Command from_message(const v2::HandCommand& message, const gate::Place& place) {
 }
 
 Expected<Sighting> from_message(const v1::ObjectDetection& message,
-                                const model::Catalogue& catalogue) {
+                                const grasping::CatalogueBodies& catalogue) {
   const auto X_WO = convert::from_message(message.X_WO());
   if (!X_WO) return tl::unexpected(X_WO.error());
   Sighting sighting;
   sighting.X_WO = *X_WO;
-  grasping::Body& body = sighting.body;
-  body.name = message.name().to_string();
-  body.shape = {convert::from_message(message.shape()), convert::from_message(message.size())};
-  if (const model::CatalogueObject* known = catalogue.find(body.name)) {
-    body.mass = known->mass;
-    body.material = known->material;
-  } else {
-    body.mass = 0.2;
-    body.material = "wood";
-  }
+  const model::Shape shape{convert::from_message(message.shape()),
+                           convert::from_message(message.size())};
+  sighting.body = catalogue.seen(message.name().to_string(), shape);
   return sighting;
 }
 

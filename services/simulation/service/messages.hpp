@@ -2,8 +2,8 @@
 
 #include "common/base/error.hpp"
 #include "common/gate/motion_limiter.hpp"
+#include "common/grasping/catalogue_bodies.hpp"
 #include "common/grasping/world.hpp"
-#include "common/model/catalogue.hpp"
 #include "idl/Perception.h"
 #include "idl/Robot.h"
 #include "idl/World.h"
@@ -23,7 +23,7 @@ struct Sighting {
   Pose X_WO;
 };
 Expected<Sighting> from_message(const v1::ObjectDetection& message,
-                                const model::Catalogue& catalogue);
+                                const grasping::CatalogueBodies& catalogue);
 
 v1::HandState to_message(const grasping::HandMotion& motion);
 v1::ObjectState to_message(const grasping::Body& body, const grasping::BodyMotion& motion);

@@ -27,15 +27,20 @@ Expected<std::unique_ptr<Service>> Service::create(service::Shell& shell) {
   if (!hand) return tl::unexpected(hand.error());
   auto catalogue = model::Catalogue::load(config.path("lab.catalogue"));
   if (!catalogue) return tl::unexpected(catalogue.error());
-  std::unique_ptr<Service> made(new Service(shell, std::move(*hand), std::move(*catalogue)));
+  auto bodies = grasping::CatalogueBodies::create(*catalogue);
+  if (!bodies) return tl::unexpected(bodies.error());
+  std::unique_ptr<Service> made(
+      new Service(shell, std::move(*hand), std::move(*catalogue), std::move(*bodies)));
   if (auto started = made->start(); !started) return tl::unexpected(started.error());
   return made;
 }
 
-Service::Service(service::Shell& shell, model::HandModel hand, model::Catalogue catalogue)
+Service::Service(service::Shell& shell, model::HandModel hand, model::Catalogue catalogue,
+                 grasping::CatalogueBodies bodies)
     : shell_(shell),
       hand_(std::move(hand)),
       catalogue_(std::move(catalogue)),
+      bodies_(std::move(bodies)),
       hand_name_(shell.config().text("simulation.hand_name")),
       hand_state_(shell.publish(dds::robot_state)),
       object_state_(shell.publish(dds::object_state)),
@@ -69,7 +74,7 @@ Expected<void> Service::start() {
   if (const auto file = config.path("lab.scene"); !file.empty()) {
     const auto scene = model::load_scene(file, catalogue_);
     if (!scene) return tl::unexpected(scene.error());
-    if (auto built = simulation_->build(*scene, catalogue_); !built) return built;
+    if (auto built = simulation_->build(*scene, bodies_); !built) return built;
     from_scene_ = true;
   }
 
@@ -121,7 +126,7 @@ void Service::go(const gate::Place& place, Time now) {
 }
 
 void Service::on_detection(const v1::ObjectDetection& message) {
-  const auto sighting = from_message(message, catalogue_);
+  const auto sighting = from_message(message, bodies_);
   if (!sighting) {
     shell_.status().drop("detection not finite");
     return;
@@ -159,11 +164,11 @@ Expected<std::string> Service::place(const v1::OperatorCommand& order,
         !meant)
       return tl::unexpected(meant.error());
   const std::string name = order.argument().to_string();
-  const model::CatalogueObject* object = catalogue_.find(name);
+  const grasping::Body* object = bodies_.find(name);
   if (!object) return fail("is not in the catalogue", name);
   const auto X_WO = convert::from_message(order.X_WO());
   if (!X_WO) return tl::unexpected(X_WO.error());
-  const auto changed = simulation_->place(body_of(*object), *X_WO);
+  const auto changed = simulation_->place(*object, *X_WO);
   if (!changed) return tl::unexpected(changed.error());
   scene_changed_ |= *changed;
   log::info("{} is placed, by order of {}", name, by);

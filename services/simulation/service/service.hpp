@@ -27,7 +27,8 @@ class Service {
   Service& operator=(const Service&) = delete;
 
  private:
-  Service(service::Shell& shell, model::HandModel hand, model::Catalogue catalogue);
+  Service(service::Shell& shell, model::HandModel hand, model::Catalogue catalogue,
+          grasping::CatalogueBodies bodies);
   Expected<void> start();
   std::optional<gate::Place> where() const;
   void go(const gate::Place& place, Time now);
@@ -43,7 +44,8 @@ class Service {
 
   service::Shell& shell_;
   model::HandModel hand_;
-  model::Catalogue catalogue_;
+  model::Catalogue catalogue_;  // what scenes are read by
+  grasping::CatalogueBodies bodies_;
   std::string hand_name_;
   bool from_scene_ = false;
   std::unique_ptr<Simulation> simulation_;

@@ -219,6 +219,32 @@ TEST_F(Raw, DisposeAndUnregisterAreKeptApart) {
   }
 }
 
+// Fast DDS hands on instance by instance what has come at once, as all does that comes to a late
+// joiner: recordings would tell of it in another order on a busy machine.
+TEST_F(Raw, WhatComesAtOnceComesInTheOrderItWasWritten) {
+  Participant player = join(""), listener = join("");
+  const RawTopic topic{.name = "some/topic",
+                       .type = "some::Type",
+                       .keyed = true,
+                       .qos = {.transient_local = true, .writer_depth = 0}};
+  auto writer = RawWriter::create(player, topic);
+  ASSERT_TRUE(writer);
+  constexpr std::size_t count = 60;
+  for (std::size_t i = 0; i < count; ++i) {
+    RawSample sample;
+    sample.instance[0] = static_cast<std::uint8_t>(i % 3);
+    sample.payload = {0, 1, 0, 0, sample.instance[0], 2, 3, 4};
+    ASSERT_TRUE(writer->write(sample, from_ns(1'700'000'000'000'000'000 + static_cast<int>(i))));
+  }
+  Collector<RawSample> taken;
+  auto reader =
+      RawReader::create(listener, topic, [&](RawSample&& sample) { taken.add(std::move(sample)); });
+  ASSERT_TRUE(reader);
+  const auto got = taken.wait(count);
+  ASSERT_EQ(got.size(), count);
+  for (std::size_t i = 0; i < count; ++i) EXPECT_EQ(got[i].instance[0], i % 3) << i;
+}
+
 TEST_F(Raw, WhatAKeepLastWriterHasForgottenIsNoLoss) {
   Participant lab = join(""), listener = join("");
   auto writer = lab.writer(object_detection);

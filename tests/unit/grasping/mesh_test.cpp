@@ -206,11 +206,12 @@ TEST_F(MeshFile, ABodyRestsOnTheTableWithItsHollowFree) {
   // Lying flat; its centre of mass is half its height above the table.
   ASSERT_TRUE(world->add_body(*body, make_pose(Vector3d(0, 0, 0.0155))));
   // A ball that lies in the hollow: a hull would push it out.
-  const Vector3d hollow = Vector3d(0.045, 0.045, 0.01) - body->mesh->p_FO;
+  const Vector3d hollow = Vector3d(0.045, 0.045, 0.01) - Vector3d(0.04, 0.04, 0.015);
   const Body ball{"ball", {model::ShapeKind::sphere, Vector3d::Constant(0.01)}, 0.05, "wood", {}};
   ASSERT_TRUE(world->add_body(ball, make_pose(Vector3d(hollow.x(), hollow.y(), 0.0105))));
   for (int i = 0; i < 1000; ++i) world->step();
   const BodyMotion motion = world->body_motion(0);
+  EXPECT_GT(body->mesh->p_OC.norm(), 0.01);                   // which is not the middle of its box
   EXPECT_NEAR(motion.X_WO.translation().z(), 0.015, 1.5e-3);  // the margin is 0.5 mm
   EXPECT_LT(motion.X_WO.translation().head<2>().norm(), 1e-3);
   EXPECT_LT(angle_between(motion.X_WO.linear(), Eigen::Matrix3d::Identity()), 0.02);
@@ -236,6 +237,76 @@ TEST_F(MeshFile, ABoxMeshMovesAsTheBoxDoes) {
     ends.push_back(world->body_motion(0).X_WO);
   }
   EXPECT_LT((ends[0].translation() - ends[1].translation()).norm(), 2e-3);
+}
+
+/// A cone as a mesh of that many corners about its axis, as a cone stands.
+Mesh cone_of(const model::Shape& cone, int corners) {
+  std::vector<Vector3d> low, high;
+  Mesh made;
+  for (const double end : {-0.5, 0.5})
+    for (int i = 0; i < corners; ++i) {
+      const double angle = 2 * std::numbers::pi * i / corners, z = end * cone.size.z();
+      const double radius = model::radius_at(cone, z);
+      made.vertices.emplace_back(radius * std::cos(angle), radius * std::sin(angle), z);
+    }
+  made.vertices.emplace_back(0, 0, -0.5 * cone.size.z());
+  made.vertices.emplace_back(0, 0, 0.5 * cone.size.z());
+  for (int i = 0; i < corners; ++i) {
+    const int j = (i + 1) % corners;
+    made.triangles.emplace_back(i, j, corners + j);
+    made.triangles.emplace_back(i, corners + j, corners + i);
+    made.triangles.emplace_back(2 * corners, j, i);
+    made.triangles.emplace_back(2 * corners + 1, corners + i, corners + j);
+  }
+  return made;
+}
+
+TEST_F(MeshFile, AConeIsWhatItsMeshIs) {
+  const model::Shape cup{model::ShapeKind::cone, {0.025, 0.04, 0.1}};
+  const Mesh mesh = cone_of(cup, 360);
+  const SolidMesh cone = cone_mesh(cup);
+  const auto solid = solid_of(mesh);
+  ASSERT_TRUE(solid) << solid.error().message();
+  EXPECT_LT((solid->solid.p_OC - cone.p_OC).norm(), 1e-5);
+  EXPECT_LT((solid->solid.inertia_C - cone.inertia_C).norm() / cone.inertia_C.norm(), 1e-3);
+  EXPECT_NEAR(solid->solid.radius, cone.radius, 1e-6);
+  // What bounds it is found again.
+  const model::Shape found = model::bounding_shape(mesh);
+  EXPECT_EQ(found.kind, model::ShapeKind::cone);
+  EXPECT_LT((found.size - cup.size).cwiseAbs().maxCoeff(), 1e-6);
+  EXPECT_EQ(model::bounding_shape(angle()).kind, model::ShapeKind::box);
+  EXPECT_EQ(model::bounding_shape(cone_of({model::ShapeKind::cone, {0.03, 0.03, 0.1}}, 360)).kind,
+            model::ShapeKind::cylinder);
+}
+
+TEST_F(MeshFile, AConeStandsAndAToppledOneRollsOnItsSide) {
+  const Body cup{"cup", {model::ShapeKind::cone, {0.025, 0.04, 0.1}}, 0.1, "plastic", {}, {}};
+  const auto rested = [&](const Pose& X_WO) {
+    auto world = std::move(
+        *World::create(barrett(), make_pose(Vector3d(0, 0, 1)), Eigen::VectorXd::Zero(4)));
+    EXPECT_TRUE(world->add_body(cup, X_WO));
+    for (int i = 0; i < 1500; ++i) world->step();
+    return world->body_motion(0);
+  };
+  const BodyMotion standing = rested(make_pose(Vector3d(0, 0, 0.0505)));
+  EXPECT_NEAR(standing.X_WO.translation().z(), 0.05, 1e-3);
+  EXPECT_LT(angle_between(standing.X_WO.linear(), Eigen::Matrix3d::Identity()), 0.01);
+  const BodyMotion lying = rested(
+      make_pose(Vector3d(0, 0, 0.1), Eigen::AngleAxisd(1.2, Vector3d::UnitY()).toRotationMatrix()));
+  // On its wall: the axis leans by half the angle of the cone, mouth up from the table.
+  EXPECT_NEAR(lying.X_WO.linear()(2, 2), std::sin(std::atan(model::slope(cup.shape))), 0.02);
+}
+
+TEST_F(MeshFile, AScaledBodyIsTheBodyOfAScaledMesh) {
+  const auto body = load_body("angle", obj(angle()), 0.2, "wood");
+  const auto twice = load_body("angle", obj(angle()), 0.2, "wood", 2);
+  ASSERT_TRUE(body && twice);
+  const Body large = scaled(*body, 2);
+  EXPECT_LT((large.shape.size - twice->shape.size).norm(), 1e-9);
+  EXPECT_LT((large.mesh->p_OC - twice->mesh->p_OC).norm(), 1e-9);
+  EXPECT_LT((large.mesh->inertia_C - twice->mesh->inertia_C).norm(), 1e-9);
+  EXPECT_NEAR(torque_scale(large), torque_scale(*twice), 1e-9);
+  EXPECT_EQ(large.mesh->parts.parts.size(), twice->mesh->parts.parts.size());
 }
 
 }  // namespace

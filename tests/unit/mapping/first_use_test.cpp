@@ -58,7 +58,8 @@ TEST_F(FirstUse, TrainsOnceBesideTheHand) {
   EXPECT_LT(half, 0.015);
   EXPECT_LT(closed, 0.015);
   for (const auto shape : {model::ShapeKind::cylinder, model::ShapeKind::box})
-    EXPECT_TRUE(model->knows(shape)) << model::to_string(shape);
+    EXPECT_TRUE(model->known_as({shape, Eigen::Vector3d::Constant(0.05)}))
+        << model::to_string(shape);
 
   // It is there now: the files stay as they are.
   const auto written = fs::last_write_time(made.model);

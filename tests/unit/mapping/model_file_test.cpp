@@ -89,7 +89,7 @@ TEST_F(ModelFile, ComesBackBitForBit) {
     EXPECT_EQ(loaded->intelligent(f, box, Pose::Identity())->dof,
               saved.intelligent(f, box, Pose::Identity())->dof);
   }
-  EXPECT_FALSE(loaded->intelligent(Features::Zero(), {model::ShapeKind::sphere, {1, 1, 1}},
+  EXPECT_FALSE(loaded->intelligent(Features::Zero(), {model::ShapeKind::unknown, {1, 1, 1}},
                                    Pose::Identity()));
 }
 
@@ -212,6 +212,18 @@ TEST(MappingModel, SaysWhenItIsAskedOutsideOfWhatItKnows) {
   EXPECT_FALSE(of_radius(0.08).extrapolating);
   EXPECT_TRUE(of_radius(0.09).extrapolating);
   EXPECT_EQ(of_radius(0.09).dof, of_radius(0.08).dof);
+}
+
+TEST(MappingModel, AnswersForShapesThatAreLikeThoseItKnows) {
+  const MappingModel model = random_model(1);
+  const auto dof = [&](const model::Shape& shape) {
+    return model.intelligent(Features::Zero(), shape, Pose::Identity())->dof;
+  };
+  const model::Shape cup{model::ShapeKind::cone, {0.03, 0.05, 0.1}};
+  EXPECT_EQ(dof(cup), dof({model::ShapeKind::cylinder, {0.04, 0.04, 0.1}}));
+  const model::Shape ball{model::ShapeKind::sphere, Eigen::Vector3d::Constant(0.04)};
+  EXPECT_EQ(dof(ball), dof({model::ShapeKind::cylinder, {0.04, 0.04, 0.08}}));
+  EXPECT_FALSE(model.known_as({model::ShapeKind::unknown, {0.1, 0.1, 0.1}}));
 }
 
 }  // namespace

@@ -41,7 +41,7 @@ std::optional<Way> way_to(const Detection& object, const Pose& X_WG, const model
 class TargetSelectorOf : public testing::TestWithParam<std::string> {
  protected:
   const model::HandModel& hand_ = test::hand(GetParam());
-  MappingModel model_ = random_model(5, hand_);  // knows cylinders and boxes
+  MappingModel model_ = random_model(5, hand_);  // of networks for cylinders and boxes
   TargetOptions options_;
   TargetSelector selector_{hand_, model_, options_};
 };
@@ -49,20 +49,20 @@ class TargetSelectorOf : public testing::TestWithParam<std::string> {
 TEST_P(TargetSelectorOf, TakesTheNearestWithinReachAndThenStaysWithIt) {
   const model::Shape shapes[]{{model::ShapeKind::cylinder, {0.02, 0.02, 0.15}},
                               {model::ShapeKind::box, {0.04, 0.05, 0.2}},
-                              {model::ShapeKind::sphere, {0.02, 0.02, 0.02}}};
+                              {model::ShapeKind::sphere, {0.02, 0.02, 0.02}},
+                              {model::ShapeKind::cone, {0.03, 0.02, 0.15}}};
   Random random(1);
   int chosen = 0, none = 0, kept = 0, left = 0, given_up = 0;
   for (int run = 0; run < 600; ++run) {
     ObjectTracks tracks({});
     for (std::uint32_t track = 0; track < 3; ++track)
-      ASSERT_TRUE(tracks.observe(standing(track, shapes[random.index(3)], random.uniform(-0.3, 0.3),
+      ASSERT_TRUE(tracks.observe(standing(track, shapes[random.index(4)], random.uniform(-0.3, 0.3),
                                           random.uniform(-0.3, 0.3))));
     const Pose X_WG = coming_from_the_side({0, 0, random.uniform(0.05, 0.2)}) *
                       Eigen::AngleAxisd(random.normal(0.4), Eigen::Vector3d::UnitX());
     std::map<std::uint32_t, Way> ways;
     for (const auto& [number, track] : tracks.known())
-      if (track.detection.shape.kind != model::ShapeKind::sphere)
-        if (const auto way = way_to(track.detection, X_WG, hand_.reach())) ways[number] = *way;
+      if (const auto way = way_to(track.detection, X_WG, hand_.reach())) ways[number] = *way;
     const auto in_reach = [&](std::uint32_t number, double distance, double angle) {
       return ways.contains(number) && ways.at(number).distance <= distance &&
              ways.at(number).angle <= angle;
@@ -105,6 +105,23 @@ TEST_P(TargetSelectorOf, TakesTheNearestWithinReachAndThenStaysWithIt) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Hands, TargetSelectorOf, testing::ValuesIn(test::hand_names()));
+
+TEST(TargetSelectorTest, WhatNoNetworkKnowsNorAnythingLikeItIsNoTarget) {
+  const MappingModel direct = *MappingModel::create(barrett(), plain_traits(barrett()),
+                                                    {random_network(model::ShapeKind::unknown, 1)});
+  const TargetOptions options;
+  for (const bool knows : {true, false}) {
+    const MappingModel model = knows ? random_model(5) : direct;
+    for (const model::Shape& shape : {model::Shape{model::ShapeKind::cylinder, {0.03, 0.03, 0.15}},
+                                      model::Shape{model::ShapeKind::cone, {0.02, 0.04, 0.15}}}) {
+      ObjectTracks tracks({});
+      ASSERT_TRUE(tracks.observe(standing(1, shape, 0, 0)));
+      const auto target = TargetSelector(barrett(), model, options)
+                              .select(tracks, {}, coming_from_the_side({0, 0, 0.08}));
+      EXPECT_EQ(target.has_value(), knows) << model::to_string(shape.kind);
+    }
+  }
+}
 
 TEST(TargetSelectorTest, SaysWhereTheHandStands) {
   const model::Shape talc{model::ShapeKind::cylinder, {0.024, 0.024, 0.105}};

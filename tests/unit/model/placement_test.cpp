@@ -78,5 +78,33 @@ TEST(Placement, NothingFitsAroundWhatIsTooLarge) {
   EXPECT_FALSE(nearest_grasp({ShapeKind::unknown, {1, 1, 1}}, Pose::Identity(), Reach{}));
 }
 
+TEST(Placement, AConeIsHeldWhereTheOpeningAdmitsIt) {
+  const Reach reach;
+  const Pose from_above =
+      make_pose(Vector3d::Zero(), grasp_axes(-Vector3d::UnitZ(), Vector3d::UnitY()));
+  const Pose from_side =
+      make_pose(Vector3d::Zero(), grasp_axes(Vector3d::UnitX(), Vector3d::UnitY()));
+  // Wider below than the hand opens: from above and from the side only where it is narrow enough.
+  const Shape tent{ShapeKind::cone, {0.09, 0.02, 0.25}};
+  for (const Pose& X_OG : {from_above, from_side}) {
+    const auto grasp = nearest_grasp(tent, X_OG, reach);
+    ASSERT_TRUE(grasp);
+    EXPECT_LT(angle_between(grasp->linear(), X_OG.linear()), 1e-9);
+    EXPECT_LE(2 * radius_at(tent, grasp->translation().z()), reach.opening + 1e-9);
+  }
+  // The same upside down: fingers from above would have to pass the wide rim.
+  const Shape funnel{ShapeKind::cone, {0.02, 0.09, 0.25}};
+  const auto grasp = nearest_grasp(funnel, from_above, reach);
+  ASSERT_TRUE(grasp);
+  EXPECT_LT(std::abs(grasp->linear()(2, 2)), 1e-9);
+  EXPECT_LE(2 * radius_at(funnel, grasp->translation().z()), reach.opening + 1e-9);
+  // With equal radii it is a cylinder.
+  for (const Pose& X_OG : {from_above, from_side})
+    EXPECT_LT((nearest_grasp({ShapeKind::cone, {0.03, 0.03, 0.2}}, X_OG, reach)->matrix() -
+               nearest_grasp({ShapeKind::cylinder, {0.03, 0.03, 0.2}}, X_OG, reach)->matrix())
+                  .norm(),
+              1e-12);
+}
+
 }  // namespace
 }  // namespace prehend::model

@@ -29,9 +29,11 @@ std::vector<Vector3d> sample_surface(const Shape& shape, Random& random, int cou
     } else {
       const double angle = random.uniform(0, 2 * std::numbers::pi);
       const bool side = random.uniform() < 0.6;
-      const double radius = shape.size.x() * (side ? 1 : std::sqrt(random.uniform()));
-      const double z = side ? random.uniform(-1, 1) : (random.uniform() < 0.5 ? -1 : 1);
-      points.emplace_back(radius * std::cos(angle), radius * std::sin(angle), z * half.z());
+      const double share = side ? 1 : std::sqrt(random.uniform());
+      const double z =
+          half.z() * (side ? random.uniform(-1, 1) : (random.uniform() < 0.5 ? -1 : 1));
+      const double radius = share * radius_at(shape, z);
+      points.emplace_back(radius * std::cos(angle), radius * std::sin(angle), z);
     }
   }
   return points;
@@ -41,7 +43,9 @@ TEST(Shape, SignedDistanceIsTheDistanceToTheSurface) {
   Random random(7);
   const Shape shapes[] = {{ShapeKind::cylinder, {0.03, 0.03, 0.1}},
                           {ShapeKind::box, {0.04, 0.2, 0.12}},
-                          {ShapeKind::sphere, {0.04, 0.04, 0.04}}};
+                          {ShapeKind::sphere, {0.04, 0.04, 0.04}},
+                          {ShapeKind::cone, {0.025, 0.04, 0.1}},
+                          {ShapeKind::cone, {0.05, 0, 0.08}}};
   for (const Shape& shape : shapes) {
     const auto surface = sample_surface(shape, random, 60000);
     for (int i = 0; i < 60; ++i) {
@@ -60,13 +64,42 @@ TEST(Shape, SignedDistanceIsTheDistanceToTheSurface) {
 }
 
 TEST(Shape, NamesRoundTripAndBadSizesAreInvalid) {
-  for (const ShapeKind kind :
-       {ShapeKind::unknown, ShapeKind::cylinder, ShapeKind::box, ShapeKind::sphere})
+  for (const ShapeKind kind : {ShapeKind::unknown, ShapeKind::cylinder, ShapeKind::box,
+                               ShapeKind::sphere, ShapeKind::cone})
     EXPECT_EQ(shape_from_string(to_string(kind)), kind);
   EXPECT_FALSE(shape_from_string("Cylinder").has_value());
   EXPECT_FALSE(is_valid({ShapeKind::box, {0.1, 0, 0.1}}));
   EXPECT_FALSE(is_valid({ShapeKind::box, {0.1, std::nan(""), 0.1}}));
   EXPECT_FALSE(is_valid({ShapeKind::unknown, {1, 1, 1}}));
+  EXPECT_TRUE(is_valid({ShapeKind::cone, {0, 0.1, 0.1}}));
+  EXPECT_FALSE(is_valid({ShapeKind::cone, {0, 0, 0.1}}));
+  EXPECT_FALSE(is_valid({ShapeKind::cone, {-0.1, 0.1, 0.1}}));
+  EXPECT_FALSE(is_valid({ShapeKind::cylinder, {0, 0.1, 0.1}}));
+}
+
+TEST(Shape, VolumeAndCentreOfAConeAreThoseOfPointsDrawnInIt) {
+  Random random(11);
+  for (const Shape& cone :
+       {Shape{ShapeKind::cone, {0.02, 0.05, 0.09}}, Shape{ShapeKind::cone, {0.06, 0, 0.1}},
+        Shape{ShapeKind::cone, {0.03, 0.03, 0.1}}}) {
+    const Vector3d half = half_extents(cone);
+    constexpr int drawn = 200000;
+    Vector3d sum = Vector3d::Zero();
+    int inside = 0;
+    for (int i = 0; i < drawn; ++i) {
+      const Vector3d p = half.cwiseProduct(
+          Vector3d(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)));
+      if (signed_distance(cone, p) > 0) continue;
+      sum += p;
+      ++inside;
+    }
+    const double box = 8 * half.prod();
+    EXPECT_NEAR(volume(cone) / (box * inside / drawn), 1, 0.02);
+    EXPECT_LT((centre_of_mass(cone) - sum / inside).norm(), 5e-4);
+  }
+  const Shape same{ShapeKind::cone, {0.03, 0.03, 0.1}}, can{ShapeKind::cylinder, {0.03, 0.03, 0.1}};
+  EXPECT_NEAR(volume(same), volume(can), 1e-12);
+  EXPECT_EQ(like_known(same), can);
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 // The synthetic camera draws what the calibration says: objects where they project to, shadows away
 // from the lamp, and the same picture for the same scene.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -21,12 +22,29 @@ double brightness(const Picture& picture, const Eigen::Vector2d& pixel) {
   return sum / 75;
 }
 
+/// The catalogue's, and a cup, a tent and a flat funnel.
+std::vector<model::CatalogueObject> objects_of_all_shapes() {
+  auto made = catalogue().objects();
+  for (const Eigen::Vector3d& size :
+       {Eigen::Vector3d(0.025, 0.04, 0.1), Eigen::Vector3d(0.06, 0, 0.1), {0.02, 0.07, 0.03}}) {
+    made.push_back(made.front());
+    made.back().name = fmt::format("cone {}", made.size());
+    made.back().shape = {model::ShapeKind::cone, size};
+  }
+  made.push_back(made.front());
+  made.back().name = "ball";
+  made.back().shape = {model::ShapeKind::sphere, Eigen::Vector3d::Constant(0.04)};
+  return made;
+}
+
 TEST(Renderer, ObjectsCoverTheirSilhouettes) {
-  for (const auto& object : catalogue().objects()) {
+  const auto objects = objects_of_all_shapes();
+  const Renderer all(objects);
+  for (const auto& object : objects) {
     model::Scene scene;
     const TablePose at{0.05, 0.03, 0.5};
     scene.objects.push_back({object.name, standing_pose(object.shape, at)});
-    const Plane mask = renderer().mask(scene, 0, lab_camera());
+    const Plane mask = all.mask(scene, 0, lab_camera());
     const auto region = silhouette(lab_camera(), object.shape, at);
     ASSERT_TRUE(region);
     int covered = 0, both = 0;

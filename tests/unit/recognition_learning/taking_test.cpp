@@ -1,5 +1,6 @@
 // Views cut out of a rendered camera's pictures against the renderer's own masks; what is added to
 // a catalogue is read back.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -7,7 +8,10 @@
 #include <fstream>
 #include <iterator>
 
+#include "common/base/file_text.hpp"
+#include "common/model/mesh.hpp"
 #include "services/recognition/core/rendering/renderer.hpp"
+#include "services/recognition/core/rendering/strangers.hpp"
 #include "services/recognition/files/catalogue_entry.hpp"
 #include "services/recognition/tools/taking/view_taker.hpp"
 #include "tests/support/paths/paths.hpp"
@@ -128,6 +132,44 @@ TEST_F(Table, WhatIsAddedToACatalogueIsThereThroughALinkToo) {
   EXPECT_FALSE(append_to_catalogue(link, odd));
   EXPECT_TRUE(model::Catalogue::load(real));
   EXPECT_FALSE(append_to_catalogue(folder / "absent.toml", object));
+  std::filesystem::remove_all(folder);
+}
+
+/// A tetrahedron in millimetres, 40 wide and 60 high.
+void write_tetrahedron(const std::filesystem::path& file) {
+  std::ofstream(file)
+      << "v 0 0 0\nv 40 0 0\nv 0 40 0\nv 0 0 60\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
+}
+
+TEST_F(Table, AMeshComesWithItsObject) {
+  const auto folder =
+      std::filesystem::temp_directory_path() / ("mesh-add" + std::to_string(getpid()));
+  std::filesystem::create_directories(folder / "elsewhere");
+  const auto catalogue = folder / "catalogue.toml", mesh = folder / "elsewhere" / "mine.obj";
+  std::filesystem::copy_file(test::in_sources("common/models/objects/catalogue.toml"), catalogue);
+  write_tetrahedron(mesh);
+  const auto read = model::load_mesh(mesh, 0.001);
+  ASSERT_TRUE(read) << read.error().message();
+  const auto object = imagined("Wedge", model::bounding_shape(*read), 0.1);
+  EXPECT_EQ(imagined("Wedge", object.shape, 0.1).appearance.colours, object.appearance.colours);
+  const auto added = append_to_catalogue(catalogue, object, MeshFile{mesh, 0.001});
+  ASSERT_TRUE(added) << added.error().message();
+  std::filesystem::remove_all(folder / "elsewhere");
+  const auto after = model::Catalogue::load(catalogue);
+  ASSERT_TRUE(after) << after.error().message();
+  const model::CatalogueObject* wedge = after->find("Wedge");
+  ASSERT_TRUE(wedge && wedge->mesh);
+  EXPECT_LT(model::bounds(*wedge->mesh).center().norm(), 1e-9);
+  EXPECT_LT((model::bounds(*wedge->mesh).sizes() - Eigen::Vector3d(0.04, 0.04, 0.06)).norm(), 1e-6);
+  // A mesh that is not as large as the shape that is to bound it: somebody's unit is another.
+  std::string text = read_file(catalogue).value();
+  text.replace(text.find("mesh_scale = 0.001"), 18, "mesh_scale = 0.002");
+  std::ofstream(catalogue) << text;
+  const auto wrong = model::Catalogue::load(catalogue);
+  ASSERT_FALSE(wrong);
+  EXPECT_THAT(wrong.error().message(), testing::HasSubstr("80.0 x 80.0 x 120.0 mm"));
+  std::filesystem::remove(folder / "Wedge.obj");
+  EXPECT_FALSE(model::Catalogue::load(catalogue)) << "its mesh is gone";
   std::filesystem::remove_all(folder);
 }
 

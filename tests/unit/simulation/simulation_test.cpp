@@ -345,11 +345,13 @@ TEST(Simulation, BuildsTheSceneOrSaysWhatIsMissing) {
     scene.objects.push_back(
         {object.name, make_pose(Vector3d(0.4 * static_cast<double>(scene.objects.size()), 0,
                                          model::half_extents(object.shape).z()))});
+  const auto bodies = grasping::CatalogueBodies::create(*catalogue);
+  ASSERT_TRUE(bodies) << bodies.error().message();
   const auto simulation = made();
-  ASSERT_TRUE(simulation->build(scene, *catalogue));
+  ASSERT_TRUE(simulation->build(scene, *bodies));
   EXPECT_EQ(simulation->world().body_count(), static_cast<int>(catalogue->objects().size()));
   scene.objects = {{"Teapot", Pose::Identity()}};
-  EXPECT_FALSE(simulation->build(scene, *catalogue));
+  EXPECT_FALSE(simulation->build(scene, *bodies));
 }
 
 }  // namespace

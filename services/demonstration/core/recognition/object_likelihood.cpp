@@ -125,7 +125,10 @@ Expected<ObjectLikelihood> ObjectLikelihood::create(std::vector<Sizes> sizes,
   return made;
 }
 
-VectorXd ObjectLikelihood::of(const model::Shape& object) const {
+VectorXd ObjectLikelihood::of(const model::Shape& seen) const {
+  // Nobody has shown cones: as what they are like.
+  const bool cone = seen.kind == model::ShapeKind::cone;
+  const model::Shape object = cone ? model::like_known(seen) : seen;
   const VectorXd sizes = logarithms(object);
   const double any = any_size(sizes);
   VectorXd made(static_cast<Index>(otherwise_.size()));

@@ -34,7 +34,7 @@ class ObjectLikelihood {
   static Expected<ObjectLikelihood> create(std::vector<Sizes> sizes, std::vector<double> otherwise);
 
   /// Of each class, but for a common factor; above 0.
-  Eigen::VectorXd of(const model::Shape& object) const;
+  Eigen::VectorXd of(const model::Shape& seen) const;
 
   const std::vector<Sizes>& sizes() const { return sizes_; }
   const std::vector<double>& otherwise() const { return otherwise_; }

@@ -28,6 +28,7 @@
 #include "services/mapping/tools/judging/planned_grasps.hpp"
 #include "services/mapping/tools/judging/real_reach.hpp"
 #include "services/mapping/tools/judging/summary_json.hpp"
+#include "services/mapping/tools/training/derived_scheme.hpp"
 #include "services/mapping/tools/training/first_use.hpp"
 
 namespace prehend::mapping {
@@ -39,7 +40,7 @@ constexpr std::chrono::milliseconds between_takes{1500};  // a live mapping forg
 struct Arguments {
   service::LabArguments lab;
   std::vector<std::string> mappings{"external"};
-  std::string hand, takes, people, write_to, out, command, service = "mapping";
+  std::string hand, objects, takes, people, write_to, out, command, service = "mapping";
   GraspBenchmarkOptions asked;
   int trials = 24, each = 3;
   std::uint64_t seed = 1;
@@ -55,6 +56,9 @@ struct Arguments {
         ->delimiter(',')
         ->capture_default_str();
     app.add_option("--hand", hand, "kind of robot hand; default: the lab's");
+    app.add_option("--objects", objects,
+                   "a catalogue of other objects than those that the hand has learnt")
+        ->check(CLI::ExistingFile);
     auto* folder = app.add_option("--takes", takes, "a folder of takes that --export wrote");
     app.add_option("--trials", trials, "takes that are made, where no folder is given")
         ->check(CLI::Range(1, 100'000))
@@ -136,17 +140,34 @@ Expected<void> add_people(std::vector<BenchmarkTake>& takes, const std::vector<R
   return {};
 }
 
+/// What the hand can grasp of these objects: nobody has trained with it.
+Expected<std::vector<RobotGrasp>> grasps_of(const model::HandModel& hand, const ModelPlaces& places,
+                                            const model::Catalogue& catalogue, unsigned threads) {
+  const auto scheme = load_or_derive(places.scheme, hand);
+  if (!scheme) return tl::unexpected(scheme.error());
+  Progress progress("closing the hand");
+  return close_on_catalogue(
+      hand, *scheme, catalogue,
+      [&](std::size_t count, const auto& work) {
+        share_work(count, threads, work, [&](std::size_t done) { progress.show(done, count); });
+      },
+      [](const Error&) {}, Trials::quick());
+}
+
 Expected<Judged> load(const Arguments& arguments, const std::string& name) {
   auto hand = model::HandModel::load(model::hand_directory(name));
   if (!hand) return tl::unexpected(hand.error());
-  auto catalogue =
-      model::Catalogue::load(share_directory() / "models" / "objects" / "catalogue.toml");
+  auto catalogue = model::Catalogue::load(
+      arguments.objects.empty() ? share_directory() / "models" / "objects" / "catalogue.toml"
+                                : std::filesystem::path(arguments.objects));
   if (!catalogue) return tl::unexpected(catalogue.error());
   const auto places = ready_places(name, *hand, Needs::model_and_grasps);
   if (!places) return tl::unexpected(places.error());
   auto model = load_mapping_model(places->model, *hand);
   if (!model) return tl::unexpected(model.error());
-  auto grasps = load_robot_grasps(places->grasps, *hand);
+  auto grasps = arguments.objects.empty()
+                    ? load_robot_grasps(places->grasps, *hand)
+                    : grasps_of(*hand, *places, *catalogue, arguments.threads);
   if (!grasps) return tl::unexpected(grasps.error());
   if (grasps->empty()) return fail("there is no grasp to repeat", hand->name());
   std::vector<BenchmarkTake> takes;

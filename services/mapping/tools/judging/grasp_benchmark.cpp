@@ -9,6 +9,7 @@
 
 #include "common/analysis/contact_wrenches.hpp"
 #include "common/analysis/resistance.hpp"
+#include "common/grasping/catalogue_bodies.hpp"
 #include "common/grasping/hold_test.hpp"
 #include "common/grasping/world.hpp"
 #include "services/mapping/tools/judging/planned_grasps.hpp"
@@ -108,7 +109,7 @@ class Trial {
       sum += (X_OB * tips[i] - X_OB_shown * shown[i]).norm();
     result.fingertip_error = tips.empty() ? 0 : sum / static_cast<double>(tips.size());
 
-    const auto contacts = world_->contacts(0);
+    const auto contacts = grasping::about_centre_of_mass(world_->contacts(0), world_->body(0));
     for (const analysis::Contact& contact : contacts)
       result.penetration = std::max(result.penetration, contact.depth);
     if (contacts.size() < 2) return;
@@ -141,8 +142,7 @@ Expected<std::unique_ptr<grasping::World>> world_of(const BenchmarkedHand& parts
   auto world = grasping::World::create(parts.hand, X_WG * parts.hand.X_BG().inverse(),
                                        parts.hand.postures().at("open"));
   if (!world) return world;
-  auto added = (*world)->add_body(
-      {object->name, object->shape, object->mass, object->material, {}, {}}, take.X_WO);
+  auto added = (*world)->add_body(grasping::primitive_of(*object), take.X_WO);
   if (!added) return tl::unexpected(added.error());
   return world;
 }

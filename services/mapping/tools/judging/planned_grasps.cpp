@@ -4,6 +4,7 @@
 
 #include <utility>
 
+#include "common/grasping/catalogue_bodies.hpp"
 #include "common/grasping/table_grasps.hpp"
 
 namespace prehend::mapping {
@@ -12,8 +13,9 @@ Candidates PlannedGrasps::search(const std::string& object, const model::Shape& 
   Candidates made{1, shape, {}};  // the track of seen_object()
   const model::CatalogueObject* known = catalogue_.find(object);
   if (!known) return made;
-  auto search = grasping::TableGraspSearch::create(
-      hand_, {object, shape, known->mass, known->material, {}, {}});
+  grasping::Body body = grasping::primitive_of(*known);
+  body.shape = shape;
+  auto search = grasping::TableGraspSearch::create(hand_, body);
   if (!search) return made;
   const auto in_turn = [](std::size_t count, const auto& attempt) {
     for (std::size_t i = 0; i < count; ++i) attempt(i);

@@ -68,7 +68,7 @@ Eigen::VectorXd untrained_size_row(const Parts& parts, const Repetition& repetit
         for (std::size_t i = 0; i < count; ++i) work(i);
       },
       [](auto, auto) {});
-  if (!made || !made->knows(shape.kind)) return numbers;
+  if (!made || !made->known_as(shape)) return numbers;
   const Comparison without = compare(*made, tested, shape.kind, true);
   const Comparison with = compare(*hand.model, tested, shape.kind, true);
   if (without.pairs == 0) return numbers;

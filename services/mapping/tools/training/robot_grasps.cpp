@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <optional>
 
+#include "common/grasping/catalogue_bodies.hpp"
 #include "common/grasping/table_closing.hpp"
 #include "common/model/past_contact.hpp"
 #include "common/proto/pose_numbers.hpp"
@@ -97,7 +98,7 @@ Trials Trials::quick() {
 Expected<RobotGrasp> robot_grasp(const model::HandModel& hand, const Scheme& scheme,
                                  const model::CatalogueObject& object, const Pose& X_OG,
                                  GraspType type, const Trials& trials) {
-  const grasping::Body body{object.name, object.shape, object.mass, object.material, {}};
+  const grasping::Body body = grasping::primitive_of(object);
   Error last{"no preshape is for this grasp", object.name, ""};
   std::optional<RobotGrasp> best;
   int most = -1;

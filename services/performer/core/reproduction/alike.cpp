@@ -15,7 +15,7 @@ using Eigen::Vector3d;
 Matrix3d nearest(const model::Shape& shape, const Matrix3d& goal, const Matrix3d& R) {
   if (shape.kind == model::ShapeKind::sphere) return R;
   Matrix3d best = goal;
-  if (shape.kind == model::ShapeKind::cylinder) {
+  if (model::is_upright_round(shape.kind)) {
     // Of an axis up or down nothing shows, either; but who shows one upright means it.
     const auto turn = Eigen::Quaterniond::FromTwoVectors(R.col(2), goal.col(2));
     return turn.toRotationMatrix() * R;

@@ -85,7 +85,7 @@ Expected<model::Shape> read_shape(const nlohmann::json& json) {
   if (!json.is_object() ||
       !read_numbers(json.value("size_m", nlohmann::json()), shape.size.data(), 3) ||
       !model::is_valid(shape))
-    return fail("\"shape\" needs a kind (cylinder, box, sphere) and a positive size_m", {},
+    return fail("\"shape\" needs a kind (cylinder, box, sphere, cone) and a positive size_m", {},
                 "cylinder: radius, radius, height; sphere: the radius three times");
   return shape;
 }

@@ -40,7 +40,8 @@ std::vector<Vector3d> surface_points(const model::Shape& shape) {
             points.push_back(half.cwiseProduct(Vector3d(u, v, side)));
           }
           break;
-        case model::ShapeKind::cylinder: {
+        case model::ShapeKind::cylinder:
+        case model::ShapeKind::cone: {
           const Vector3d rim(half.x() * std::cos(angle), half.x() * std::sin(angle), 0);
           points.push_back(rim + v * half.z() * Vector3d::UnitZ());
           for (const double side : {-1.0, 1.0})

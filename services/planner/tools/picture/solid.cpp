@@ -55,10 +55,14 @@ std::vector<Triangle> surface_of(const model::Shape& shape, const Pose& X_WS, in
       box(half, paint, made);
       break;
     case model::ShapeKind::cylinder:
-      revolve({0, -half.z(), 0, -1}, {half.x(), -half.z(), 0, -1}, paint, made);
-      revolve({half.x(), -half.z(), 1, 0}, {half.x(), half.z(), 1, 0}, paint, made);
-      revolve({half.x(), half.z(), 0, 1}, {0, half.z(), 0, 1}, paint, made);
+    case model::ShapeKind::cone: {
+      const double below = shape.size.x(), above = shape.size.y(), rise = model::slope(shape);
+      const double nr = 1 / std::hypot(1, rise), nz = -rise * nr;
+      revolve({0, -half.z(), 0, -1}, {below, -half.z(), 0, -1}, paint, made);
+      revolve({below, -half.z(), nr, nz}, {above, half.z(), nr, nz}, paint, made);
+      revolve({above, half.z(), 0, 1}, {0, half.z(), 0, 1}, paint, made);
       break;
+    }
     default:
       for (int i = 0; i < rings; ++i) {
         const double a = std::numbers::pi * i / rings, b = std::numbers::pi * (i + 1) / rings;

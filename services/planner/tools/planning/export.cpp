@@ -77,8 +77,8 @@ Json to_json(const Plan& plan, const PlannedGrasp& grasp) {
           {"force_closure", grasp.quality.force_closure},
           {"weakest_direction", list(grasp.quality.weakest_direction)},
           {"hold", hold_json(grasp.hold)},
-          {"center_of_mass_m", {0, 0, 0}},
-          {"torque_scale_m", analysis::torque_scale(plan.object.shape)},
+          {"center_of_mass_m", list(grasping::centre_of_mass(plan.object))},
+          {"torque_scale_m", grasping::torque_scale(plan.object)},
           {"edges", 8},  // of each ring, as contact_wrenches() makes them
           {"contacts", contacts},
           {"wrenches", wrenches}};

@@ -8,6 +8,7 @@
 #include "common/base/paths.hpp"
 #include "common/base/progress.hpp"
 #include "common/base/workers.hpp"
+#include "common/grasping/catalogue_bodies.hpp"
 #include "common/model/catalogue.hpp"
 
 namespace prehend::planner {
@@ -28,7 +29,7 @@ Expected<std::vector<Body>> catalogue_bodies() {
   if (!catalogue) return tl::unexpected(catalogue.error());
   std::vector<Body> bodies;
   for (const model::CatalogueObject& object : catalogue->objects())
-    bodies.push_back({object.name, object.shape, object.mass, object.material, {}});
+    bodies.push_back(grasping::primitive_of(object));
   return bodies;
 }
 

@@ -67,17 +67,19 @@ std::optional<std::vector<Eigen::Vector2d>> outline(const CameraModel& camera,
       for (const double v : {-hy, hy})
         for (const double z : {0.0, top})
           if (!add(u, v, z)) return std::nullopt;
-  } else if (shape.kind == model::ShapeKind::cylinder) {
+  } else if (model::is_upright_round(shape.kind)) {
     constexpr int corners = 20;
     for (int i = 0; i < corners; ++i) {
       const double angle = 2 * std::numbers::pi * i / corners;
-      for (const double z : {0.0, top})
-        if (!add(hx * std::cos(angle), hx * std::sin(angle), z)) return std::nullopt;
+      for (const double z : {0.0, top}) {
+        const double radius = model::radius_at(shape, z - half.z()) + margin;
+        if (!add(radius * std::cos(angle), radius * std::sin(angle), z)) return std::nullopt;
+      }
     }
   } else {  // a sphere; rings of latitude
-    constexpr int corners = 16;
-    for (int ring = -3; ring <= 3; ++ring) {
-      const double latitude = ring * std::numbers::pi / 7;
+    constexpr int corners = 24;
+    for (int ring = -4; ring <= 4; ++ring) {
+      const double latitude = ring * std::numbers::pi / 8;
       for (int i = 0; i < corners; ++i) {
         const double angle = 2 * std::numbers::pi * i / corners;
         if (!add(hx * std::cos(latitude) * std::cos(angle),

@@ -51,25 +51,28 @@ Hit hit_box(const Vector3d& half, const Vector3d& p, const Vector3d& d) {
   return hit;
 }
 
-/// The same for a cylinder along z.
-Hit hit_cylinder(double radius, double half, const Vector3d& p, const Vector3d& d) {
+/// The same for a cylinder or cone along z: (distance from the axis)² = radius(z)² is quadratic.
+Hit hit_round(const model::Shape& shape, const Vector3d& p, const Vector3d& d) {
+  const double half = shape.size.z() / 2, rise = model::slope(shape);
+  const double radius = model::radius_at(shape, 0) + rise * p.z();
   Hit hit;
-  const double a = d.x() * d.x() + d.y() * d.y(), b = p.x() * d.x() + p.y() * d.y();
+  const double a = d.x() * d.x() + d.y() * d.y() - rise * rise * d.z() * d.z();
+  const double b = p.x() * d.x() + p.y() * d.y() - rise * d.z() * radius;
   const double c = p.x() * p.x() + p.y() * p.y() - radius * radius;
   const double discriminant = b * b - a * c;
-  if (a > 1e-12 && discriminant >= 0) {
-    const double t = (-b - std::sqrt(discriminant)) / a;
-    const double z = p.z() + t * d.z();
-    if (t > 1e-6 && std::abs(z) <= half) {
+  if (std::abs(a) > 1e-12 && discriminant >= 0)
+    for (const double root : {-std::sqrt(discriminant), std::sqrt(discriminant)}) {
+      const double t = (-b + root) / a, z = p.z() + t * d.z(), r = radius + rise * t * d.z();
+      if (t <= 1e-6 || t >= hit.t || std::abs(z) > half || r < 0) continue;
       hit.t = t;
-      hit.normal_O = Vector3d(p.x() + t * d.x(), p.y() + t * d.y(), 0) / radius;
+      hit.normal_O =
+          Vector3d(p.x() + t * d.x(), p.y() + t * d.y(), -rise * r) / (r * std::hypot(1, rise));
     }
-  }
   if (std::abs(d.z()) > 1e-12) {
-    const double end = d.z() > 0 ? -half : half;
+    const double end = d.z() > 0 ? -half : half, r = model::radius_at(shape, end);
     const double t = (end - p.z()) / d.z();
     const double x = p.x() + t * d.x(), y = p.y() + t * d.y();
-    if (t > 1e-6 && t < hit.t && x * x + y * y <= radius * radius) {
+    if (t > 1e-6 && t < hit.t && x * x + y * y <= r * r) {
       hit.t = t;
       hit.normal_O = Vector3d(0, 0, end > 0 ? 1 : -1);
     }
@@ -93,7 +96,8 @@ Vector3f albedo(const model::Shape& shape, const Texture& texture, const Vector3
                 const Vector3d& n_O) {
   const Vector3d half = model::half_extents(shape);
   const double up = (p_O.z() + half.z()) / (2 * half.z());
-  const bool flat = std::abs(n_O.z()) > 0.5;
+  // The wall of a flat cone faces up, too, but not straight.
+  const bool flat = std::abs(n_O.z()) > (shape.kind == model::ShapeKind::cone ? 0.999 : 0.5);
   const Vector3d unit = (p_O.cwiseQuotient(half) + Vector3d::Ones()) / 2;
   if (shape.kind == model::ShapeKind::box) {
     if (flat) return texture.faces[4].at(unit.x(), unit.y());
@@ -102,8 +106,7 @@ Vector3f albedo(const model::Shape& shape, const Texture& texture, const Vector3
     if (n_O.x() < -0.5) return texture.faces[2].at(1 - unit.y(), up);
     return texture.faces[3].at(unit.x(), up);
   }
-  if (flat && shape.kind == model::ShapeKind::cylinder)
-    return texture.faces[1].at(unit.x(), unit.y());
+  if (flat && model::is_upright_round(shape.kind)) return texture.faces[1].at(unit.x(), unit.y());
   const double turn = std::atan2(p_O.y(), p_O.x()) / (2 * std::numbers::pi);
   return texture.faces[0].at(turn < 0 ? turn + 1 : turn, up);
 }
@@ -186,7 +189,8 @@ Hit hit_solid(const Solid& solid, const Vector3d& p_W, const Vector3d& d_W) {
     case model::ShapeKind::box:
       return hit_box(solid.shape.size / 2, p, d);
     case model::ShapeKind::cylinder:
-      return hit_cylinder(solid.shape.size.x(), solid.shape.size.z() / 2, p, d);
+    case model::ShapeKind::cone:
+      return hit_round(solid.shape, p, d);
     case model::ShapeKind::sphere:
       return hit_sphere(solid.shape.size.x(), p, d);
     case model::ShapeKind::unknown:

@@ -30,4 +30,14 @@ std::vector<model::CatalogueObject> strangers(int count, std::uint64_t seed) {
   return made;
 }
 
+model::CatalogueObject imagined(const std::string& name, const model::Shape& shape, double mass) {
+  std::uint64_t seed = 14695981039346656037u;  // FNV-1a: the same name looks the same everywhere
+  for (const char c : name) seed = (seed ^ static_cast<unsigned char>(c)) * 1099511628211u;
+  model::CatalogueObject made = strangers(1, seed).front();
+  made.name = name;
+  made.shape = shape;
+  made.mass = mass;
+  return made;
+}
+
 }  // namespace prehend::recognition

@@ -3,6 +3,8 @@
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <array>
 #include <chrono>
 #include <iostream>
 #include <memory>
@@ -13,9 +15,12 @@
 #include "common/base/log.hpp"
 #include "common/dds/participant.hpp"
 #include "common/dds/topics.hpp"
+#include "common/model/mesh.hpp"
 #include "common/service/arguments.hpp"
 #include "common/service/membership.hpp"
 #include "services/recognition/cameras/camera.hpp"
+#include "services/recognition/core/rendering/strangers.hpp"
+#include "services/recognition/core/rendering/training_views.hpp"
 #include "services/recognition/files/catalogue_entry.hpp"
 #include "services/recognition/files/model_file.hpp"
 #include "services/recognition/files/picture_file.hpp"
@@ -30,12 +35,13 @@ using Clock = std::chrono::steady_clock;
 
 /// As the service looks at pictures.
 constexpr int max_side = 640;
+constexpr double max_size = 2;  // m
 
 struct AddArguments {
   service::LabArguments lab;
-  std::string name, shape, model, catalogue, keep, source;
+  std::string name, shape, mesh, model, catalogue, keep, source;
   std::vector<double> size;
-  double mass = 0.2, limit = 60;
+  double scale = 1, mass = 0.2, limit = 60;
   int views = 16;
   bool json = false;
 };
@@ -91,41 +97,72 @@ Expected<Next> from_camera(const service::Config& config, const std::string& sou
   };
 }
 
+constexpr std::string_view rendered = "rendered";  // of --source
+
+/// What --size lists, and what is asked for.
+struct ShapeQuestion {
+  model::ShapeKind kind;
+  std::size_t numbers;
+  const char* question;
+  Eigen::Vector3d (*size)(const std::vector<double>&);
+};
+constexpr std::array questions{
+    ShapeQuestion{model::ShapeKind::box, 3, "Depth, length, height in mm?",
+                  [](const std::vector<double>& s) { return Eigen::Vector3d(s[0], s[1], s[2]); }},
+    ShapeQuestion{model::ShapeKind::cylinder, 2, "Radius, height in mm?",
+                  [](const std::vector<double>& s) { return Eigen::Vector3d(s[0], s[0], s[1]); }},
+    ShapeQuestion{model::ShapeKind::sphere, 1, "Radius in mm?",
+                  [](const std::vector<double>& s) { return Eigen::Vector3d(s[0], s[0], s[0]); }},
+    ShapeQuestion{model::ShapeKind::cone, 3, "Radius below, radius above, height in mm?",
+                  [](const std::vector<double>& s) { return Eigen::Vector3d(s[0], s[1], s[2]); }}};
+
+/// What bounds the mesh; the shape that was asked for, if any, of that size.
+Expected<model::Shape> shape_of_mesh(const AddArguments& arguments) {
+  const auto mesh = model::load_mesh(arguments.mesh, arguments.scale);
+  if (!mesh) return tl::unexpected(mesh.error());
+  const model::Shape made = model::bounding_shape(*mesh);
+  const Eigen::Vector3d mm = 1e3 * model::bounds(*mesh).sizes();
+  if (mm.maxCoeff() > max_size * 1e3 || mm.maxCoeff() < 5)
+    return fail(fmt::format("is {:.3g} x {:.3g} x {:.3g} mm large", mm.x(), mm.y(), mm.z()),
+                arguments.mesh, "--scale says how many metres a unit of the file is: 0.001 for mm");
+  if (!arguments.size.empty() || !arguments.shape.empty())
+    return fail("has its shape and size from its mesh", arguments.name,
+                "leave out --shape and --size, or --mesh");
+  return made;
+}
+
 /// Asks on the terminal for what the arguments do not say.
 Expected<model::Shape> shape_of(AddArguments& arguments) {
+  if (!arguments.mesh.empty()) return shape_of_mesh(arguments);
   const bool asks = ::isatty(STDIN_FILENO) == 1 && !arguments.json;
-  const auto ask = [&](const char* question) {
+  const auto ask = [&](const std::string& question) {
     fmt::print(stderr, "{} ", question);
     std::string line;
     std::getline(std::cin, line);
     return line;
   };
   if (arguments.shape.empty()) {
-    if (!asks) return fail("needs a shape", arguments.name, "--shape box or cylinder or sphere");
-    arguments.shape = ask("Shape (box, cylinder, sphere)?");
+    if (!asks)
+      return fail("needs a shape", arguments.name,
+                  "--shape " + model::shape_words() + ", or --mesh");
+    arguments.shape = ask("Shape (" + model::shape_words() + ")?");
   }
-  model::Shape made;
   const auto kind = model::shape_from_string(arguments.shape);
-  if (!kind || *kind == model::ShapeKind::unknown)
-    return fail("is no shape", arguments.shape, "box, cylinder or sphere");
-  made.kind = *kind;
-  const char* question = *kind == model::ShapeKind::box        ? "Depth, length, height in mm?"
-                         : *kind == model::ShapeKind::cylinder ? "Radius, height in mm?"
-                                                               : "Radius in mm?";
+  const auto known = std::find_if(questions.begin(), questions.end(),
+                                  [&](const ShapeQuestion& each) { return each.kind == kind; });
+  if (known == questions.end()) return fail("is no shape", arguments.shape, model::shape_words());
   if (arguments.size.empty()) {
     if (!asks)
-      return fail("needs a size", arguments.name, std::string("--size, in m: ") + question);
-    std::string line = ask(question);
+      return fail("needs a size", arguments.name, std::string("--size, in m: ") + known->question);
+    std::string line = ask(known->question);
     std::replace(line.begin(), line.end(), ',', ' ');
     std::istringstream numbers(line);
     for (double v; numbers >> v;) arguments.size.push_back(v / 1000);
   }
-  const std::vector<double>& s = arguments.size;
-  if (*kind == model::ShapeKind::box && s.size() == 3) made.size = {s[0], s[1], s[2]};
-  if (*kind == model::ShapeKind::cylinder && s.size() == 2) made.size = {s[0], s[0], s[1]};
-  if (*kind == model::ShapeKind::sphere && s.size() == 1) made.size = {s[0], s[0], s[0]};
-  if (!model::is_valid(made) || made.size.maxCoeff() > 2)
-    return fail("is no size in metres", arguments.shape, question);
+  model::Shape made;
+  if (arguments.size.size() == known->numbers) made = {*kind, known->size(arguments.size)};
+  if (!model::is_valid(made) || made.size.maxCoeff() > max_size)
+    return fail("is no size in metres", arguments.shape, known->question);
   return made;
 }
 
@@ -156,6 +193,21 @@ Expected<TrainingClass> take_views(const AddArguments& arguments, const Next& ne
   return TrainingClass{arguments.name, taker.views()};
 }
 
+/// From a camera, or as it would look.
+Expected<TrainingClass> views_of(const AddArguments& arguments, const service::Config& config,
+                                 const model::CatalogueObject& imagined) {
+  if (arguments.source == rendered) {
+    const auto camera = configured_camera(config);
+    if (!camera) return tl::unexpected(camera.error());
+    return TrainingClass{arguments.name, training_views(Renderer({imagined}), imagined, *camera,
+                                                        arguments.views, 1)};
+  }
+  const bool by_topic = arguments.source.empty() || arguments.source == topic_camera().name;
+  const auto next = by_topic ? from_topic(config) : from_camera(config, arguments.source);
+  if (!next) return tl::unexpected(next.error());
+  return take_views(arguments, *next);
+}
+
 Expected<void> keep(const std::filesystem::path& folder, const TrainingClass& views) {
   std::error_code error;
   std::filesystem::create_directories(folder / views.name, error);
@@ -170,6 +222,17 @@ Expected<void> keep(const std::filesystem::path& folder, const TrainingClass& vi
   return {};
 }
 
+/// A file of the user's own that is not there yet begins as the lab's.
+Expected<std::filesystem::path> own_file(const service::Config& config, const std::string& given,
+                                         const char* key) {
+  const auto labs = config.path(key);
+  if (given.empty()) return labs;
+  std::error_code error;
+  if (!std::filesystem::exists(given, error)) std::filesystem::copy_file(labs, given, error);
+  if (error) return fail(error.message(), given, "it would begin as a copy of " + labs.string());
+  return given;
+}
+
 int add(AddArguments& arguments) {
   const Clock::time_point begin = Clock::now();
   const auto config = arguments.lab.load();
@@ -179,11 +242,11 @@ int add(AddArguments& arguments) {
                              exit_wrong_use);
   const auto shape = shape_of(arguments);
   if (!shape) return service::complain(shape.error(), exit_wrong_use);
-  const auto path = [&](const std::string& given, const char* key) {
-    return given.empty() ? config->path(key) : std::filesystem::path(given);
-  };
-  const auto model_file = path(arguments.model, "recognition.model");
-  const auto catalogue_file = path(arguments.catalogue, "lab.catalogue");
+  const auto model_place = own_file(*config, arguments.model, "recognition.model");
+  if (!model_place) return service::complain(model_place.error(), exit_broken);
+  const auto catalogue_place = own_file(*config, arguments.catalogue, "lab.catalogue");
+  if (!catalogue_place) return service::complain(catalogue_place.error(), exit_broken);
+  const auto &model_file = *model_place, &catalogue_file = *catalogue_place;
   // What would fail at the end is looked at before anybody turns an object for a minute.
   auto models = load_models(model_file);
   if (!models) return service::complain(models.error(), exit_broken);
@@ -195,10 +258,10 @@ int add(AddArguments& arguments) {
       return service::complain({"is known already", arguments.name, "choose another name"},
                                exit_wrong_use);
 
-  const bool by_topic = arguments.source.empty() || arguments.source == topic_camera().name;
-  const auto next = by_topic ? from_topic(*config) : from_camera(*config, arguments.source);
-  if (!next) return service::complain(next.error(), exit_broken);
-  const auto views = take_views(arguments, *next);
+  // Without a camera it looks as the catalogue says, or as anything of its name might.
+  const auto drawn =
+      listed ? *catalogue->find(arguments.name) : imagined(arguments.name, *shape, arguments.mass);
+  const auto views = views_of(arguments, *config, drawn);
   if (!views) return service::complain(views.error(), exit_no);
   if (!arguments.keep.empty())
     if (const auto kept = keep(arguments.keep, *views); !kept)
@@ -206,8 +269,12 @@ int add(AddArguments& arguments) {
   const auto grown = with_class(std::move(*models), *views);
   if (!grown) return service::complain(grown.error(), exit_no);
   if (!listed) {
-    const auto entry = described_by(arguments.name, *shape, arguments.mass, views->views);
-    if (const auto added = append_to_catalogue(catalogue_file, entry); !added)
+    const auto entry = arguments.source == rendered
+                           ? drawn
+                           : described_by(arguments.name, *shape, arguments.mass, views->views);
+    std::optional<MeshFile> mesh;
+    if (!arguments.mesh.empty()) mesh = {arguments.mesh, arguments.scale};
+    if (const auto added = append_to_catalogue(catalogue_file, entry, mesh); !added)
       return service::complain(added.error(), exit_broken);
   }
   if (const auto saved = save_models(model_file, *grown); !saved)
@@ -234,17 +301,27 @@ void add_add(tool::Program& program) {
       "add",
       "Learns a new object from the camera: clear the table, put the object on it, turn it.");
   command->add_option("name", a->name, "of the object")->required();
-  command->add_option("--shape", a->shape, "box, cylinder or sphere; else it is asked for");
-  command->add_option("--size", a->size, "m: depth,length,height, or radius,height, or radius")
+  command->add_option("--shape", a->shape, model::shape_words() + "; else it is asked for");
+  command
+      ->add_option("--size", a->size,
+                   "m: depth,length,height of a box; radius,height; radius; radius below,radius "
+                   "above,height of a cone")
       ->delimiter(',');
+  command->add_option("--mesh", a->mesh, "closed STL or OBJ, z up: instead of shape and size")
+      ->check(CLI::ExistingFile);
+  command->add_option("--scale", a->scale, "metres per unit of the mesh")
+      ->check(CLI::PositiveNumber);
   command->add_option("--mass", a->mass, "kg")->check(CLI::Range(0.001, 20.0));
-  command->add_option("--source", a->source, source_words() + "; default: pictures by topic");
+  command->add_option("--source", a->source,
+                      source_words() + "; default: pictures by topic; rendered: without a camera");
   command->add_option("--views", a->views, "wanted")->check(CLI::Range(3, 60));
   command->add_option("--seconds", a->limit, "after which it goes on with what it has")
       ->check(CLI::Range(1.0, 3600.0));
   command->add_option("--keep", a->keep, "folder for the views, as `train` reads them");
-  command->add_option("--model", a->model, "to extend; else that of lab.toml");
-  command->add_option("--catalogue", a->catalogue, "to extend; else that of lab.toml");
+  command->add_option("--model", a->model,
+                      "to extend, or to begin as a copy of the lab's; else that of lab.toml");
+  command->add_option("--catalogue", a->catalogue,
+                      "to extend, or to begin as a copy of the lab's; else that of lab.toml");
   a->lab.add_to(*command);
   command->add_flag("--json", a->json, "one JSON document");
   program.on(*command, [a] { return add(*a); });

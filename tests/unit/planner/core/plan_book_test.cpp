@@ -21,6 +21,11 @@ const model::Catalogue& objects() {
   return catalogue;
 }
 
+const grasping::CatalogueBodies& bodies() {
+  static const auto made = grasping::CatalogueBodies::create(objects()).value();
+  return made;
+}
+
 SeenObject seen(std::uint32_t track, const std::string& name, double larger = 1) {
   SeenObject made;
   made.track = track;
@@ -54,7 +59,7 @@ PlanBookOptions brief() {
 class PlanBookTest : public testing::Test {
  protected:
   const model::HandModel& hand = test::hand("parallel_jaw");
-  PlanBook book{hand, objects(), {}, brief()};
+  PlanBook book{hand, bodies(), {}, brief()};
 };
 
 TEST_F(PlanBookTest, SearchesUntilAllIsFoundAndTellsWhatIsNew) {
@@ -168,12 +173,12 @@ TEST(PlanBookStore, APlanThatIsKeptIsNotSearchedAgain) {
                           return std::nullopt;
                         },
                         [&](const Plan& plan) { kept.push_back(plan); }};
-  PlanBook first(hand, objects(), store, brief());
+  PlanBook first(hand, bodies(), store, brief());
   ASSERT_TRUE(first.observe(seen(1, "Wood cube")));
   while (!round(first).empty()) {
   }
   ASSERT_EQ(kept.size(), 1u);
-  PlanBook second(hand, objects(), store, brief());
+  PlanBook second(hand, bodies(), store, brief());
   ASSERT_TRUE(second.observe(seen(7, "Wood cube")));
   EXPECT_FALSE(second.next());
   const auto told = second.news();

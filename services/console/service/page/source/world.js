@@ -13,6 +13,12 @@ const sphere = new SphereGeometry(0.5, 24, 16);
 // Its axis is z, as in the messages.
 const cylinder = new CylinderGeometry(0.5, 0.5, 1, 32).rotateX(Math.PI / 2);
 
+/// As wide as its size says, times the scale of each end.
+function roundOf({ bottom_scale: bottom, top_scale: top }) {
+  if (bottom === 1 && top === 1) return cylinder;
+  return new CylinderGeometry(0.5 * top, 0.5 * bottom, 1, 32).rotateX(Math.PI / 2);
+}
+
 function colourOf({ r, g, b }) {
   return new Color().setRGB(r, g, b, "srgb");
 }
@@ -168,7 +174,7 @@ export class World {
       this.remove(entity.id);
       const group = new Group();
       group.add(...entity.cubes.map((c) => solid(box, c)), ...entity.spheres.map((s) => solid(sphere, s)),
-                ...entity.cylinders.map((c) => solid(cylinder, c)), ...entity.arrows.map(arrow),
+                ...entity.cylinders.map((c) => solid(roundOf(c), c)), ...entity.arrows.map(arrow),
                 ...entity.lines.map(line), ...entity.triangles.map(triangles), ...entity.texts.map(label));
       this.frame(entity.frame_id).add(group);
       this.entities.set(entity.id, group);

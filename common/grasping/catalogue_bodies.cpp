@@ -1,0 +1,58 @@
+#include "common/grasping/catalogue_bodies.hpp"
+
+#include <algorithm>
+
+#include "common/grasping/mesh_body.hpp"
+
+namespace prehend::grasping {
+namespace {
+
+constexpr double density = 300;  // kg/m³, of what is in no catalogue: things are hollow
+constexpr double lightest = 0.03, heaviest = 0.6;  // kg
+constexpr double other_size = 0.25;  // share: what is seen so much larger is no longer this mesh
+
+}  // namespace
+
+Body primitive_of(const model::CatalogueObject& object) {
+  return {object.name, object.shape, object.mass, object.material, {}, {}};
+}
+
+Expected<CatalogueBodies> CatalogueBodies::create(const model::Catalogue& catalogue) {
+  CatalogueBodies made;
+  for (const model::CatalogueObject& object : catalogue.objects()) {
+    Body body = primitive_of(object);
+    if (object.mesh) {
+      auto solid = solid_of(*object.mesh);
+      if (!solid) return fail(solid.error().what, object.name, solid.error().hint);
+      body.mesh = std::move(solid->solid);
+    }
+    made.bodies_.emplace(object.name, std::move(body));
+  }
+  return made;
+}
+
+const Body* CatalogueBodies::find(std::string_view name) const {
+  const auto found = bodies_.find(name);
+  return found == bodies_.end() ? nullptr : &found->second;
+}
+
+Body CatalogueBodies::seen(const std::string& name, const model::Shape& shape) const {
+  Body body;
+  body.name = name;
+  body.shape = shape;
+  const Body* known = find(name);
+  if (!known) {
+    body.mass = std::clamp(density * model::volume(shape), lightest, heaviest);
+    body.material = "plastic";
+    return body;
+  }
+  body.mass = known->mass;
+  body.material = known->material;
+  if (!known->mesh || known->shape.kind != shape.kind) return body;
+  const double factor = shape.size.norm() / known->shape.size.norm();
+  if (std::abs(factor - 1) > other_size) return body;
+  body.mesh = scaled(*known, factor).mesh;
+  return body;
+}
+
+}  // namespace prehend::grasping
