@@ -13,9 +13,10 @@ using Eigen::Vector3d;
 Pose intended_grasp(const Shape& shape, const Pose& X_WO, const Demonstrator& person) {
   Matrix3d R_WG;
   if (shape.kind == ShapeKind::box && shape.size.z() >= person.reach.clearance) {
-    const Vector3d depth = X_WO.linear().col(0);
+    // Across the narrower side.
+    const Vector3d across = X_WO.linear().col(shape.size.x() <= shape.size.y() ? 0 : 1);
     const Vector3d closing =
-        (Vector3d(depth.x(), depth.y(), 0).normalized()) * (depth.y() < 0 ? -1.0 : 1.0);
+        (Vector3d(across.x(), across.y(), 0).normalized()) * (across.y() < 0 ? -1.0 : 1.0);
     R_WG = grasp_axes(-Vector3d::UnitZ(), closing);
   } else {
     const Vector3d toward(-std::cos(person.grasp_yaw), -std::sin(person.grasp_yaw), 0);

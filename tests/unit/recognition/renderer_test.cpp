@@ -58,6 +58,31 @@ TEST(Renderer, ObjectsCoverTheirSilhouettes) {
   }
 }
 
+// A change of the lens that moved the picture by a third of a pixel went unnoticed.
+TEST(Renderer, TheLensBlursToBothSidesAlike) {
+  model::CatalogueObject white;
+  white.name = "white";
+  white.shape = {model::ShapeKind::box, {0.1, 0.1, 0.1}};
+  white.material = "plastic";
+  white.appearance = {{{1, 1, 1}}, "plain", 1};
+  model::Scene scene;
+  scene.table_colour.setZero();
+  scene.light.to_light_W = Eigen::Vector3d(0, -1, 1).normalized();
+  scene.objects.push_back({"white", make_pose({0, 0, 0.05})});
+  CameraModel camera = lab_camera();
+  camera.centre.x() = 0.5 * (camera.width - 1);
+  const Picture picture = Renderer({white}).render_still(scene, camera, {});
+  const int y = static_cast<int>(camera.project({0, -0.05, 0.05})->y());
+  const auto at = [&](int x) {
+    const auto* rgb = picture.at(x, y);
+    return (rgb[0] + rgb[1] + rgb[2]) / 3.0;
+  };
+  const int middle = camera.width / 2;
+  ASSERT_GT(at(middle), 150);
+  for (int x = 0; x < middle; ++x)
+    EXPECT_NEAR(at(x), at(camera.width - 1 - x), 0.1 * at(middle)) << x;
+}
+
 TEST(Renderer, ShadowFallsAwayFromTheLamp) {
   model::Scene scene;
   scene.light.to_light_W = Eigen::Vector3d(1, 0, 1).normalized();
