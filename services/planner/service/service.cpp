@@ -24,6 +24,7 @@ namespace prehend::planner {
 namespace {
 
 constexpr std::size_t max_told = 1000;  // objects
+constexpr Duration period = std::chrono::milliseconds(20);
 
 /// Searches rounds in a thread of its own, at the lowest priority: who moves a hand goes first.
 class Searcher {
@@ -101,9 +102,8 @@ class Service::Topics {
       searcher_.emplace([this](const PlanBook::Work& work, bool more) {
         shell_.post([this, work, more] { on_searched(work, more); });
       });
-    // In lockstep nothing waits for the clock of a wall: all is found at once.
-    shell.on_tick(std::chrono::milliseconds(20), [this](Time) {
-      if (shell_.lockstep()) search_all();
+    shell.on_tick(period, [this](Time now) {
+      if (shell_.lockstep()) search_in_lockstep(now);
       go_on();
     });
   }
@@ -148,13 +148,17 @@ class Service::Topics {
     go_on();
   }
 
-  void search_all() {
-    while (const auto work = book_.next()) {
-      const bool more = work->search->try_next([](std::size_t count, const auto& attempt) {
-        share_work(count, 0, attempt, [](std::size_t) {});
-      });
-      book_.searched(*work, more);
-    }
+  /// A round a period of the lab's clock: when something is known follows from that clock alone,
+  /// and a cycle takes seconds at most, however long a search.
+  void search_in_lockstep(Time now) {
+    if (now < next_round_) return;
+    next_round_ = now + period;
+    const auto work = book_.next();
+    if (!work) return;
+    const bool more = work->search->try_next([](std::size_t count, const auto& attempt) {
+      share_work(count, 0, attempt, [](std::size_t) {});
+    });
+    book_.searched(*work, more);
   }
 
   /// Tells what is new, and searches on.
@@ -186,6 +190,7 @@ class Service::Topics {
   std::set<std::uint32_t> told_;
   std::map<std::uint32_t, std::string> refusals_;  // by track, why; empty: it is planned for
   std::uint64_t sequence_number_ = 0;
+  Time next_round_;
   std::optional<Searcher> searcher_;  // last: it uses all of the above
 };
 
@@ -203,7 +208,8 @@ Expected<std::unique_ptr<Service>> Service::create(service::Shell& shell) {
   auto catalogue = model::Catalogue::load(config.path("lab.catalogue"));
   if (!catalogue) return tl::unexpected(catalogue.error());
   auto kept = std::make_unique<const model::HandModel>(std::move(*hand));
-  const auto state = state_directory();
+  // In lockstep the same is answered on every machine, whatever this one has searched before.
+  const auto state = shell.lockstep() ? std::filesystem::path() : state_directory();
   PlanStore store =
       plan_store(state.empty() ? state : state / "grasps" / kept->name(), folder, *kept);
   log::info("grasps of {}", kept->name());
