@@ -13,6 +13,8 @@ foreach(units prehend- prehend@)
   install(FILES ${CMAKE_CURRENT_LIST_DIR}/systemd/10-shared.conf
     DESTINATION lib/systemd/system/${units}.service.d COMPONENT lab)
 endforeach()
+install(FILES ${CMAKE_CURRENT_LIST_DIR}/systemd/20-planner.conf
+  DESTINATION lib/systemd/system/prehend@planner.service.d COMPONENT lab)
 # Headers of these are compiled into the programs: no dependency names them, so the bill of materials
 # and their licences do.
 set(compiled_in libboost-dev libcli11-dev libeigen3-dev libexpected-dev nlohmann-json3-dev)

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <fstream>
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "common/recording/mcap/writer.hpp"
@@ -120,6 +121,33 @@ TEST_F(Check, EachServiceAloneAnswersAsInCompany) {
     std::sort(named.begin(), named.end());
     EXPECT_EQ(named, topics);
   }
+}
+
+// A search takes seconds and goes on beside everything else; in lockstep what is found when follows
+// from the recording, also on a machine that knows the plan already.
+TEST_F(Check, GraspsArePlannedAgainAsTheyWere) {
+  const std::string recording = file("planned.mcap");
+  ::setenv("XDG_STATE_HOME", file("knows").c_str(), 1);
+  const Answer demo = run("prehend",
+                          {"demo", "--mode", "planned", "--record", recording, "--domain",
+                           std::to_string(domain_), "--timeout", "90"},
+                          110);
+  ASSERT_TRUE(demo.exit_code == 0 || demo.exit_code == 1) << demo.log;
+  ASSERT_TRUE(std::filesystem::exists(file("knows/prehend/grasps/barrett")));
+  const Answer update = check(recording, {"--update"});
+  ASSERT_EQ(update.exit_code, 0) << update.log;
+  for (const char* state : {"knows", "knows nothing"}) {
+    ::setenv("XDG_STATE_HOME", file(state).c_str(), 1);
+    const Answer again = check(recording, {"--json"});
+    EXPECT_EQ(again.exit_code, 0) << state << again.output << again.log;
+    std::map<std::string, int> compared;
+    const json document = json::parse(again.output);
+    for (const auto& topic : document["topics"]) compared[topic["name"]] = topic["compared"];
+    EXPECT_GE(compared["grasp/candidates"], 2) << "first ones, and all";
+    EXPECT_GT(compared["robot/command"], 100);
+  }
+  const Answer alone = check(recording, {"--service", "planner"});
+  EXPECT_EQ(alone.exit_code, 0) << alone.output << alone.log;
 }
 
 TEST_F(Check, WhatHasChangedIsShownAndWrittenAsJUnit) {

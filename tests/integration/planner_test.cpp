@@ -116,6 +116,43 @@ TEST_F(Planner, NonsenseLosesNothing) {
   EXPECT_FALSE(told_of(seen(8, cube_)).back().candidates().empty());
 }
 
+// `demo --mode planned` waited for ever for what is refused.
+TEST_F(Planner, SaysOfWhatItDoesNotPlanForThatThereIsNothing) {
+  const auto planner = start_planner();
+  v1::ObjectDetection fallen = seen(3, cube_);
+  const Eigen::AngleAxisd turn(1.5, Eigen::Vector3d::UnitX());
+  fallen.X_WO(convert::to_message(make_pose({0.1, 0.2, 0.02}, turn.toRotationMatrix())));
+  auto told = told_of(fallen);
+  ASSERT_FALSE(told.empty());
+  EXPECT_TRUE(told.back().candidates().empty());
+  EXPECT_THAT(told.back().reason().to_string(), testing::HasSubstr("does not stand"));
+
+  v1::ObjectDetection doubtful = seen(4, cube_);
+  doubtful.probability(0.55);
+  told = told_of(doubtful);
+  ASSERT_FALSE(told.empty());
+  EXPECT_THAT(told.back().reason().to_string(), testing::HasSubstr("not probable"));
+
+  // Surer now: that there is nothing is taken back, then there are grasps.
+  doubtful.probability(0.9);
+  told = told_of(doubtful);
+  ASSERT_FALSE(told.empty());
+  EXPECT_FALSE(told.front().complete());
+  EXPECT_FALSE(told.back().candidates().empty()) << told.back().reason().to_string();
+  // Less sure again, as while a hand hides it: what was found stays, also once a later picture has
+  // been answered.
+  doubtful.probability(0.3);
+  doubtful.stamp_ns(now_ns());
+  detections_.write(doubtful);
+  doubtful.track(5);
+  ASSERT_FALSE(told_of(doubtful).empty());
+  auto late = reader(dds::grasp_candidates);
+  const auto known =
+      hear<v1::GraspCandidates>(late, 10, [](const auto& message) { return message.track() == 4; });
+  ASSERT_TRUE(known);
+  EXPECT_FALSE(known->candidates().empty());
+}
+
 TEST_F(Planner, SeveralObjectsAreSearchedInTurn) {
   const auto planner = start_planner("barrett");
   std::map<std::uint32_t, v1::ObjectDetection> objects;

@@ -57,7 +57,7 @@ class Supervised : public Rig {
 
 TEST_F(Supervised, EachServiceIsReadyWhenItAnswersAndSaysThatItStops) {
   const std::string shown = "lab.scene=" + scene(1);
-  for (const char* name : {"glove", "recognition", "mapping", "simulation"}) {
+  for (const char* name : {"glove", "recognition", "mapping", "planner", "simulation"}) {
     auto process = start_supervised({"prehend-" + std::string(name)}, "600000000", {shown});
     ASSERT_EQ(next(60), "READY=1") << name;
     EXPECT_TRUE(answers(name)) << name;

@@ -61,7 +61,13 @@ void Listener::poll(Observer& observer) {
       observer.hear(sample.data);
   }
   take(state_->frames);
-  take(state_->detections);
+  if (state_->detections)
+    for (const auto& sample : state_->detections->take()) {
+      if (sample.info.gone)
+        observer.lost_object(sample.data.track());
+      else
+        observer.hear(sample.data);
+    }
   take(state_->candidates);
   take(state_->commands);
   // What is heard of the arm ends with the report, so that comes last.

@@ -19,6 +19,9 @@ constexpr std::string_view stage_to_world = "glove to accepted";
 /// A grasp is judged within this time of its closure; older detections are not behind it.
 constexpr std::int64_t remembered_ns = 10'000'000'000;
 
+/// That there is no plan is believed once pictures of this long have brought none.
+constexpr std::int64_t settled_ns = 1'000'000'000;
+
 /// Where the grasped body was when the hand closed, in W.
 std::optional<Eigen::Vector3d> grasped_at(const v1::GraspReport& report,
                                           const std::optional<v2::HandCommand>& command) {
@@ -44,6 +47,7 @@ void Observer::hear(const v1::GloveFrame& frame) {
 }
 
 void Observer::hear(const v1::ObjectDetection& detection) {
+  seen_[detection.track()] = detection;
   if (report_ && detection.stamp_ns() > report_->stamp_ns()) return;
   auto& heard = detections_[detection.name().to_string()];
   const auto after = std::upper_bound(heard.begin(), heard.end(), detection.stamp_ns(),
@@ -66,7 +70,12 @@ void Observer::hear(const v1::GraspReport& report) {
 }
 
 void Observer::hear(const v1::GraspCandidates& planned) {
-  planned_[planned.object().to_string()] = planned.complete();
+  planned_[planned.track()] = planned;
+}
+
+void Observer::lost_object(std::uint32_t track) {
+  seen_.erase(track);
+  planned_.erase(track);
 }
 
 void Observer::hear(const v1::ArmState& state) {
@@ -107,12 +116,35 @@ bool Observer::commanded() const {
   return command_ && command_->mode() != v1::MODE_HOLD;
 }
 
+bool Observer::is_planned(const v1::ObjectDetection& seen) const {
+  const auto found = planned_.find(seen.track());
+  if (found == planned_.end() || !found->second.complete()) return false;
+  return !found->second.candidates().empty() ||
+         seen.stamp_ns() - found->second.stamp_ns() >= settled_ns;
+}
+
 bool Observer::planned() const {
-  return !detections_.empty() &&
-         std::all_of(detections_.begin(), detections_.end(), [this](const auto& seen) {
-           const auto found = planned_.find(seen.first);
-           return found != planned_.end() && found->second;
-         });
+  return !seen_.empty() && std::all_of(seen_.begin(), seen_.end(), [this](const auto& seen) {
+    return is_planned(seen.second);
+  });
+}
+
+std::string Observer::unplanned() const {
+  std::string names;
+  for (const auto& [track, seen] : seen_)
+    if (!is_planned(seen))
+      names += (names.empty() ? "" : ", ") + printable(seen.name().to_string());
+  return names;
+}
+
+std::vector<std::pair<std::string, std::string>> Observer::without_plan() const {
+  std::vector<std::pair<std::string, std::string>> all;
+  for (const auto& [track, seen] : seen_)
+    if (const auto found = planned_.find(track);
+        found != planned_.end() && found->second.complete() && found->second.candidates().empty())
+      all.emplace_back(printable(seen.name().to_string()),
+                       printable(found->second.reason().to_string()));
+  return all;
 }
 
 bool Observer::latency_is_in() const {

@@ -1,9 +1,11 @@
 #pragma once
 
+#include <cstdint>
 #include <deque>
 #include <map>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "common/model/scene.hpp"
@@ -33,6 +35,7 @@ class Observer {
   void hear(const v2::HandCommand& command);
   void hear(const v1::GraspReport& report);
   void hear(const v1::GraspCandidates& planned);
+  void lost_object(std::uint32_t track);
   void hear(const v1::ArmState& state);
   void hear(const v1::ServiceStatus& status);
   void lost_service(const std::string& key);
@@ -43,8 +46,13 @@ class Observer {
   bool has_counted(std::string_view service, std::string_view what) const;
   /// A command that follows the hand (not: hold) has been heard.
   bool commanded() const;
-  /// Something is seen, and of all that is seen the planner looks for no better grasps.
+  /// Something is seen, and of all that is seen the planner looks for no better grasps. That there
+  /// are none counts once it has been so for a while: a picture later it may plan after all.
   bool planned() const;
+  /// Names of what is seen and is not planned for yet.
+  std::string unplanned() const;
+  /// Of what is seen and gets no planned grasp: its name, and why.
+  std::vector<std::pair<std::string, std::string>> without_plan() const;
   /// The first grasp has been judged.
   bool judged() const { return report_.has_value(); }
   /// The simulation has told its latency since the grasp closed.
@@ -59,11 +67,13 @@ class Observer {
  private:
   const v1::ObjectDetection* recognised() const;
   const v1::ServiceStatus* service(std::string_view name) const;
+  bool is_planned(const v1::ObjectDetection& seen) const;
 
   std::optional<model::Scene> truth_;
   std::map<std::string, v1::ServiceStatus> services_;                  // by key
   std::map<std::string, std::deque<v1::ObjectDetection>> detections_;  // by name, in order of stamp
-  std::map<std::string, bool> planned_;                                // by name: completely
+  std::map<std::uint32_t, v1::ObjectDetection> seen_;                  // by track, newest
+  std::map<std::uint32_t, v1::GraspCandidates> planned_;               // by track
   std::optional<v2::HandCommand> command_;
   std::optional<v1::GraspReport> report_;
   std::optional<stage::ArmUse> arm_;

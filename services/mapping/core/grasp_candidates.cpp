@@ -46,6 +46,12 @@ Eigen::Matrix3d turn_to(const model::Shape& shape, const Eigen::Matrix3d& R_from
   return Eigen::AngleAxisd(angle, Eigen::Vector3d::UnitZ()).toRotationMatrix();
 }
 
+/// By the trace, which tells the cosine of the angle between both.
+bool is_same_approach(const Eigen::Matrix3d& R_a, const Eigen::Matrix3d& R_b) {
+  static const double min_trace = 1 + 2 * std::cos(same_approach);
+  return R_a.cwiseProduct(R_b).sum() >= min_trace;
+}
+
 bool is_like(const model::Shape& a, const model::Shape& b) {
   return a.kind == b.kind &&
          ((a.size - b.size).array().abs() <= (other_share * a.size.array()).max(other_size)).all();
@@ -66,20 +72,22 @@ std::optional<Candidate> CandidateBook::answer(std::uint32_t track, const model:
                                                const Pose& X_OG) const {
   const auto known = known_.find(track);
   if (known == known_.end() || !is_like(known->second.shape, shape)) return std::nullopt;
-  std::optional<Candidate> best;
+  // Asked of every object in every frame: only what answers is copied.
+  const Candidate* best = nullptr;
+  Eigen::Matrix3d best_turn;
   for (const Candidate& candidate : known->second.candidates) {
+    if (candidate.room < sure_enough || (best && best->room >= candidate.room)) continue;
     const Eigen::Matrix3d turn = turn_to(shape, candidate.X_OG.linear(), X_OG.linear());
-    if (candidate.room < sure_enough) continue;
-    if (angle_between(Eigen::Matrix3d(turn * candidate.X_OG.linear()), X_OG.linear()) >
-            same_approach ||
-        (best && best->room >= candidate.room))
-      continue;
-    best = candidate;
-    const Pose X = make_pose(Eigen::Vector3d::Zero(), turn);
-    best->X_OG = X * candidate.X_OG;
-    best->X_OR = X * candidate.X_OR;
+    if (!is_same_approach(turn * candidate.X_OG.linear(), X_OG.linear())) continue;
+    best = &candidate;
+    best_turn = turn;
   }
-  return best;
+  if (!best) return std::nullopt;
+  Candidate found = *best;
+  const Pose X = make_pose(Eigen::Vector3d::Zero(), best_turn);
+  found.X_OG = X * found.X_OG;
+  found.X_OR = X * found.X_OR;
+  return found;
 }
 
 }  // namespace prehend::mapping

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <condition_variable>
+#include <map>
 #include <mutex>
 #include <optional>
 #include <set>
@@ -21,6 +22,9 @@
 
 namespace prehend::planner {
 namespace {
+
+constexpr std::size_t max_told = 1000;  // objects
+constexpr Duration period = std::chrono::milliseconds(20);
 
 /// Searches rounds in a thread of its own, at the lowest priority: who moves a hand goes first.
 class Searcher {
@@ -44,7 +48,8 @@ class Searcher {
 
  private:
   void run(const std::stop_token& stop) {
-    be_last();
+    if (!be_last())
+      log::warning("may not step back: searches at the priority of whoever moves a hand");
     while (!stop.stop_requested()) {
       std::unique_lock lock(mutex_);
       if (!wake_.wait(lock, stop, [this] { return work_.has_value(); })) return;
@@ -65,8 +70,8 @@ class Searcher {
   }
 
   /// Priorities are those of threads, in Linux.
-  static void be_last() {
-    ::setpriority(PRIO_PROCESS, static_cast<id_t>(::syscall(SYS_gettid)), 19);
+  static bool be_last() {
+    return ::setpriority(PRIO_PROCESS, static_cast<id_t>(::syscall(SYS_gettid)), 19) == 0;
   }
 
   Done done_;
@@ -97,9 +102,8 @@ class Service::Topics {
       searcher_.emplace([this](const PlanBook::Work& work, bool more) {
         shell_.post([this, work, more] { on_searched(work, more); });
       });
-    // In lockstep nothing waits for the clock of a wall: all is found at once.
-    shell.on_tick(std::chrono::milliseconds(20), [this](Time) {
-      if (shell_.lockstep()) search_all();
+    shell.on_tick(period, [this](Time now) {
+      if (shell_.lockstep()) search_in_lockstep(now);
       go_on();
     });
   }
@@ -107,13 +111,29 @@ class Service::Topics {
  private:
   void on_detection(const v1::ObjectDetection& message, const dds::SampleInfo& info) {
     if (info.gone) return forget(message.track());
-    const auto taken = seen_from_message(message).and_then(
-        [&](const SeenObject& seen) { return book_.observe(seen); });
+    const auto seen = seen_from_message(message);
+    if (!seen) return shell_.status().drop(seen.error().what);
+    const auto taken = book_.observe(*seen);
     if (!taken) shell_.status().drop(taken.error().what);
+    tell_whether(*seen, taken ? std::string() : taken.error().what);
+  }
+
+  /// Who waits for grasps hears that none are looked for, and that they are after all. What is
+  /// planned for stays so while it is seen: the hand that takes it hides and tilts it.
+  void tell_whether(const SeenObject& seen, const std::string& refusal) {
+    const auto told = refusals_.find(seen.track);
+    const bool is_new = told == refusals_.end();
+    if (is_new ? refusals_.size() >= max_told : told->second.empty() || told->second == refusal)
+      return;
+    refusals_[seen.track] = refusal;
+    // Of what is planned for, the plan is the first word.
+    if (is_new && refusal.empty()) return;
+    publish({seen, Plan{.complete = !refusal.empty(), .reason = refusal}});
   }
 
   void forget(std::uint32_t track) {
     book_.remove(track);
+    refusals_.erase(track);
     if (told_.erase(track) == 0) return;
     v1::GraspCandidates gone;
     gone.hand(hand_name_);
@@ -128,13 +148,17 @@ class Service::Topics {
     go_on();
   }
 
-  void search_all() {
-    while (const auto work = book_.next()) {
-      const bool more = work->search->try_next([](std::size_t count, const auto& attempt) {
-        share_work(count, 0, attempt, [](std::size_t) {});
-      });
-      book_.searched(*work, more);
-    }
+  /// A round a period of the lab's clock: when something is known follows from that clock alone,
+  /// and a cycle takes seconds at most, however long a search.
+  void search_in_lockstep(Time now) {
+    if (now < next_round_) return;
+    next_round_ = now + period;
+    const auto work = book_.next();
+    if (!work) return;
+    const bool more = work->search->try_next([](std::size_t count, const auto& attempt) {
+      share_work(count, 0, attempt, [](std::size_t) {});
+    });
+    book_.searched(*work, more);
   }
 
   /// Tells what is new, and searches on.
@@ -164,7 +188,9 @@ class Service::Topics {
   std::string hand_name_;
   service::Shell::Output<v1::GraspCandidates> output_;
   std::set<std::uint32_t> told_;
+  std::map<std::uint32_t, std::string> refusals_;  // by track, why; empty: it is planned for
   std::uint64_t sequence_number_ = 0;
+  Time next_round_;
   std::optional<Searcher> searcher_;  // last: it uses all of the above
 };
 
@@ -184,7 +210,8 @@ Expected<std::unique_ptr<Service>> Service::create(service::Shell& shell) {
   auto bodies = grasping::CatalogueBodies::create(*catalogue);
   if (!bodies) return tl::unexpected(bodies.error());
   auto kept = std::make_unique<const model::HandModel>(std::move(*hand));
-  const auto state = state_directory();
+  // In lockstep the same is answered on every machine, whatever this one has searched before.
+  const auto state = shell.lockstep() ? std::filesystem::path() : state_directory();
   PlanStore store =
       plan_store(state.empty() ? state : state / "grasps" / kept->name(), folder, *kept);
   log::info("grasps of {}", kept->name());

@@ -137,6 +137,27 @@ function shards() {
   assert.deepEqual(claimed.spec.accessModes, ["ReadWriteMany"]);
 }
 
+/** Who asks for planned grasps gets them in the same lab; whoever moves a hand goes first, and what was
+    found outlives its pod. */
+function planned(overlay) {
+  const list = objects(root, overlay);
+  const containers = pods(list).flatMap((pod) => pod.spec.containers.map((one) => ({ ...one, pod })));
+  const running = (program) => containers.find((one) => one.command.includes(program));
+  const planner = running("prehend-planner"), mapping = running("prehend-mapping");
+  assert.ok(planner && mapping, `${overlay} has no planner`);
+  assert.deepEqual(planner.envFrom, mapping.envFrom, overlay);
+  const share = (one) => parseInt(one.resources.requests.cpu);
+  for (const other of containers.filter((one) => one !== planner))
+    assert.ok(share(planner) * 10 < share(other), `${overlay}: ${other.name} waits for the planner`);
+  const folder = planner.env.find((one) => one.name === "STATE_DIRECTORY").value;
+  const mount = planner.volumeMounts.find((one) => one.mountPath === folder).name;
+  const claim = planner.pod.spec.volumes.find((one) => one.name === mount).persistentVolumeClaim.claimName;
+  assert.ok(list.some((o) => o.kind === "PersistentVolumeClaim" && o.metadata.name === claim), overlay);
+  const keys = mapping.volumeMounts.filter((one) => one.name === "keys").map((one) => one.subPath);
+  const held = planner.volumeMounts.filter((one) => one.name === "keys").map((one) => one.subPath);
+  assert.deepEqual(held, keys.map((role) => role.replace("mapping", "planner")), overlay);
+}
+
 let count = 0;
 for (const overlay of readdirSync(root)) {
   if (!existsSync(`${root}/${overlay}/kustomization.yaml`)) continue;
@@ -161,6 +182,7 @@ for (const overlay of readdirSync(root)) {
   const open = list.filter((o) => o.metadata.name !== "deny-by-default");
   assert.throws(() => shut(overlay, open), "pods without a policy pass");
 }
+for (const overlay of ["planned", "robot-site-planned"]) planned(overlay);
 sites();
 shards();
 assert.ok(count > 10, `only ${count} objects were found`);

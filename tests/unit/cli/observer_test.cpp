@@ -252,24 +252,70 @@ TEST(Observer, OfAnArmTellsTheFastestJointAndHowLongItWasHindered) {
   EXPECT_EQ(arm->out_of_reach, 0.25);
 }
 
+v1::ObjectDetection tracked(std::uint32_t track, const std::string& name, std::int64_t stamp) {
+  v1::ObjectDetection message = detection(name, 0.1 * track, 0, stamp);
+  message.track(track);
+  return message;
+}
+
+v1::GraspCandidates candidates(std::uint32_t track, std::size_t count, bool complete,
+                               std::int64_t stamp, const std::string& reason = "") {
+  v1::GraspCandidates message;
+  message.track(track);
+  message.candidates().resize(count);
+  message.complete(complete);
+  message.stamp_ns(stamp);
+  message.reason(reason);
+  return message;
+}
+
+constexpr std::int64_t second = 1'000'000'000;
+
 // Who waits for plans reaches neither before anything is seen nor while one is looked for.
 TEST(Observer, PlannedIsWhenAllThatIsSeenIs) {
-  const auto planned = [](const std::string& object, bool complete) {
-    v1::GraspCandidates message;
-    message.object(object);
-    message.complete(complete);
-    return message;
-  };
   Observer observer(truth());
   EXPECT_FALSE(observer.planned());
-  observer.hear(detection("Talc", 0.1, 0, 1));
-  observer.hear(detection("Cup", -0.3, 0.2, 1));
-  observer.hear(planned("Talc", true));
+  EXPECT_EQ(observer.unplanned(), "");
+  observer.hear(tracked(1, "Talc", second));
+  observer.hear(tracked(2, "Cup", second));
+  observer.hear(candidates(1, 3, true, second));
   EXPECT_FALSE(observer.planned());
-  observer.hear(planned("Cup", false));
+  observer.hear(candidates(2, 1, false, second));
   EXPECT_FALSE(observer.planned());
-  observer.hear(planned("Cup", true));
+  EXPECT_EQ(observer.unplanned(), "Cup");
+  observer.hear(candidates(2, 1, true, second));
   EXPECT_TRUE(observer.planned());
+  EXPECT_TRUE(observer.without_plan().empty());
+}
+
+// It waited for ever for what the planner refuses.
+TEST(Observer, WhatGetsNoPlanIsNotAwaited) {
+  Observer observer(truth());
+  observer.hear(tracked(1, "Talc", second));
+  observer.hear(candidates(1, 0, true, second, "detection not probable"));
+  EXPECT_FALSE(observer.planned()) << "the next picture may be surer";
+  observer.hear(candidates(1, 0, false, 2 * second));
+  observer.hear(tracked(1, "Talc", 3 * second));
+  EXPECT_FALSE(observer.planned()) << "it was: one is looked for after all";
+  observer.hear(candidates(1, 0, true, second, "does not fit into the hand"));
+  EXPECT_TRUE(observer.planned());
+  ASSERT_EQ(observer.without_plan().size(), 1u);
+  EXPECT_EQ(observer.without_plan().front(),
+            std::pair(std::string("Talc"), std::string("does not fit into the hand")));
+}
+
+// Nor for a name under which nothing is seen any more.
+TEST(Observer, WhatIsGoneOrTakenForSomethingElseIsNotAwaited) {
+  Observer observer(truth());
+  observer.hear(tracked(1, "Kitkat", second));
+  observer.hear(tracked(1, "Talc", 2 * second));
+  observer.hear(tracked(2, "Cup", second));
+  observer.hear(candidates(1, 3, true, 2 * second));
+  EXPECT_EQ(observer.unplanned(), "Cup");
+  observer.lost_object(2);
+  EXPECT_TRUE(observer.planned());
+  observer.lost_object(1);
+  EXPECT_FALSE(observer.planned()) << "nothing is there";
 }
 
 }  // namespace

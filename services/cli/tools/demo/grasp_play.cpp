@@ -182,14 +182,23 @@ Expected<void> GraspPlay::put_up() {
   return start_glove(scene_file, truth);
 }
 
-/// Nor before there are grasps for what they see.
+/// Nor before there are grasps for what they see, or it is known that there are none: then the
+/// hand goes as without a plan.
 Expected<void> GraspPlay::await_plans() {
   if (!options_.planned || in(options_.without, "recognition")) return {};
-  return stage_.until(
+  auto planned = stage_.until(
       "planning grasps", [&] { return observer_.planned(); },
-      [] {
-        return Error{"nothing was planned for what is seen", "demo", ""};
+      [&] {
+        const std::string names = observer_.unplanned();
+        return names.empty() ? Error{"nothing is seen that grasps could be planned for", "demo",
+                                     "see that the camera shows an object"}
+                             : Error{"grasps are still searched for " + names, "demo",
+                                     "give it longer with --timeout"};
       });
+  if (planned)
+    for (const auto& [object, reason] : observer_.without_plan())
+      log::info("{}: goes on without a planned grasp: {}", object, reason);
+  return planned;
 }
 
 std::string GraspPlay::missing() const {

@@ -197,7 +197,8 @@ Check check_programs() {
   auto folder = stage::TemporaryFolder::create(false);
   if (!folder) return fault("programs", folder.error().message(), folder.error().hint);
   std::string trouble;
-  for (const char* name : {"glove", "recognition", "mapping", "simulation", "record", "replay"}) {
+  for (const char* name :
+       {"glove", "recognition", "mapping", "planner", "simulation", "record", "replay"}) {
     const fs::path program = program_directory() / (std::string("prehend-") + name);
     const fs::path log = folder->path() / name;
     auto process = stage::Process::start(

@@ -139,7 +139,7 @@ class Run {
     for (const std::string& name : options_.services)
       if (std::none_of(services().begin(), services().end(),
                        [&](const Service& service) { return service.name == name; }))
-        return fail("is no service", name, "glove, recognition, mapping or simulation");
+        return fail("is no service", name, "glove, recognition, mapping, planner or simulation");
     for (const Service& service : services()) {
       const bool asked = std::find(options_.services.begin(), options_.services.end(),
                                    service.name) != options_.services.end();

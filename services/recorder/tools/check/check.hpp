@@ -16,7 +16,8 @@
 namespace prehend::recorder {
 
 /// Roles that `check` runs and compares: services of ours whose answers follow from their inputs.
-inline constexpr std::array checkable{dds::Role::glove, dds::Role::recognition, dds::Role::mapping,
+inline constexpr std::array checkable{dds::Role::glove,      dds::Role::recognition,
+                                      dds::Role::mapping,    dds::Role::planner,
                                       dds::Role::simulation, dds::Role::demonstration};
 
 struct CheckOptions {

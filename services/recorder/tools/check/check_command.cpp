@@ -24,11 +24,11 @@ int check_command(const std::vector<std::string>& texts) {
   options.lab.add_to(app);
   app.add_option("recording", options.file, "an .mcap file")->required();
   app.add_option("--service", options.services,
-                 "only this one, on its recorded inputs: glove, recognition, mapping or\n"
-                 "simulation; repeatable")
+                 "only this one, on its recorded inputs: glove, recognition, mapping, planner\n"
+                 "or simulation; repeatable")
       ->type_size(1)
       ->allow_extra_args(false)
-      ->check(CLI::IsMember({"glove", "recognition", "mapping", "simulation"}));
+      ->check(CLI::IsMember({"glove", "recognition", "mapping", "planner", "simulation"}));
   app.add_option("--tolerances", tolerances, "another table than share/prehend/tolerances.toml");
   app.add_option("--junit", junit, "write the verdict as JUnit XML to this file");
   app.add_flag("--update", rewrite, "write the recording again with the answers of now");
