@@ -60,14 +60,16 @@ Hit hit_round(const model::Shape& shape, const Vector3d& p, const Vector3d& d) {
   const double b = p.x() * d.x() + p.y() * d.y() - rise * d.z() * radius;
   const double c = p.x() * p.x() + p.y() * p.y() - radius * radius;
   const double discriminant = b * b - a * c;
-  if (std::abs(a) > 1e-12 && discriminant >= 0)
-    for (const double root : {-std::sqrt(discriminant), std::sqrt(discriminant)}) {
-      const double t = (-b + root) / a, z = p.z() + t * d.z(), r = radius + rise * t * d.z();
-      if (t <= 1e-6 || t >= hit.t || std::abs(z) > half || r < 0) continue;
+  if (std::abs(a) > 1e-12 && discriminant >= 0) {
+    // Of both roots the one where the ray goes in, which no mirror image of a cone counts for.
+    const double t = (-b - std::sqrt(discriminant)) / a;
+    const double z = p.z() + t * d.z(), r = radius + rise * t * d.z();
+    if (t > 1e-6 && std::abs(z) <= half && r > 0) {
       hit.t = t;
       hit.normal_O =
           Vector3d(p.x() + t * d.x(), p.y() + t * d.y(), -rise * r) / (r * std::hypot(1, rise));
     }
+  }
   if (std::abs(d.z()) > 1e-12) {
     const double end = d.z() > 0 ? -half : half, r = model::radius_at(shape, end);
     const double t = (end - p.z()) / d.z();
