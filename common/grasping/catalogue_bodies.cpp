@@ -9,7 +9,7 @@ namespace {
 
 constexpr double density = 300;  // kg/m³, of what is in no catalogue: things are hollow
 constexpr double lightest = 0.03, heaviest = 0.6;  // kg
-constexpr double other_size = 0.25;  // share: what is seen so much larger is no longer this mesh
+constexpr double other_size = 0.25;  // share: what is seen so much larger is not this mesh
 
 }  // namespace
 
@@ -24,7 +24,7 @@ Expected<CatalogueBodies> CatalogueBodies::create(const model::Catalogue& catalo
     if (object.mesh) {
       auto solid = solid_of(*object.mesh);
       if (!solid) return fail(solid.error().what, object.name, solid.error().hint);
-      body.mesh = std::move(solid->solid);
+      body.mesh = std::move(*solid);
     }
     made.bodies_.emplace(object.name, std::move(body));
   }
@@ -49,9 +49,9 @@ Body CatalogueBodies::seen(const std::string& name, const model::Shape& shape) c
   body.mass = known->mass;
   body.material = known->material;
   if (!known->mesh || known->shape.kind != shape.kind) return body;
-  const double factor = shape.size.norm() / known->shape.size.norm();
-  if (std::abs(factor - 1) > other_size) return body;
-  body.mesh = scaled(*known, factor).mesh;
+  const Eigen::Vector3d factor =
+      model::half_extents(shape).cwiseQuotient(model::half_extents(known->shape));
+  if (((factor.array() - 1).abs() <= other_size).all()) body.mesh = scaled(*known->mesh, factor);
   return body;
 }
 

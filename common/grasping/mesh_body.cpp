@@ -1,7 +1,7 @@
 #include "common/grasping/mesh_body.hpp"
 
 #include <algorithm>
-#include <cmath>
+#include <utility>
 
 #include "common/analysis/wrench_space.hpp"
 #include "common/grasping/surface.hpp"
@@ -24,33 +24,25 @@ Eigen::Matrix3d cone_inertia(const model::Shape& cone) {
   return Vector3d(across, across, about_axis).asDiagonal();
 }
 
-}  // namespace
-
-Expected<MeshSolid> solid_of(const model::Mesh& mesh, const PartsOptions& options) {
-  const auto solid = model::measure(mesh);
-  if (!solid) return tl::unexpected(solid.error());
-  const Eigen::AlignedBox3d box = model::bounds(mesh);
-  const Vector3d middle = box.center();
-  auto parts = convex_parts(model::moved(mesh, -middle), options);
-  if (!parts) return tl::unexpected(parts.error());
+/// How far the corner that is farthest from the centre of mass is, m.
+double farthest(const SolidMesh& mesh) {
   double radius = 0;
-  for (const Vector3d& vertex : mesh.vertices)
-    radius = std::max(radius, (vertex - solid->centre).norm());
-  return MeshSolid{{std::move(*parts), solid->centre - middle, solid->inertia, radius},
-                   box.sizes()};
+  for (const auto& part : mesh.parts.parts)
+    for (const Vector3d& corner : part) radius = std::max(radius, (corner - mesh.p_OC).norm());
+  return radius;
 }
 
-Expected<Body> load_body(const std::string& name, const std::filesystem::path& file, double mass,
-                         const std::string& material, double scale, const PartsOptions& options) {
-  const auto mesh = model::load_mesh(file, scale);
-  if (!mesh) return tl::unexpected(mesh.error());
-  auto made = solid_of(*mesh, options);
-  if (!made) return fail(made.error().what, file.string(), made.error().hint);
-  return Body{.name = name,
-              .shape = {model::ShapeKind::box, made->size},
-              .mass = mass,
-              .material = material,
-              .mesh = std::move(made->solid)};
+}  // namespace
+
+Expected<SolidMesh> solid_of(const model::Mesh& mesh, const PartsOptions& options) {
+  const auto solid = model::measure(mesh);
+  if (!solid) return tl::unexpected(solid.error());
+  const Vector3d middle = model::bounds(mesh).center();
+  auto parts = convex_parts(model::moved(mesh, -middle), options);
+  if (!parts) return tl::unexpected(parts.error());
+  SolidMesh made{std::move(*parts), solid->centre - middle, solid->inertia, 0};
+  made.radius = farthest(made);
+  return made;
 }
 
 SolidMesh cone_mesh(const model::Shape& cone) {
@@ -62,14 +54,22 @@ SolidMesh cone_mesh(const model::Shape& cone) {
   return made;
 }
 
+SolidMesh scaled(SolidMesh mesh, const Vector3d& factor) {
+  for (auto& part : mesh.parts.parts)
+    for (Vector3d& corner : part) corner = corner.cwiseProduct(factor);
+  mesh.p_OC = mesh.p_OC.cwiseProduct(factor);
+  // Second moments scale along their axes; inertia is the trace of them less themselves.
+  const Eigen::Matrix3d one = Eigen::Matrix3d::Identity();
+  Eigen::Matrix3d moments = 0.5 * mesh.inertia_C.trace() * one - mesh.inertia_C;
+  moments = factor.asDiagonal() * moments * factor.asDiagonal();
+  mesh.inertia_C = moments.trace() * one - moments;
+  mesh.radius = farthest(mesh);
+  return mesh;
+}
+
 Body scaled(Body body, double factor) {
   body.shape.size *= factor;
-  if (!body.mesh) return body;
-  for (auto& part : body.mesh->parts.parts)
-    for (Vector3d& corner : part) corner *= factor;
-  body.mesh->p_OC *= factor;
-  body.mesh->inertia_C *= factor * factor;
-  body.mesh->radius *= factor;
+  if (body.mesh) body.mesh = scaled(std::move(*body.mesh), Vector3d::Constant(factor));
   return body;
 }
 

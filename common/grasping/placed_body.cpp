@@ -11,7 +11,7 @@ namespace prehend::grasping {
 Expected<void> check_body(const Body& body, const Pose& X_WO) {
   if (!model::is_valid(body.shape)) return fail("shape is not valid", body.name);
   if (body.mesh && (body.mesh->parts.parts.empty() || !body.mesh->inertia_C.allFinite()))
-    return fail("mesh is not valid", body.name, "see load_body");
+    return fail("mesh is not valid", body.name, "see solid_of");
   if (!std::isfinite(body.mass) || body.mass < 0) return fail("mass must be 0 or more", body.name);
   if (!is_finite(X_WO)) return fail("pose must be finite", body.name);
   if (body.friction && !(*body.friction >= 0 && std::isfinite(*body.friction)))

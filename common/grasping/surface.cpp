@@ -46,8 +46,10 @@ void install_friction() {
 std::vector<Eigen::Vector3d> cone_corners(const model::Shape& cone) {
   constexpr int corners = 48;
   // The wall moves inwards by the margin; where it would pass the axis, the cone ends there.
-  const double rise = model::slope(cone), inwards = collision_margin * std::hypot(1, rise);
-  const double half = 0.5 * cone.size.z() - collision_margin;
+  // A quarter of its half extents at most: of what is tiny or flat something is left.
+  const double margin = std::min(collision_margin, 0.25 * model::half_extents(cone).minCoeff());
+  const double rise = model::slope(cone), inwards = margin * std::hypot(1, rise);
+  const double half = 0.5 * cone.size.z() - margin;
   std::vector<Eigen::Vector3d> points;
   for (const double end : {-half, half}) {
     double z = end, radius = model::radius_at(cone, end) - inwards;

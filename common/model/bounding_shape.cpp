@@ -1,7 +1,7 @@
-#include <algorithm>
-#include <cmath>
+#include "common/model/bounding_shape.hpp"
 
-#include "common/model/mesh.hpp"
+#include <algorithm>
+#include <vector>
 
 namespace prehend::model {
 namespace {
@@ -14,7 +14,7 @@ struct Place {
   double radius, share;
 };
 
-/// The least cone with that radius below; none that is sensible: nothing.
+/// Of the least cone with that radius below; `widest` if it would have to be wider.
 double radius_above(const std::vector<Place>& places, double below, double widest) {
   double above = 0;
   for (const Place& place : places) {

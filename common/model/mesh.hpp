@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "common/base/error.hpp"
-#include "common/model/shape.hpp"
 
 namespace prehend::model {
 
@@ -37,9 +36,5 @@ Mesh moved(Mesh mesh, const Eigen::Vector3d& by);
 
 /// The box that bounds it along its axes, m. The mesh has vertices.
 Eigen::AlignedBox3d bounds(const Mesh& mesh);
-
-/// Of the boxes, spheres, upright cylinders and cones about the middle of that box that hold the
-/// whole mesh, the one of least volume; a box unless another is clearly smaller.
-Shape bounding_shape(const Mesh& mesh);
 
 }  // namespace prehend::model

@@ -55,6 +55,22 @@ TEST_F(Benchmark, JudgesAnotherProcessInLockstepAsItsOwnMapping) {
   EXPECT_NE(results("direct"), results("mine"));
 }
 
+TEST_F(Benchmark, JudgesByObjectsThatNobodyHasTrainedWith) {
+  std::ofstream(in("beakers.toml"))
+      << "[[object]]\nname = \"Beaker\"\nshape = \"cone\"\nsize = [0.03, 0.04, 0.13]\n"
+         "mass = 0.15\nmaterial = \"plastic\"\n";
+  const Answer judged = benchmark({"--trials", "2", "--objects", in("beakers.toml"), "--mapping",
+                                   "direct,intelligent+placement", "--out", in("beakers")});
+  ASSERT_EQ(judged.exit_code, 0) << judged.log;
+  std::ifstream csv(in("beakers") + "/benchmark.csv");
+  std::string line;
+  std::getline(csv, line);
+  int rows = 0;
+  for (; std::getline(csv, line); ++rows) EXPECT_NE(line.find("Beaker"), std::string::npos);
+  EXPECT_EQ(rows, 4);
+  EXPECT_EQ(benchmark({"--objects", in("absent.toml")}).exit_code, 2);
+}
+
 TEST_F(Benchmark, JudgesByTakesFromFilesAsByThoseItMakes) {
   ASSERT_EQ(benchmark({"--trials", "2", "--seed", "5", "--export", in("takes")}).exit_code, 0);
   const Answer made = benchmark(

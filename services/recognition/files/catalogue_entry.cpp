@@ -9,6 +9,27 @@
 
 namespace prehend::recognition {
 
+namespace {
+
+/// By the catalogue of this text, if it is one.
+Expected<void> replace(const std::filesystem::path& file, const std::string& text) {
+  const std::filesystem::path fresh = file.string() + ".new";
+  std::ofstream out(fresh);
+  out << text;
+  out.close();
+  if (!out) return fail("cannot be written", fresh.string(), "is the place writable?");
+  std::error_code error;
+  if (const auto after = model::Catalogue::load(fresh); !after) {
+    std::filesystem::remove(fresh, error);
+    return fail(after.error().what, file.string());
+  }
+  std::filesystem::rename(fresh, file, error);
+  if (error) return fail(error.message(), file.string(), "is the place writable?");
+  return {};
+}
+
+}  // namespace
+
 model::CatalogueObject described_by(const std::string& name, const model::Shape& shape, double mass,
                                     const std::vector<TrainingView>& views) {
   std::vector<Eigen::Vector3f> samples;
@@ -48,15 +69,9 @@ Expected<void> append_to_catalogue(const std::filesystem::path& file,
       "mass = {:.3f}\nmaterial = \"{}\"\n",
       object.name, model::to_string(object.shape.kind), size.x(), size.y(), size.z(), object.mass,
       object.material);
-  std::error_code error;
-  // Beside the real file, which may be reached through a link.
-  const auto real = std::filesystem::canonical(file, error);
-  if (mesh) {
-    const std::string kept = object.name + mesh->file.extension().string();
-    std::filesystem::copy_file(mesh->file, real.parent_path() / kept, error);
-    if (error) return fail(error.message(), kept, "is there a mesh of that name already?");
-    text += fmt::format("mesh = \"{}\"\nmesh_scale = {}\n", kept, mesh->scale);
-  }
+  if (mesh)
+    text += fmt::format("mesh = \"{}\"\nmesh_scale = {}\n",
+                        object.name + mesh->file.extension().string(), mesh->scale);
   text += "[object.appearance]\ncolours = [";
   for (std::size_t i = 0; i < object.appearance.colours.size(); ++i) {
     const Eigen::Vector3d& c = object.appearance.colours[i];
@@ -64,18 +79,16 @@ Expected<void> append_to_catalogue(const std::filesystem::path& file,
   }
   text += fmt::format("]\npattern = \"{}\"\nseed = {}\n", object.appearance.pattern,
                       object.appearance.seed);
-  const std::filesystem::path fresh = real.string() + ".new";
-  std::ofstream out(fresh);
-  out << text;
-  out.close();
-  if (!out) return fail("cannot be written", fresh.string(), "is the place writable?");
-  if (const auto after = model::Catalogue::load(fresh); !after) {
-    std::filesystem::remove(fresh, error);
-    return fail(after.error().what, object.name);
-  }
-  std::filesystem::rename(fresh, real, error);
-  if (error) return fail(error.message(), real.string(), "is the place writable?");
-  return {};
+  // Beside the real file, which may be reached through a link.
+  std::error_code error;
+  const auto real = std::filesystem::canonical(file, error);
+  if (!mesh) return replace(real, text);
+  const auto kept = real.parent_path() / (object.name + mesh->file.extension().string());
+  std::filesystem::copy_file(mesh->file, kept, error);
+  if (error) return fail(error.message(), kept.string(), "is there a mesh of that name already?");
+  auto replaced = replace(real, text);
+  if (!replaced) std::filesystem::remove(kept, error);
+  return replaced;
 }
 
 }  // namespace prehend::recognition

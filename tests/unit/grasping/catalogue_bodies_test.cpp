@@ -40,6 +40,9 @@ TEST(CatalogueBodies, AMeshIsThereAndWhatIsSeenOfItIsAsLargeAsItIsSeen) {
   ASSERT_TRUE(larger.mesh);
   EXPECT_EQ(larger.shape, seen);
   EXPECT_NEAR(torque_scale(larger) / torque_scale(*wedge), 1.1, 1e-9);
+  // Higher and narrower: the mesh, too, so that it stands where its shape does.
+  seen.size = wedge->shape.size.cwiseProduct(Eigen::Vector3d(0.9, 0.9, 1.2));
+  EXPECT_NEAR(bodies.seen("Wedge", seen).mesh->p_OC.z() / wedge->mesh->p_OC.z(), 1.2, 1e-9);
   seen.size *= 2;
   EXPECT_FALSE(bodies.seen("Wedge", seen).mesh) << "that is something else";
   EXPECT_FALSE(bodies.seen("Wedge", {model::ShapeKind::sphere, wedge->shape.size}).mesh);

@@ -10,6 +10,7 @@
 #include <limits>
 
 #include "common/grasping/mesh_body.hpp"
+#include "common/model/bounding_shape.hpp"
 #include "tests/support/hands.hpp"
 
 namespace {
@@ -197,21 +198,31 @@ const model::HandModel& barrett() {
   return test::hand("barrett");
 }
 
+/// A body of 200 g with this mesh.
+Body meshed(const Mesh& mesh, const std::string& material) {
+  const auto solid = solid_of(mesh);
+  EXPECT_TRUE(solid) << solid.error().message();
+  return {.name = "mesh",
+          .shape = {model::ShapeKind::box, model::bounds(mesh).sizes()},
+          .mass = 0.2,
+          .material = material,
+          .mesh = *solid};
+}
+
 TEST_F(MeshFile, ABodyRestsOnTheTableWithItsHollowFree) {
-  const auto body = load_body("angle", obj(angle()), 0.2, "wood");
-  ASSERT_TRUE(body) << body.error().message();
-  EXPECT_GT(body->mesh->parts.parts.size(), 1u);
+  const Body body = meshed(angle(), "wood");
+  EXPECT_GT(body.mesh->parts.parts.size(), 1u);
   auto world =
       std::move(*World::create(barrett(), make_pose(Vector3d(0, 0, 1)), Eigen::VectorXd::Zero(4)));
   // Lying flat; its centre of mass is half its height above the table.
-  ASSERT_TRUE(world->add_body(*body, make_pose(Vector3d(0, 0, 0.0155))));
+  ASSERT_TRUE(world->add_body(body, make_pose(Vector3d(0, 0, 0.0155))));
   // A ball that lies in the hollow: a hull would push it out.
   const Vector3d hollow = Vector3d(0.045, 0.045, 0.01) - Vector3d(0.04, 0.04, 0.015);
   const Body ball{"ball", {model::ShapeKind::sphere, Vector3d::Constant(0.01)}, 0.05, "wood", {}};
   ASSERT_TRUE(world->add_body(ball, make_pose(Vector3d(hollow.x(), hollow.y(), 0.0105))));
   for (int i = 0; i < 1000; ++i) world->step();
   const BodyMotion motion = world->body_motion(0);
-  EXPECT_GT(body->mesh->p_OC.norm(), 0.01);                   // which is not the middle of its box
+  EXPECT_GT(body.mesh->p_OC.norm(), 0.01);                    // which is not the middle of its box
   EXPECT_NEAR(motion.X_WO.translation().z(), 0.015, 1.5e-3);  // the margin is 0.5 mm
   EXPECT_LT(motion.X_WO.translation().head<2>().norm(), 1e-3);
   EXPECT_LT(angle_between(motion.X_WO.linear(), Eigen::Matrix3d::Identity()), 0.02);
@@ -221,15 +232,14 @@ TEST_F(MeshFile, ABodyRestsOnTheTableWithItsHollowFree) {
 TEST_F(MeshFile, ABoxMeshMovesAsTheBoxDoes) {
   // Spinning freely about all axes: the principal axes and moments must be the same.
   const Vector3d size(0.04, 0.07, 0.11);
-  const auto meshed = load_body("mesh", obj(box(size.x(), size.y(), size.z())), 0.2, "wood");
-  ASSERT_TRUE(meshed);
+  const Body mesh = meshed(box(size.x(), size.y(), size.z()), "wood");
   const Body plain{"box", {model::ShapeKind::box, size}, 0.2, "wood", {}};
-  EXPECT_NEAR(torque_scale(*meshed), torque_scale(plain), 1e-8);
+  EXPECT_NEAR(torque_scale(mesh), torque_scale(plain), 1e-8);
   const Pose start =
       make_pose(Vector3d(0.3, 0, 0.5),
                 Eigen::AngleAxisd(0.4, Vector3d(1, 1, 0).normalized()).toRotationMatrix());
   std::vector<Pose> ends;
-  for (const Body& body : {*meshed, plain}) {
+  for (const Body& body : {mesh, plain}) {
     auto world = std::move(
         *World::create(barrett(), make_pose(Vector3d(0, 0, 2)), Eigen::VectorXd::Zero(4)));
     ASSERT_TRUE(world->add_body(body, start));
@@ -241,7 +251,6 @@ TEST_F(MeshFile, ABoxMeshMovesAsTheBoxDoes) {
 
 /// A cone as a mesh of that many corners about its axis, as a cone stands.
 Mesh cone_of(const model::Shape& cone, int corners) {
-  std::vector<Vector3d> low, high;
   Mesh made;
   for (const double end : {-0.5, 0.5})
     for (int i = 0; i < corners; ++i) {
@@ -267,9 +276,9 @@ TEST_F(MeshFile, AConeIsWhatItsMeshIs) {
   const SolidMesh cone = cone_mesh(cup);
   const auto solid = solid_of(mesh);
   ASSERT_TRUE(solid) << solid.error().message();
-  EXPECT_LT((solid->solid.p_OC - cone.p_OC).norm(), 1e-5);
-  EXPECT_LT((solid->solid.inertia_C - cone.inertia_C).norm() / cone.inertia_C.norm(), 1e-3);
-  EXPECT_NEAR(solid->solid.radius, cone.radius, 1e-6);
+  EXPECT_LT((solid->p_OC - cone.p_OC).norm(), 1e-5);
+  EXPECT_LT((solid->inertia_C - cone.inertia_C).norm() / cone.inertia_C.norm(), 1e-3);
+  EXPECT_NEAR(solid->radius, cone.radius, 1e-6);
   // What bounds it is found again.
   const model::Shape found = model::bounding_shape(mesh);
   EXPECT_EQ(found.kind, model::ShapeKind::cone);
@@ -298,15 +307,38 @@ TEST_F(MeshFile, AConeStandsAndAToppledOneRollsOnItsSide) {
 }
 
 TEST_F(MeshFile, AScaledBodyIsTheBodyOfAScaledMesh) {
-  const auto body = load_body("angle", obj(angle()), 0.2, "wood");
-  const auto twice = load_body("angle", obj(angle()), 0.2, "wood", 2);
-  ASSERT_TRUE(body && twice);
-  const Body large = scaled(*body, 2);
-  EXPECT_LT((large.shape.size - twice->shape.size).norm(), 1e-9);
-  EXPECT_LT((large.mesh->p_OC - twice->mesh->p_OC).norm(), 1e-9);
-  EXPECT_LT((large.mesh->inertia_C - twice->mesh->inertia_C).norm(), 1e-9);
-  EXPECT_NEAR(torque_scale(large), torque_scale(*twice), 1e-9);
-  EXPECT_EQ(large.mesh->parts.parts.size(), twice->mesh->parts.parts.size());
+  for (const Vector3d& factor : {Vector3d(2, 2, 2), Vector3d(0.9, 1.1, 1.2)}) {
+    Mesh larger = angle();
+    for (Vector3d& vertex : larger.vertices) vertex = vertex.cwiseProduct(factor);
+    const auto expected = solid_of(larger), small = solid_of(angle());
+    ASSERT_TRUE(expected && small);
+    const SolidMesh made = scaled(*small, factor);
+    EXPECT_LT((made.p_OC - expected->p_OC).norm(), 1e-9);
+    EXPECT_LT((made.inertia_C - expected->inertia_C).norm(), 1e-9);
+    EXPECT_NEAR(made.radius, expected->radius, 1e-9);
+    EXPECT_EQ(made.parts.parts.size(), expected->parts.parts.size());
+  }
+  const Body body = meshed(angle(), "wood"), large = scaled(body, 2);
+  EXPECT_EQ(large.shape.size, 2 * body.shape.size);
+  EXPECT_NEAR(torque_scale(large), 2 * torque_scale(body), 1e-9);
+}
+
+// A detection may say anything: a cone of a tenth of a millimetre made corners that were no
+// numbers.
+TEST_F(MeshFile, WhateverAConeIsItsCornersLieWithinIt) {
+  for (const double below : {0.0, 1e-7, 1e-4, 4e-4, 0.01, 0.5})
+    for (const double above : {0.0, 1e-4, 4e-4, 0.01, 0.5})
+      for (const double height : {1e-7, 1e-4, 8e-4, 0.002, 0.1, 1.0}) {
+        const model::Shape cone{model::ShapeKind::cone, {below, above, height}};
+        if (!model::is_valid(cone)) continue;
+        SCOPED_TRACE(cone.size.transpose());
+        const auto corners = cone_mesh(cone).parts.parts.front();
+        EXPECT_GE(corners.size(), 49u) << "one end at least is wide";
+        for (const Vector3d& corner : corners) {
+          ASSERT_TRUE(corner.allFinite());
+          EXPECT_LE(model::signed_distance(cone, corner), 1e-9);
+        }
+      }
 }
 
 }  // namespace

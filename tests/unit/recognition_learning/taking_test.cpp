@@ -9,6 +9,7 @@
 #include <iterator>
 
 #include "common/base/file_text.hpp"
+#include "common/model/bounding_shape.hpp"
 #include "common/model/mesh.hpp"
 #include "services/recognition/core/rendering/renderer.hpp"
 #include "services/recognition/core/rendering/strangers.hpp"
@@ -154,6 +155,11 @@ TEST_F(Table, AMeshComesWithItsObject) {
   EXPECT_EQ(imagined("Wedge", object.shape, 0.1).appearance.colours, object.appearance.colours);
   const auto added = append_to_catalogue(catalogue, object, MeshFile{mesh, 0.001});
   ASSERT_TRUE(added) << added.error().message();
+  model::CatalogueObject odd = object;
+  odd.name = "no\"name";
+  EXPECT_FALSE(append_to_catalogue(catalogue, odd, MeshFile{mesh, 0.001}));
+  EXPECT_FALSE(std::filesystem::exists(folder / "no\"name.obj"))
+      << "what is refused leaves nothing";
   std::filesystem::remove_all(folder / "elsewhere");
   const auto after = model::Catalogue::load(catalogue);
   ASSERT_TRUE(after) << after.error().message();

@@ -57,7 +57,8 @@ struct Arguments {
         ->capture_default_str();
     app.add_option("--hand", hand, "kind of robot hand; default: the lab's");
     app.add_option("--objects", objects,
-                   "a catalogue of other objects than those that the hand has learnt")
+                   "a catalogue of other objects than those that the hand has learnt; of\n"
+                   "meshes the shape that bounds them counts")
         ->check(CLI::ExistingFile);
     auto* folder = app.add_option("--takes", takes, "a folder of takes that --export wrote");
     app.add_option("--trials", trials, "takes that are made, where no folder is given")

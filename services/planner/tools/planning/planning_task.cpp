@@ -27,9 +27,11 @@ Expected<std::vector<Body>> catalogue_bodies() {
   const auto catalogue =
       model::Catalogue::load(share_directory() / "models" / "objects" / "catalogue.toml");
   if (!catalogue) return tl::unexpected(catalogue.error());
+  const auto made = grasping::CatalogueBodies::create(*catalogue);
+  if (!made) return tl::unexpected(made.error());
   std::vector<Body> bodies;
   for (const model::CatalogueObject& object : catalogue->objects())
-    bodies.push_back(grasping::primitive_of(object));
+    bodies.push_back(*made->find(object.name));
   return bodies;
 }
 

@@ -15,6 +15,7 @@
 #include "common/base/log.hpp"
 #include "common/dds/participant.hpp"
 #include "common/dds/topics.hpp"
+#include "common/model/bounding_shape.hpp"
 #include "common/model/mesh.hpp"
 #include "common/service/arguments.hpp"
 #include "common/service/membership.hpp"
@@ -195,12 +196,12 @@ Expected<TrainingClass> take_views(const AddArguments& arguments, const Next& ne
 
 /// From a camera, or as it would look.
 Expected<TrainingClass> views_of(const AddArguments& arguments, const service::Config& config,
-                                 const model::CatalogueObject& imagined) {
+                                 const model::CatalogueObject& drawn) {
   if (arguments.source == rendered) {
     const auto camera = configured_camera(config);
     if (!camera) return tl::unexpected(camera.error());
-    return TrainingClass{arguments.name, training_views(Renderer({imagined}), imagined, *camera,
-                                                        arguments.views, 1)};
+    return TrainingClass{arguments.name,
+                         training_views(Renderer({drawn}), drawn, *camera, arguments.views, 1)};
   }
   const bool by_topic = arguments.source.empty() || arguments.source == topic_camera().name;
   const auto next = by_topic ? from_topic(config) : from_camera(config, arguments.source);
