@@ -4,6 +4,7 @@
 #include <memory>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "common/base/error.hpp"
@@ -33,6 +34,9 @@ struct CatalogueObject {
 /// The objects that the lab knows, from models/objects/catalogue.toml.
 class Catalogue {
  public:
+  Catalogue() = default;
+  /// Of names that differ.
+  explicit Catalogue(std::vector<CatalogueObject> objects) : objects_(std::move(objects)) {}
   static Expected<Catalogue> load(const std::filesystem::path& file);
 
   const std::vector<CatalogueObject>& objects() const { return objects_; }

@@ -5,6 +5,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <charconv>
 #include <chrono>
 #include <filesystem>
 #include <iostream>
@@ -25,6 +26,7 @@
 #include "services/mapping/tools/benchmark/own_by_messages.hpp"
 #include "services/mapping/tools/benchmark/people.hpp"
 #include "services/mapping/tools/benchmark/take_file.hpp"
+#include "services/mapping/tools/judging/drawn_objects.hpp"
 #include "services/mapping/tools/judging/planned_grasps.hpp"
 #include "services/mapping/tools/judging/real_reach.hpp"
 #include "services/mapping/tools/judging/summary_json.hpp"
@@ -57,9 +59,8 @@ struct Arguments {
         ->capture_default_str();
     app.add_option("--hand", hand, "kind of robot hand; default: the lab's");
     app.add_option("--objects", objects,
-                   "a catalogue of other objects than those that the hand has learnt; of\n"
-                   "meshes the shape that bounds them counts")
-        ->check(CLI::ExistingFile);
+                   "a catalogue of other objects than those that the hand has learnt (of meshes the\n"
+                   "shape that bounds them counts), or drawn:N: N of all shapes, drawn from the seed");
     auto* folder = app.add_option("--takes", takes, "a folder of takes that --export wrote");
     app.add_option("--trials", trials, "takes that are made, where no folder is given")
         ->check(CLI::Range(1, 100'000))
@@ -155,12 +156,25 @@ Expected<std::vector<RobotGrasp>> grasps_of(const model::HandModel& hand, const 
       [](const Error&) {}, Trials::quick());
 }
 
+Expected<model::Catalogue> objects_of(const Arguments& arguments) {
+  constexpr std::string_view drawn = "drawn:";
+  if (arguments.objects.starts_with(drawn)) {
+    int count = 0;
+    const std::string_view text = std::string_view(arguments.objects).substr(drawn.size());
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), count);
+    if (error != std::errc{} || end != text.data() + text.size() || count < 1 || count > 10'000)
+      return wrong_use("is no number of objects, 1 to 10000", arguments.objects, "drawn:200");
+    return drawn_objects(count, arguments.seed);
+  }
+  return model::Catalogue::load(
+      arguments.objects.empty() ? share_directory() / "models" / "objects" / "catalogue.toml"
+                                : std::filesystem::path(arguments.objects));
+}
+
 Expected<Judged> load(const Arguments& arguments, const std::string& name) {
   auto hand = model::HandModel::load(model::hand_directory(name));
   if (!hand) return tl::unexpected(hand.error());
-  auto catalogue = model::Catalogue::load(
-      arguments.objects.empty() ? share_directory() / "models" / "objects" / "catalogue.toml"
-                                : std::filesystem::path(arguments.objects));
+  auto catalogue = objects_of(arguments);
   if (!catalogue) return tl::unexpected(catalogue.error());
   const auto places = ready_places(name, *hand, Needs::model_and_grasps);
   if (!places) return tl::unexpected(places.error());
