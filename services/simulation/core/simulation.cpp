@@ -14,10 +14,16 @@ constexpr double noticed = 0.005;      // m, by which a sighting must differ to 
 constexpr double noticed_turn = 0.05;  // rad
 constexpr double in_hand = 0.005;      // m, of the hand from what it may hold
 constexpr int max_bodies = 32;
+constexpr Duration look = std::chrono::milliseconds(100);  // at what the hand may knock over
 const Duration max_jump = std::chrono::seconds(60);  // of the lockstep clock
 
 /// Behind and above the table's middle, where nothing stands.
 const Pose resting_place = make_pose(Vector3d(0, -0.4, 0.6));
+
+bool differ(const Pose& a, const Pose& b) {
+  return (a.translation() - b.translation()).norm() > noticed ||
+         angle_between(a.linear(), b.linear()) > noticed_turn;
+}
 
 /// Objects stand upright on the table; of a sighting only place and turn about z are taken.
 Pose standing(const model::Shape& shape, const Pose& X_WO) {
@@ -60,7 +66,22 @@ Expected<void> Simulation::build(const model::Scene& scene,
     if (auto added = world_->add_body(*object, placed.X_WO); !added)
       return tl::unexpected(added.error());
   }
+  stood_.resize(scene.objects.size());
   return {};
+}
+
+void Simulation::put_back() {
+  looked_ = time_;
+  for (std::size_t i = 0; i < stood_.size(); ++i) {
+    const int body = static_cast<int>(i);
+    const Pose now = world_->body_motion(body).X_WO;
+    if (world_->distance_to_hand(body, options_.far_away) < options_.far_away) {
+      if (!stood_[i]) stood_[i] = now;
+    } else if (const auto stood = std::exchange(stood_[i], std::nullopt)) {
+      if (differ(now, *stood) && !placed_.contains(world_->body(body).name))
+        world_->move_body(body, *stood);
+    }
+  }
 }
 
 Expected<bool> Simulation::see(const grasping::Body& body, const Pose& X_WO) {
@@ -69,10 +90,7 @@ Expected<bool> Simulation::see(const grasping::Body& body, const Pose& X_WO) {
     return fail("is not on the table", body.name);
   const Pose place = standing(body.shape, X_WO);
   if (const int i = find(body.name); i >= 0) {
-    const Pose now = world_->body_motion(i).X_WO;
-    const bool differs = (now.translation() - place.translation()).norm() > noticed ||
-                         angle_between(now.linear(), place.linear()) > noticed_turn;
-    if (differs && !placed_.contains(body.name) &&
+    if (differ(world_->body_motion(i).X_WO, place) && !placed_.contains(body.name) &&
         world_->distance_to_hand(i, options_.far_away) >= options_.far_away)
       world_->move_body(i, place);
     return false;
@@ -202,6 +220,7 @@ bool Simulation::step() {
   if (arm_) arm_->step(*world_);
   world_->step();
   if (braking_) brake();
+  if (closures_ == 0 && time_ - looked_ >= look) put_back();
   if (const auto body = detector_.update(*world_); body && command_) {
     const grasping::HandMotion motion = world_->hand_motion();
     Closure closure;

@@ -36,7 +36,9 @@ class Simulation {
       const model::HandModel& hand, const Options& options = {},
       std::unique_ptr<carrying::CarryingArm> arm = nullptr);
 
-  /// Objects as the scene says. Fails on what cannot be simulated.
+  /// Objects as the scene says. Until the hand has closed on something, one that it knocked over
+  /// stands where it stood once the hand is far: whoever shows the table sees it as the scene says.
+  /// Fails on what cannot be simulated.
   Expected<void> build(const model::Scene& scene, const grasping::CatalogueBodies& catalogue);
 
   /// An object was recognised: the first sight places it on the table, later ones move it while the
@@ -81,6 +83,7 @@ class Simulation {
   /// Nothing is where a body of this shape would stand, other than `itself`.
   Expected<void> is_free(const grasping::Body& body, const Pose& X_WO, int itself) const;
   void approach(const Command& command);
+  void put_back();
   void brake();
 
   const model::HandModel& hand_;
@@ -96,6 +99,8 @@ class Simulation {
   std::optional<Closure> closure_;
   std::uint64_t closures_ = 0;
   std::set<std::string> placed_;  // by order
+  std::vector<std::optional<Pose>> stood_;  // bodies of a scene that the hand is near to: X_WO before
+  Time looked_{};                           // at them
 };
 
 }  // namespace prehend::simulation
