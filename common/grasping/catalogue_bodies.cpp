@@ -26,14 +26,14 @@ Expected<CatalogueBodies> CatalogueBodies::create(const model::Catalogue& catalo
       if (!solid) return fail(solid.error().what, object.name, solid.error().hint);
       body.mesh = std::move(*solid);
     }
-    made.bodies_.emplace(object.name, std::move(body));
+    made.bodies_.push_back(std::move(body));
   }
   return made;
 }
 
 const Body* CatalogueBodies::find(std::string_view name) const {
-  const auto found = bodies_.find(name);
-  return found == bodies_.end() ? nullptr : &found->second;
+  const auto found = std::ranges::find(bodies_, name, &Body::name);
+  return found == bodies_.end() ? nullptr : &*found;
 }
 
 Body CatalogueBodies::seen(const std::string& name, const model::Shape& shape) const {

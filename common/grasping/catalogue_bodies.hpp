@@ -1,8 +1,8 @@
 #pragma once
 
-#include <map>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "common/base/error.hpp"
 #include "common/grasping/world.hpp"
@@ -19,6 +19,8 @@ class CatalogueBodies {
   /// Fails on meshes that cannot be cut into convex parts.
   static Expected<CatalogueBodies> create(const model::Catalogue& catalogue);
 
+  /// In the catalogue's order.
+  const std::vector<Body>& bodies() const { return bodies_; }
   /// nullptr if there is none of that name.
   const Body* find(std::string_view name) const;
 
@@ -28,7 +30,7 @@ class CatalogueBodies {
   Body seen(const std::string& name, const model::Shape& shape) const;
 
  private:
-  std::map<std::string, Body, std::less<>> bodies_;
+  std::vector<Body> bodies_;
 };
 
 }  // namespace prehend::grasping

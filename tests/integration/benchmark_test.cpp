@@ -69,6 +69,34 @@ TEST_F(Benchmark, JudgesByObjectsThatNobodyHasTrainedWith) {
   for (; std::getline(csv, line); ++rows) EXPECT_NE(line.find("Beaker"), std::string::npos);
   EXPECT_EQ(rows, 4);
   EXPECT_EQ(benchmark({"--objects", in("absent.toml")}).exit_code, 2);
+  EXPECT_EQ(benchmark({"--objects", "drawn:many"}).exit_code, 2);
+}
+
+// The world has the mesh, not what bounds it.
+TEST_F(Benchmark, JudgesByMeshesAsTheyAre) {
+  std::ofstream mesh(in("block.obj"));  // 40 x 60 x 140 mm
+  for (int corner = 0; corner < 8; ++corner)
+    mesh << "v " << (corner & 1 ? 0.02 : -0.02) << " " << (corner & 2 ? 0.03 : -0.03) << " "
+         << (corner & 4 ? 0.07 : -0.07) << "\n";
+  mesh << "f 1 3 4\nf 1 4 2\nf 5 6 8\nf 5 8 7\nf 1 2 6\nf 1 6 5\n"
+          "f 3 7 8\nf 3 8 4\nf 1 5 7\nf 1 7 3\nf 2 4 8\nf 2 8 6\n";
+  mesh.close();
+  const auto judged = [&](const std::string& name, const std::string& more) {
+    std::ofstream(in(name + ".toml"))
+        << "[[object]]\nname = \"Block\"\nshape = \"box\"\nsize = [0.04, 0.06, 0.14]\n"
+           "mass = 0.2\nmaterial = \"wood\"\n"
+        << more;
+    return benchmark({"--trials", "2", "--objects", in(name + ".toml"), "--mapping",
+                      "intelligent+placement", "--out", in(name)});
+  };
+  const Answer box = judged("box", ""), meshed = judged("meshed", "mesh = \"block.obj\"\n");
+  ASSERT_EQ(box.exit_code, 0) << box.log;
+  ASSERT_EQ(meshed.exit_code, 0) << meshed.log;
+  EXPECT_EQ(results("box").size(), 2u);
+  // The same block, of triangles: as good to hold, and not the same to the last bit.
+  EXPECT_EQ(results("meshed").size(), 2u);
+  EXPECT_NE(results("meshed"), results("box"));
+  EXPECT_EQ(judged("none", "mesh = \"nowhere.obj\"\n").exit_code, 3);
 }
 
 TEST_F(Benchmark, JudgesByTakesFromFilesAsByThoseItMakes) {

@@ -24,7 +24,7 @@ enum class Role : std::uint16_t {
   console = 1 << 11,    // reads everything, and gives the orders of its page
   planner = 1 << 12,    // says how the lab's hand may take what is seen
 };
-inline constexpr std::array<std::pair<Role, std::string_view>, 13> role_names{{
+inline constexpr auto role_names = std::to_array<std::pair<Role, std::string_view>>({
     {Role::glove, "glove"},
     {Role::recognition, "recognition"},
     {Role::mapping, "mapping"},
@@ -38,7 +38,7 @@ inline constexpr std::array<std::pair<Role, std::string_view>, 13> role_names{{
     {Role::operator_, "operator"},
     {Role::viewer, "viewer"},
     {Role::console, "console"},
-}};
+});
 constexpr std::string_view name_of(Role role) {
   for (const auto& [each, name] : role_names)
     if (each == role) return name;

@@ -15,7 +15,7 @@ constexpr double noticed_turn = 0.05;  // rad
 constexpr double in_hand = 0.005;      // m, of the hand from what it may hold
 constexpr int max_bodies = 32;
 constexpr Duration look = std::chrono::milliseconds(100);  // at what the hand may knock over
-const Duration max_jump = std::chrono::seconds(60);  // of the lockstep clock
+const Duration max_jump = std::chrono::seconds(60);        // of the lockstep clock
 
 /// Behind and above the table's middle, where nothing stands.
 const Pose resting_place = make_pose(Vector3d(0, -0.4, 0.6));

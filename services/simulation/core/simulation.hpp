@@ -99,8 +99,9 @@ class Simulation {
   std::optional<Closure> closure_;
   std::uint64_t closures_ = 0;
   std::set<std::string> placed_;  // by order
-  std::vector<std::optional<Pose>> stood_;  // bodies of a scene that the hand is near to: X_WO before
-  Time looked_{};                           // at them
+  std::vector<std::optional<Pose>>
+      stood_;      // bodies of a scene that the hand is near to: X_WO before
+  Time looked_{};  // at them
 };
 
 }  // namespace prehend::simulation

@@ -1,4 +1,5 @@
-// Objects to be judged with that nobody has trained with: of all shapes, sound, the same for a seed.
+// Objects to be judged with that nobody has trained with: of all shapes, sound, the same for a
+// seed.
 #include "services/mapping/tools/judging/drawn_objects.hpp"
 
 #include <gtest/gtest.h>

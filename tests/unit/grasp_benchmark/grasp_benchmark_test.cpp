@@ -39,7 +39,8 @@ Expected<std::vector<TrialResult>> run(const GraspBenchmarkOptions& options,
       loaded(load_mapping_model(test::in_share("trained/barrett.mapping"), barrett()));
   static const auto catalogue =
       loaded(model::Catalogue::load(test::in_sources("common/models/objects/catalogue.toml")));
-  return run_grasp_benchmark({barrett(), model, grasps(), catalogue}, options, for_each);
+  static const auto objects = loaded(grasping::CatalogueBodies::create(catalogue));
+  return run_grasp_benchmark({barrett(), model, grasps(), objects}, options, for_each);
 }
 
 void in_order(std::size_t count, const std::function<void(std::size_t)>& work) {
@@ -118,8 +119,8 @@ TEST(GraspBenchmark, SaysWhenThereIsNothingToRepeat) {
   const std::vector<RobotGrasp> none;
   const auto model =
       loaded(load_mapping_model(test::in_share("trained/barrett.mapping"), barrett()));
-  const model::Catalogue catalogue;
-  const auto results = run_grasp_benchmark({barrett(), model, none, catalogue}, {}, in_order);
+  const grasping::CatalogueBodies objects;
+  const auto results = run_grasp_benchmark({barrett(), model, none, objects}, {}, in_order);
   ASSERT_FALSE(results);
   EXPECT_EQ(results.error().where, "barrett");
 }

@@ -59,7 +59,8 @@ TEST(Approaches, CoverAboveAndSides) {
 TEST(RobotGrasps, AreClosedTheSameAgain) {
   const RobotGrasp& made = grasps().front();
   const auto again =
-      robot_grasp(barrett(), scheme(), *catalogue().find(made.object), made.X_OG, made.type);
+      robot_grasp(barrett(), scheme(), grasping::primitive_of(*catalogue().find(made.object)),
+                  made.X_OG, made.type);
   ASSERT_TRUE(again);
   EXPECT_EQ(again->dof, made.dof);
   EXPECT_EQ(again->preshape, made.preshape);

@@ -19,6 +19,7 @@
 #include "common/base/paths.hpp"
 #include "common/base/progress.hpp"
 #include "common/base/workers.hpp"
+#include "common/grasping/catalogue_bodies.hpp"
 #include "common/service/arguments.hpp"
 #include "common/stage/temporary_folder.hpp"
 #include "services/mapping/files/mapping_model_file.hpp"
@@ -59,8 +60,8 @@ struct Arguments {
         ->capture_default_str();
     app.add_option("--hand", hand, "kind of robot hand; default: the lab's");
     app.add_option("--objects", objects,
-                   "a catalogue of other objects than those that the hand has learnt (of meshes the\n"
-                   "shape that bounds them counts), or drawn:N: N of all shapes, drawn from the seed");
+                   "a catalogue of other objects than those that the hand has learnt, or drawn:N:\n"
+                   "N of all shapes, drawn from the seed");
     auto* folder = app.add_option("--takes", takes, "a folder of takes that --export wrote");
     app.add_option("--trials", trials, "takes that are made, where no folder is given")
         ->check(CLI::Range(1, 100'000))
@@ -101,10 +102,10 @@ struct Judged {
   model::HandModel hand;
   MappingModel model;
   std::vector<RobotGrasp> grasps;
-  model::Catalogue catalogue;
+  grasping::CatalogueBodies objects;
   std::vector<BenchmarkTake> takes;
 
-  BenchmarkedHand parts() const { return {hand, model, grasps, catalogue}; }
+  BenchmarkedHand parts() const { return {hand, model, grasps, objects}; }
 };
 
 Expected<std::vector<BenchmarkedMode>> modes_of(const Arguments& arguments) {
@@ -144,12 +145,13 @@ Expected<void> add_people(std::vector<BenchmarkTake>& takes, const std::vector<R
 
 /// What the hand can grasp of these objects: nobody has trained with it.
 Expected<std::vector<RobotGrasp>> grasps_of(const model::HandModel& hand, const ModelPlaces& places,
-                                            const model::Catalogue& catalogue, unsigned threads) {
+                                            const grasping::CatalogueBodies& objects,
+                                            unsigned threads) {
   const auto scheme = load_or_derive(places.scheme, hand);
   if (!scheme) return tl::unexpected(scheme.error());
   Progress progress("closing the hand");
   return close_on_catalogue(
-      hand, *scheme, catalogue,
+      hand, *scheme, objects,
       [&](std::size_t count, const auto& work) {
         share_work(count, threads, work, [&](std::size_t done) { progress.show(done, count); });
       },
@@ -166,9 +168,11 @@ Expected<model::Catalogue> objects_of(const Arguments& arguments) {
       return wrong_use("is no number of objects, 1 to 10000", arguments.objects, "drawn:200");
     return drawn_objects(count, arguments.seed);
   }
-  return model::Catalogue::load(
-      arguments.objects.empty() ? share_directory() / "models" / "objects" / "catalogue.toml"
-                                : std::filesystem::path(arguments.objects));
+  if (arguments.objects.empty())
+    return model::Catalogue::load(share_directory() / "models" / "objects" / "catalogue.toml");
+  if (!std::filesystem::exists(arguments.objects))
+    return wrong_use("is no file", arguments.objects, "a catalogue, or drawn:200");
+  return model::Catalogue::load(arguments.objects);
 }
 
 Expected<Judged> load(const Arguments& arguments, const std::string& name) {
@@ -176,13 +180,14 @@ Expected<Judged> load(const Arguments& arguments, const std::string& name) {
   if (!hand) return tl::unexpected(hand.error());
   auto catalogue = objects_of(arguments);
   if (!catalogue) return tl::unexpected(catalogue.error());
+  auto objects = grasping::CatalogueBodies::create(*catalogue);
+  if (!objects) return tl::unexpected(objects.error());
   const auto places = ready_places(name, *hand, Needs::model_and_grasps);
   if (!places) return tl::unexpected(places.error());
   auto model = load_mapping_model(places->model, *hand);
   if (!model) return tl::unexpected(model.error());
-  auto grasps = arguments.objects.empty()
-                    ? load_robot_grasps(places->grasps, *hand)
-                    : grasps_of(*hand, *places, *catalogue, arguments.threads);
+  auto grasps = arguments.objects.empty() ? load_robot_grasps(places->grasps, *hand)
+                                          : grasps_of(*hand, *places, *objects, arguments.threads);
   if (!grasps) return tl::unexpected(grasps.error());
   if (grasps->empty()) return fail("there is no grasp to repeat", hand->name());
   std::vector<BenchmarkTake> takes;
@@ -198,7 +203,7 @@ Expected<Judged> load(const Arguments& arguments, const std::string& name) {
     if (!loaded) return tl::unexpected(loaded.error());
     takes = std::move(*loaded);
   }
-  return Judged{std::move(*hand), std::move(*model), std::move(*grasps), std::move(*catalogue),
+  return Judged{std::move(*hand), std::move(*model), std::move(*grasps), std::move(*objects),
                 std::move(takes)};
 }
 
@@ -208,7 +213,7 @@ Expected<std::vector<TrialResult>> judge_own(const Judged& judged, const Benchma
     return tl::unexpected(allowed.error());
   std::vector<TrialResult> results(judged.takes.size());
   std::vector<Error> errors(results.size());
-  PlannedGrasps planned(judged.hand, judged.catalogue);
+  PlannedGrasps planned(judged.hand, judged.objects);
   Progress progress(std::string(to_string(mode.mode)));
   share_work(
       results.size(), threads,

@@ -16,7 +16,7 @@ using model::ShapeKind;
 
 constexpr double narrowest = 0.010, widest = 0.090;  // m, between the fingers
 constexpr double lowest = 0.050, highest = 0.220;    // m
-constexpr double smallest_ball = 0.040;                 // m; smaller ones lie too low to be had
+constexpr double smallest_ball = 0.040;              // m; smaller ones lie too low to be had
 constexpr double deepest = 0.150;                    // m, of a box along its longer side
 
 model::Shape drawn_shape(Random& random) {

@@ -135,14 +135,14 @@ class Trial {
 Expected<std::unique_ptr<grasping::World>> world_of(const BenchmarkedHand& parts,
                                                     const RobotGrasp& grasp,
                                                     const RecordedTake& take) {
-  const model::CatalogueObject* object = parts.catalogue.find(grasp.object);
+  const grasping::Body* object = parts.objects.find(grasp.object);
   if (!object) return fail("is not in the catalogue", grasp.object);
   const Posture& first = take.postures.front();
   const Pose X_WG = first.X_WH * model::HumanHand(first.hand_scale).X_HG();
   auto world = grasping::World::create(parts.hand, X_WG * parts.hand.X_BG().inverse(),
                                        parts.hand.postures().at("open"));
   if (!world) return world;
-  auto added = (*world)->add_body(grasping::primitive_of(*object), take.X_WO);
+  auto added = (*world)->add_body(*object, take.X_WO);
   if (!added) return tl::unexpected(added.error());
   return world;
 }
@@ -245,7 +245,7 @@ Expected<std::vector<TrialResult>> run_grasp_benchmark(const BenchmarkedHand& pa
     if (auto allowed = check_mode(parts, mode); !allowed) return tl::unexpected(allowed.error());
 
   std::vector<std::optional<TrialResult>> results(options.takes.size() * options.modes.size());
-  PlannedGrasps planned(parts.hand, parts.catalogue);
+  PlannedGrasps planned(parts.hand, parts.objects);
   std::mutex mutex;
   Error failed;
   for_each(results.size(), [&](std::size_t index) {

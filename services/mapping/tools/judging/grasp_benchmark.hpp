@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "common/base/named_values.hpp"
+#include "common/grasping/catalogue_bodies.hpp"
 #include "common/grasping/planner.hpp"
-#include "common/model/catalogue.hpp"
 #include "services/mapping/tools/judging/answerer.hpp"
 #include "services/mapping/tools/judging/recorded_take.hpp"
 
@@ -78,7 +78,7 @@ struct BenchmarkedHand {
   const model::HandModel& hand;
   const MappingModel& model;
   const std::vector<RobotGrasp>& grasps;
-  const model::Catalogue& catalogue;
+  const grasping::CatalogueBodies& objects;
 };
 
 /// One take with the grasp of the robot hand that it was shown for.

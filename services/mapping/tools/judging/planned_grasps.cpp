@@ -11,11 +11,7 @@ namespace prehend::mapping {
 
 Candidates PlannedGrasps::search(const std::string& object, const model::Shape& shape) const {
   Candidates made{1, shape, {}};  // the track of seen_object()
-  const model::CatalogueObject* known = catalogue_.find(object);
-  if (!known) return made;
-  grasping::Body body = grasping::primitive_of(*known);
-  body.shape = shape;
-  auto search = grasping::TableGraspSearch::create(hand_, body);
+  auto search = grasping::TableGraspSearch::create(hand_, objects_.seen(object, shape));
   if (!search) return made;
   const auto in_turn = [](std::size_t count, const auto& attempt) {
     for (std::size_t i = 0; i < count; ++i) attempt(i);

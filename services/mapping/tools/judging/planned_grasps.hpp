@@ -13,11 +13,11 @@ namespace prehend::mapping {
 
 /// The grasps that prehend-planner finds for the objects of takes, as they are seen there. Each is
 /// searched once, whoever asks first; several threads may ask. Keeps references to the hand and the
-/// catalogue.
+/// objects.
 class PlannedGrasps {
  public:
-  PlannedGrasps(const model::HandModel& hand, const model::Catalogue& catalogue)
-      : hand_(hand), catalogue_(catalogue) {}
+  PlannedGrasps(const model::HandModel& hand, const grasping::CatalogueBodies& objects)
+      : hand_(hand), objects_(objects) {}
 
   /// The mapping of this mode as it is before the take: `planned` has heard of all grasps.
   Expected<Mapping> mapping_for(const BenchmarkedHand& parts, const BenchmarkedMode& mode,
@@ -32,7 +32,7 @@ class PlannedGrasps {
   Candidates search(const std::string& object, const model::Shape& shape) const;
 
   const model::HandModel& hand_;
-  const model::Catalogue& catalogue_;
+  const grasping::CatalogueBodies& objects_;
   std::mutex mutex_;  // of the entries
   std::map<std::string, std::shared_ptr<Entry>> entries_;
 };

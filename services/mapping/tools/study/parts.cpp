@@ -15,7 +15,9 @@ Expected<Parts> load_parts(const std::vector<std::string>& hands, bool with_mode
   auto catalogue =
       model::Catalogue::load(share_directory() / "models" / "objects" / "catalogue.toml");
   if (!catalogue) return tl::unexpected(catalogue.error());
-  Parts parts{std::move(*catalogue), {}, {}};
+  auto bodies = grasping::CatalogueBodies::create(*catalogue);
+  if (!bodies) return tl::unexpected(bodies.error());
+  Parts parts{std::move(*catalogue), std::move(*bodies), {}, {}};
   for (const std::string& name : hands) {
     if (parts.hands.contains(name)) continue;  // figures and benchmark name the same ones
     auto hand = model::HandModel::load(model::hand_directory(name));

@@ -26,6 +26,7 @@ struct StudiedHand {
 /// All that experiments are made with. They only read it, from several threads.
 struct Parts {
   model::Catalogue catalogue;
+  grasping::CatalogueBodies bodies;  // of the catalogue
   std::map<std::string, StudiedHand> hands;
   std::vector<RealTake> real_takes;  // none where there are no recordings
 

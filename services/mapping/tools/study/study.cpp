@@ -47,7 +47,7 @@ BenchmarkRequest benchmark_of(const Parts& parts, const StudyOptions& options) {
   }
   for (const std::string& name : options.hands) {
     const StudiedHand& studied = parts.hand(name);
-    request.hands.push_back({studied.hand, *studied.model, studied.grasps, parts.catalogue});
+    request.hands.push_back({studied.hand, *studied.model, studied.grasps, parts.bodies});
   }
   request.takes = options.trials > 0 ? options.trials : options.quick ? 24 : 270;
   request.seed = options.seed;

@@ -13,9 +13,11 @@ Expected<std::vector<RobotGrasp>> close_and_save(const model::HandModel& hand, c
                                                  const ClosureOptions& options) {
   const auto catalogue = model::Catalogue::load(catalogue_file);
   if (!catalogue) return tl::unexpected(catalogue.error());
+  const auto bodies = grasping::CatalogueBodies::create(*catalogue);
+  if (!bodies) return tl::unexpected(bodies.error());
   prehend::Progress progress("closing the hand");
   auto grasps = close_on_catalogue(
-      hand, scheme, *catalogue,
+      hand, scheme, *bodies,
       [&](std::size_t count, const auto& work) {
         share_work(count, 0, work, [&](std::size_t done) { progress.show(done, count); });
       },

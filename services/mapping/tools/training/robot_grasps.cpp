@@ -96,9 +96,8 @@ Trials Trials::quick() {
 }
 
 Expected<RobotGrasp> robot_grasp(const model::HandModel& hand, const Scheme& scheme,
-                                 const model::CatalogueObject& object, const Pose& X_OG,
-                                 GraspType type, const Trials& trials) {
-  const grasping::Body body = grasping::primitive_of(object);
+                                 const grasping::Body& object, const Pose& X_OG, GraspType type,
+                                 const Trials& trials) {
   Error last{"no preshape is for this grasp", object.name, ""};
   std::optional<RobotGrasp> best;
   int most = -1;
@@ -114,7 +113,7 @@ Expected<RobotGrasp> robot_grasp(const model::HandModel& hand, const Scheme& sch
       made.shape = object.shape;
       made.X_OG = X_OG;
       made.p_GR = place;
-      if (auto ok = close(hand, body, preshape, made); ok)
+      if (auto ok = close(hand, object, preshape, made); ok)
         closed.push_back(std::move(made));
       else
         last = ok.error();
@@ -124,7 +123,7 @@ Expected<RobotGrasp> robot_grasp(const model::HandModel& hand, const Scheme& sch
     });
     for (RobotGrasp& candidate : closed) {
       const auto survives_at = [&](double beside, double hold) {
-        return survives(hand, scheme.open.robot, body, candidate, beside,
+        return survives(hand, scheme.open.robot, object, candidate, beside,
                         {.hold = hold, .shake = trials.shake});
       };
       candidate.held = survives_at(0, trials.hold);
@@ -142,19 +141,19 @@ Expected<RobotGrasp> robot_grasp(const model::HandModel& hand, const Scheme& sch
 }
 
 std::vector<RobotGrasp> close_on_catalogue(const model::HandModel& hand, const Scheme& scheme,
-                                           const model::Catalogue& catalogue,
+                                           const grasping::CatalogueBodies& catalogue,
                                            const grasping::ForEach& for_each,
                                            const std::function<void(const Error&)>& report,
                                            const Trials& trials) {
   struct Task {
-    const model::CatalogueObject* object;
+    const grasping::Body* object;
     Pose X_OG;
     GraspType type;
     std::optional<Expected<RobotGrasp>> grasp;
   };
   // What is approached in the same way; its types go one after the other.
   std::vector<std::vector<Task>> approached;
-  for (const model::CatalogueObject& object : catalogue.objects()) {
+  for (const grasping::Body& object : catalogue.bodies()) {
     const auto ways = grasping::approaches(object.shape, hand.reach());
     if (ways.empty()) report({"does not fit into the hand", object.name, "left out"});
     for (const Pose& X_OG : ways) {

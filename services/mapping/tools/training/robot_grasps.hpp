@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "common/base/error.hpp"
+#include "common/grasping/catalogue_bodies.hpp"
 #include "common/grasping/planner.hpp"
-#include "common/model/catalogue.hpp"
 #include "common/model/hand_model.hpp"
 #include "services/mapping/core/grasp_type.hpp"
 #include "services/mapping/tools/training/scheme.hpp"
@@ -60,13 +60,13 @@ struct Trials {
 /// none, the one that survives in most of these. Fails when the fingers find no two contacts from
 /// anywhere without reaching into the table.
 Expected<RobotGrasp> robot_grasp(const model::HandModel& hand, const Scheme& scheme,
-                                 const model::CatalogueObject& object, const Pose& X_OG,
-                                 GraspType type, const Trials& trials = {});
+                                 const grasping::Body& object, const Pose& X_OG, GraspType type,
+                                 const Trials& trials = {});
 
 /// The same on every object of the catalogue, from every approach, with every type. What the hand
 /// cannot grasp is left out, and `report` is told why. The same however the work is divided.
 std::vector<RobotGrasp> close_on_catalogue(const model::HandModel& hand, const Scheme& scheme,
-                                           const model::Catalogue& catalogue,
+                                           const grasping::CatalogueBodies& catalogue,
                                            const grasping::ForEach& for_each,
                                            const std::function<void(const Error&)>& report,
                                            const Trials& trials = {});
