@@ -7,6 +7,7 @@
 
 #include "common/base/log.hpp"
 #include "common/base/log_format.hpp"
+#include "common/base/terminal.hpp"
 
 namespace prehend {
 namespace {
@@ -17,7 +18,7 @@ constexpr std::size_t width = 30;  // characters of the bar
 
 Progress::Progress(std::string what)
     : what_(std::move(what)),
-      terminal_(isatty(STDERR_FILENO) != 0 && log::format() == log::Format::text) {}
+      terminal_(has_cursor(STDERR_FILENO) && log::format() == log::Format::text) {}
 
 void Progress::show(std::size_t done, std::size_t all) {
   if (all == 0) return;

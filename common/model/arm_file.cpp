@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "common/base/file_text.hpp"
+#include "common/base/toml_document.hpp"
 #include "common/model/arm_model.hpp"
 #include "common/model/hand_urdf.hpp"
 #include "common/model/toml_values.hpp"

@@ -1,10 +1,11 @@
 #include "common/model/catalogue.hpp"
 
 #include <fmt/format.h>
-#include <toml++/toml.h>
 
 #include <algorithm>
 #include <optional>
+
+#include "common/base/toml_document.hpp"
 
 namespace prehend::model {
 namespace {
@@ -79,12 +80,9 @@ Expected<CatalogueObject> read_object(const toml::table& table,
 }  // namespace
 
 Expected<Catalogue> Catalogue::load(const std::filesystem::path& file) {
-  toml::table root;
-  try {
-    root = toml::parse_file(file.string());
-  } catch (const toml::parse_error& error) {
-    return fail(std::string(error.description()), file.string(), "an object catalogue is TOML");
-  }
+  const auto document = load_toml(file, "an object catalogue is TOML");
+  if (!document) return tl::unexpected(document.error());
+  const toml::table& root = *document;
   const toml::array* entries = root["object"].as_array();
   if (!entries || entries->empty())
     return fail("has no [[object]]", file.string(), "list at least one object");

@@ -1,7 +1,6 @@
 #include "common/model/grasp_taxonomy.hpp"
 
 #include <fmt/format.h>
-#include <toml++/toml.h>
 
 #include <algorithm>
 #include <array>
@@ -11,6 +10,7 @@
 
 #include "common/base/parse_file.hpp"
 #include "common/base/paths.hpp"
+#include "common/base/toml_document.hpp"
 
 namespace prehend::model {
 
@@ -112,12 +112,9 @@ bool GraspClass::blocked(ObjectPart part) const {
 }
 
 Expected<GraspTaxonomy> GraspTaxonomy::parse(std::string_view text) {
-  toml::table root;
-  try {
-    root = toml::parse(text);
-  } catch (const toml::parse_error& error) {
-    return fail(std::string(error.description()), {}, "a taxonomy of grasps is TOML");
-  }
+  const auto document = parse_toml(text, {}, "a taxonomy of grasps is TOML");
+  if (!document) return tl::unexpected(document.error());
+  const toml::table& root = *document;
   const toml::array* entries = root["class"].as_array();
   if (!entries || entries->empty()) return fail("has no [[class]]", {}, "list at least one");
   GraspTaxonomy made;

@@ -5,6 +5,7 @@
 
 #include "common/base/file_text.hpp"
 #include "common/base/paths.hpp"
+#include "common/base/toml_document.hpp"
 #include "common/model/hand_coupling.hpp"
 #include "common/model/hand_effort.hpp"
 #include "common/model/hand_model.hpp"

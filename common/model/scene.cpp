@@ -1,7 +1,6 @@
 #include "common/model/scene.hpp"
 
 #include <fmt/format.h>
-#include <toml++/toml.h>
 
 #include <algorithm>
 #include <cmath>
@@ -9,6 +8,7 @@
 #include <set>
 
 #include "common/base/random.hpp"
+#include "common/base/toml_document.hpp"
 
 namespace prehend::model {
 namespace {
@@ -171,6 +171,28 @@ std::string contradiction(const Scene& scene) {
   return {};
 }
 
+/// What cannot stand as it is said; empty: nothing. Objects are known by their names, and what is
+/// inside another flies apart in the first step of the world.
+std::string misplaced(const Scene& scene, const Catalogue& catalogue) {
+  constexpr double farthest = 5, below = -0.01;  // m
+  for (std::size_t i = 0; i < scene.objects.size(); ++i) {
+    const PlacedObject& one = scene.objects[i];
+    const Vector3d p = one.X_WO.translation();
+    if (p.cwiseAbs().maxCoeff() > farthest || p.z() < below)
+      return fmt::format("object '{}' is at ({:g}, {:g}, {:g}) m: below the table or too far",
+                         one.name, p.x(), p.y(), p.z());
+    const double inside = half_extents(catalogue.find(one.name)->shape).minCoeff();
+    for (std::size_t k = 0; k < i; ++k) {
+      const PlacedObject& other = scene.objects[k];
+      if (other.name == one.name) return "two objects are named '" + one.name + "'";
+      const double apart = (p - other.X_WO.translation()).norm();
+      if (apart < inside + half_extents(catalogue.find(other.name)->shape).minCoeff())
+        return fmt::format("objects '{}' and '{}' are inside each other", other.name, one.name);
+    }
+  }
+  return {};
+}
+
 /// A light as the seed wants it.
 Light drawn_light(Random& random) {
   Light light;
@@ -223,12 +245,9 @@ void place_distractors(Scene& scene, const Catalogue& catalogue, int count, Rand
 }  // namespace
 
 Expected<Scene> load_scene(const std::filesystem::path& file, const Catalogue& catalogue) {
-  toml::table root;
-  try {
-    root = toml::parse_file(file.string());
-  } catch (const toml::parse_error& error) {
-    return fail(std::string(error.description()), file.string(), "a scene is a TOML file");
-  }
+  const auto document = load_toml(file, "a scene is a TOML file");
+  if (!document) return tl::unexpected(document.error());
+  const toml::table& root = *document;
   Scene scene;
   std::string problem;
   const auto read_table = [&](std::string_view name, auto&& read) {
@@ -264,6 +283,7 @@ Expected<Scene> load_scene(const std::filesystem::path& file, const Catalogue& c
         problem.empty())
       problem = fmt::format("{} is not a table of a scene", key.str());
   if (problem.empty()) problem = contradiction(scene);
+  if (problem.empty()) problem = misplaced(scene, catalogue);
   if (!problem.empty()) return fail(problem, file.string(), "see common/model/scene.hpp");
   scene.light.to_light_W.normalize();
   return scene;

@@ -1,13 +1,13 @@
 #include "common/model/task_kinds.hpp"
 
 #include <fmt/format.h>
-#include <toml++/toml.h>
 
 #include <algorithm>
 #include <cctype>
 
 #include "common/base/parse_file.hpp"
 #include "common/base/paths.hpp"
+#include "common/base/toml_document.hpp"
 
 namespace prehend::model {
 
@@ -49,12 +49,9 @@ Expected<TaskKind> read_kind(const toml::table& table) {
 }  // namespace
 
 Expected<TaskKinds> TaskKinds::parse(std::string_view text) {
-  toml::table root;
-  try {
-    root = toml::parse(text);
-  } catch (const toml::parse_error& error) {
-    return fail(std::string(error.description()), {}, "kinds of tasks are TOML");
-  }
+  const auto document = parse_toml(text, {}, "kinds of tasks are TOML");
+  if (!document) return tl::unexpected(document.error());
+  const toml::table& root = *document;
   const toml::array* entries = root["task"].as_array();
   if (!entries || entries->empty()) return fail("has no [[task]]", {}, "list at least one");
   TaskKinds made;

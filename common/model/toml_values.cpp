@@ -73,15 +73,6 @@ Expected<toml::table> table_of(const toml::table& root, const std::string& key) 
   return *node->as_table();
 }
 
-Expected<toml::table> parse_toml(std::string_view text, const std::string& file) {
-  try {
-    return toml::table(toml::parse(text));
-  } catch (const toml::parse_error& error) {
-    return fail(std::string(error.description()),
-                file + ": line " + std::to_string(error.source().begin.line), file + " is TOML");
-  }
-}
-
 Expected<Pose> pose_in(const toml::table& root, const std::string& key, const std::string& hint) {
   const auto table = table_of(root, key);
   if (!table) return tl::unexpected(table.error());

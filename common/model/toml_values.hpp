@@ -19,8 +19,6 @@ namespace prehend::model {
 /// The same error with the file before its place.
 Error located(Error error, const std::string& file);
 
-Expected<toml::table> parse_toml(std::string_view text, const std::string& file);
-
 /// A misspelt key must not pass as an absent one. hint: where all keys stand.
 Expected<void> only_keys(const toml::table& table, std::initializer_list<std::string_view> allowed,
                          const std::string& where, const std::string& hint);

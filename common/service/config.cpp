@@ -1,7 +1,6 @@
 #include "common/service/config.hpp"
 
 #include <fmt/format.h>
-#include <toml++/toml.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -10,6 +9,7 @@
 #include <optional>
 
 #include "common/base/paths.hpp"
+#include "common/base/toml_document.hpp"
 
 namespace prehend::service {
 namespace {
@@ -22,8 +22,9 @@ const ConfigKey* find_key(std::string_view name) {
 }
 
 std::string_view type_name(const Setting& setting) {
-  constexpr std::string_view names[] = {"true or false", "a whole number",    "a number",
-                                        "a text",        "a list of numbers", "a list of texts"};
+  constexpr std::string_view names[] = {
+      "true or false", "a whole number",           "a finite number",
+      "a text",        "a list of finite numbers", "a list of texts"};
   return names[setting.index()];
 }
 
@@ -139,28 +140,19 @@ Expected<void> set_from_text(const Values& values, std::string_view name, const 
   if (!key) return fail(fmt::format("unknown key {}", name), where, nearest_key(name));
   if (std::holds_alternative<std::string>(key->fallback))
     return set(values, name, toml::value<std::string>(text), where);
-  try {
-    const toml::table table = toml::parse("value = " + text);
-    return set(values, name, *table.get("value"), where);
-  } catch (const toml::parse_error&) {
-    return fail(fmt::format("{} must be {}", name, type_name(key->fallback)), where,
-                std::string(key->help));
-  }
+  const auto table = parse_toml("value = " + text, where);
+  if (table && table->size() == 1) return set(values, name, *table->get("value"), where);
+  return fail(fmt::format("{} must be {}", name, type_name(key->fallback)), where,
+              std::string(key->help));
 }
 
 Expected<void> set_from_file(const Values& values, const std::filesystem::path& file) {
   const auto place = [&](const toml::node& node) {
-    return fmt::format("{}:{}", file.string(), node.source().begin.line);
+    return fmt::format("{}: line {}", file.string(), node.source().begin.line);
   };
-  toml::table root;
-  try {
-    root = toml::parse_file(file.string());
-  } catch (const toml::parse_error& error) {
-    return fail(std::string(error.description()),
-                fmt::format("{}:{}", file.string(), error.source().begin.line),
-                "the configuration is a TOML file");
-  }
-  for (const auto& [table_name, node] : root) {
+  const auto root = load_toml(file, "the configuration is a TOML file");
+  if (!root) return tl::unexpected(root.error());
+  for (const auto& [table_name, node] : *root) {
     const toml::table* table = node.as_table();
     if (!table)
       return fail(fmt::format("unknown key {}", table_name.str()), file.string(),

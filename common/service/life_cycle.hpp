@@ -4,6 +4,7 @@
 
 #include "common/service/arguments.hpp"
 #include "common/service/shell.hpp"
+#include "common/tool/output.hpp"
 
 namespace prehend::service {
 
@@ -12,12 +13,14 @@ namespace prehend::service {
 ///   S::create(Shell&) -> Expected<std::unique_ptr<S>>
 template <class S>
 int run(int argc, char** argv, const Shell::Options& options) {
-  auto shell = Shell::create(argc, argv, options);
-  if (!shell) return complain(shell.error());
-  auto service = S::create(**shell);
-  if (!service) return complain(service.error());
-  const auto ended = (*shell)->run();
-  return ended ? *ended : complain(ended.error());
+  return tool::with_whole_output([&] {
+    auto shell = Shell::create(argc, argv, options);
+    if (!shell) return complain(shell.error());
+    auto service = S::create(**shell);
+    if (!service) return complain(service.error());
+    const auto ended = (*shell)->run();
+    return ended ? static_cast<int>(*ended) : complain(ended.error());
+  });
 }
 
 }  // namespace prehend::service

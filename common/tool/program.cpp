@@ -6,8 +6,11 @@
 #include <string_view>
 #include <utility>
 
+#include "common/base/finite_number.hpp"
 #include "common/base/log.hpp"
 #include "common/base/log_format.hpp"
+#include "common/base/printable.hpp"
+#include "common/tool/output.hpp"
 
 namespace prehend::tool {
 
@@ -46,6 +49,36 @@ void add_log_option(CLI::App& app) {
       ->check(CLI::IsMember({"text", "json"}));
 }
 
+/// Empty: the word is what an option that shows this type takes. A whole number loses its leading
+/// zeros, which CLI11 would take for base eight.
+std::string check_number(std::string_view type, std::string& word) {
+  if (type.starts_with("FLOAT")) return finite_number(word) ? "" : no_finite_number(word);
+  if (word.empty()) return "is empty, a whole number is wanted";
+  const std::size_t sign = word[0] == '-' || word[0] == '+' ? 1 : 0;
+  const std::size_t digits = word.find_first_not_of('0', sign);
+  if (word.size() == sign || word.find_first_not_of("0123456789", sign) != std::string::npos)
+    return printable(word) + " is no whole number, write it in digits, without a unit";
+  if (type.starts_with("UINT") && word[0] == '-') return word + " is less than 0";
+  const std::string rest = digits == std::string::npos ? "0" : word.substr(digits);
+  if (rest.size() > 20) return word + " is too large";
+  word = (word[0] == '-' ? "-" : "") + rest;
+  return {};
+}
+
+/// Every option that takes numbers takes finite ones: CLI11 itself reads nan, inf and 1e309, which
+/// pass its ranges, and takes an empty word for 0.
+void check_numbers(CLI::App& app) {
+  for (CLI::App* command : app.get_subcommands([](CLI::App*) { return true; }))
+    check_numbers(*command);
+  for (CLI::Option* option : app.get_options()) {
+    const std::string type = option->get_type_name();
+    if (!type.starts_with("FLOAT") && !type.starts_with("INT") && !type.starts_with("UINT"))
+      continue;
+    option->transform(CLI::Validator([type](std::string& word) { return check_number(type, word); },
+                                     std::string()));
+  }
+}
+
 }  // namespace
 
 void choose_log(const std::vector<std::string>& arguments) {
@@ -58,6 +91,7 @@ void choose_log(const std::vector<std::string>& arguments) {
 std::optional<int> parse(CLI::App& app, const std::vector<std::string>& arguments) {
   choose_log(arguments);
   add_log_option(app);
+  check_numbers(app);
   // CLI11 wants them last first.
   std::vector<std::string> reversed(arguments.rbegin(), arguments.rend());
   try {
@@ -88,8 +122,10 @@ void Program::on(CLI::App& command, std::function<int()> run) {
 Program::~Program() = default;
 
 int Program::run(int argc, char** argv) {
-  if (const auto ended = parse(*app_, argc, argv)) return *ended;
-  return exit_code_;
+  return with_whole_output([&] {
+    const auto ended = parse(*app_, argc, argv);
+    return ended ? *ended : exit_code_;
+  });
 }
 
 }  // namespace prehend::tool

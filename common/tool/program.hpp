@@ -26,8 +26,8 @@ int complain(const Error& error, int exit_code);
 /// before it parses calls it itself.
 void choose_log(const std::vector<std::string>& arguments);
 
-/// Parses, with --log beside the options of the app and its subcommands. On --help or wrong use it
-/// says what there is to say and returns the exit code.
+/// Parses, with --log beside the options of the app and its subcommands; what takes numbers takes
+/// finite ones. On --help or wrong use it says what there is to say and returns the exit code.
 std::optional<int> parse(CLI::App& app, const std::vector<std::string>& arguments);
 std::optional<int> parse(CLI::App& app, int argc, char** argv);
 

@@ -72,7 +72,7 @@ void info(benchmark::State& state) {
                   recording::mcap::Compression::none);
   for (auto _ : state) {
     auto reader = recording::mcap::Reader::open(scratch_file()).value();
-    if (reader.statistics()->message_count != count) std::abort();
+    if (reader.statistics().message_count != count) std::abort();
   }
   std::filesystem::remove(scratch_file());
 }

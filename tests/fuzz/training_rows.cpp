@@ -29,7 +29,7 @@ std::string plain(const std::string& sample) {
   std::vector<recording::mcap::Reader> sources;
   sources.push_back(
       recording::mcap::Reader::open(test::in_sources("deploy/samples/") + sample).value());
-  const std::uint64_t end = sources.front().statistics().value().message_end_time;
+  const std::uint64_t end = sources.front().statistics().message_end_time;
   recorder::CopyOptions options;
   options.selection.start = end - 2'000'000'000;
   options.selection.wanted = [](const recording::mcap::Channel& channel) {

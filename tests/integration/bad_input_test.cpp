@@ -53,7 +53,8 @@ TEST_F(BadInput, UnknownKeyInTheConfiguration) {
 
 TEST_F(BadInput, ConfigurationThatIsNoToml) {
   const std::string file = write("lab.toml", "[glove\n");
-  for (const char* service : services) expect_refusal(service, {"--config", file}, 2, "lab.toml:1");
+  for (const char* service : services)
+    expect_refusal(service, {"--config", file}, 2, "lab.toml: line 1");
 }
 
 TEST_F(BadInput, MissingConfiguration) {

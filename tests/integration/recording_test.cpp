@@ -47,10 +47,10 @@ class Recording : public RecorderRig {
   static std::uint64_t written(const std::string& path, const std::string& topic) {
     auto reader = recording::mcap::Reader::open(path);
     if (!reader) return 0;
-    const auto statistics = reader->statistics();
+    const auto& statistics = reader->statistics();
     std::uint64_t sum = 0;
     for (const auto& [id, channel] : reader->contents().channels)
-      for (const auto& [counted, count] : statistics->channel_message_counts)
+      for (const auto& [counted, count] : statistics.channel_message_counts)
         if (counted == id && channel.topic == topic) sum += count;
     return sum;
   }

@@ -1,11 +1,8 @@
 #include "common/recording/compare/tolerance.hpp"
 
-#include <toml++/toml.h>
-
-#include <sstream>
-
 #include "common/base/file_text.hpp"
 #include "common/base/paths.hpp"
+#include "common/base/toml_document.hpp"
 
 namespace prehend::recording {
 namespace {
@@ -34,16 +31,10 @@ Expected<Tolerance> tolerance_of(const toml::node& node, const std::string& wher
 }  // namespace
 
 Expected<ToleranceTable> ToleranceTable::parse(std::string_view text, const std::string& origin) {
-  toml::table document;
-  try {
-    document = toml::parse(text, origin);
-  } catch (const toml::parse_error& error) {
-    std::ostringstream where;
-    where << error.source();
-    return fail(std::string(error.description()), where.str());
-  }
+  const auto document = parse_toml(text, origin, "tolerances are TOML");
+  if (!document) return tl::unexpected(document.error());
   ToleranceTable result;
-  for (const auto& [type, node] : document) {
+  for (const auto& [type, node] : *document) {
     const std::string name(type.str());
     const toml::table* fields = node.as_table();
     if (!fields) return fail("is no table of fields", origin + ": " + name);

@@ -27,52 +27,76 @@ tl::unexpected<Error> damaged(const std::string& why) {
   return fail("a chunk does not decompress: " + why);
 }
 
-Expected<Bytes> decompress_zstd(View bytes, std::uint64_t size) {
+/// Puts what comes out into `out`, also before a failure.
+Expected<void> decompress_zstd(View bytes, std::uint64_t size, Bytes& out) {
   const std::unique_ptr<ZSTD_DCtx, decltype(&ZSTD_freeDCtx)> context(ZSTD_createDCtx(),
                                                                      &ZSTD_freeDCtx);
-  Bytes out;
   std::size_t filled = 0;
   ZSTD_inBuffer input{bytes.data(), bytes.size(), 0};
   std::size_t left = 1;  // 0: the frame is complete
-  while (left != 0) {
+  Expected<void> done;
+  while (left != 0 && done) {
     const std::size_t room = grow(out, filled, size);
     std::uint8_t none = 0;
     ZSTD_outBuffer output{room == 0 ? &none : out.data() + filled, room, 0};
     const std::size_t before = input.pos;
     left = ZSTD_decompressStream(context.get(), &output, &input);
-    if (ZSTD_isError(left)) return damaged(ZSTD_getErrorName(left));
+    if (ZSTD_isError(left)) {
+      done = damaged(ZSTD_getErrorName(left));
+      continue;
+    }
     filled += output.pos;
     if (left != 0 && output.pos == 0 && input.pos == before)
-      return damaged(room == 0 ? "it is larger than it says" : "it is cut short");
+      done = damaged(room == 0 ? "it is larger than it says" : "it is cut short");
   }
-  if (filled != size) return damaged("it is smaller than it says");
   out.resize(filled);
-  return out;
+  if (done && filled != size) return damaged("it is smaller than it says");
+  return done;
 }
 
-Expected<Bytes> decompress_lz4(View bytes, std::uint64_t size) {
+Expected<void> decompress_lz4(View bytes, std::uint64_t size, Bytes& out) {
   LZ4F_dctx* raw = nullptr;
   if (LZ4F_isError(LZ4F_createDecompressionContext(&raw, LZ4F_VERSION)))
     return damaged("no memory");
   const std::unique_ptr<LZ4F_dctx, decltype(&LZ4F_freeDecompressionContext)> context(
       raw, &LZ4F_freeDecompressionContext);
-  Bytes out;
   std::size_t filled = 0, left = 1;
-  while (left != 0) {
+  Expected<void> done;
+  while (left != 0 && done) {
     const std::size_t room = grow(out, filled, size);
     std::uint8_t none = 0;
     std::size_t written = room, read = bytes.size();
     left = LZ4F_decompress(context.get(), room == 0 ? &none : out.data() + filled, &written,
                            bytes.data(), &read, nullptr);
-    if (LZ4F_isError(left)) return damaged(LZ4F_getErrorName(left));
+    if (LZ4F_isError(left)) {
+      done = damaged(LZ4F_getErrorName(left));
+      continue;
+    }
     filled += written;
     bytes = bytes.subspan(read);
     if (left != 0 && written == 0 && read == 0)
-      return damaged(room == 0 ? "it is larger than it says" : "it is cut short");
+      done = damaged(room == 0 ? "it is larger than it says" : "it is cut short");
   }
-  if (filled != size) return damaged("it is smaller than it says");
   out.resize(filled);
-  return out;
+  if (done && filled != size) return damaged("it is smaller than it says");
+  return done;
+}
+
+Expected<void> decompress_into(Compression compression, View bytes, std::uint64_t size,
+                               Bytes& out) {
+  if (size > max_chunk) return damaged("it says that it is larger than 2 GiB");
+  switch (compression) {
+    case Compression::zstd:
+      return decompress_zstd(bytes, size, out);
+    case Compression::lz4:
+      return decompress_lz4(bytes, size, out);
+    case Compression::none:
+      break;
+  }
+  out.assign(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(
+                                                std::min<std::uint64_t>(size, bytes.size())));
+  if (bytes.size() != size) return damaged("its size is not what it says");
+  return {};
 }
 
 /// As in the file, where none is an empty text.
@@ -117,17 +141,16 @@ Expected<void> compress(Compression compression, View bytes, Bytes& out) {
 }
 
 Expected<Bytes> decompress(Compression compression, View bytes, std::uint64_t size) {
-  if (size > max_chunk) return damaged("it says that it is larger than 2 GiB");
-  switch (compression) {
-    case Compression::zstd:
-      return decompress_zstd(bytes, size);
-    case Compression::lz4:
-      return decompress_lz4(bytes, size);
-    case Compression::none:
-      break;
-  }
-  if (bytes.size() != size) return damaged("its size is not what it says");
-  return Bytes(bytes.begin(), bytes.end());
+  Bytes out;
+  if (auto done = decompress_into(compression, bytes, size, out); !done)
+    return tl::unexpected(done.error());
+  return out;
+}
+
+Bytes decompress_front(Compression compression, View bytes, std::uint64_t size) {
+  Bytes out;
+  (void)decompress_into(compression, bytes, size, out);  // it fails, for the end is missing
+  return out;
 }
 
 }  // namespace prehend::recording::mcap

@@ -22,4 +22,7 @@ Expected<void> compress(Compression compression, View bytes, Bytes& out);
 /// out, so a size that lies costs nothing.
 Expected<Bytes> decompress(Compression compression, View bytes, std::uint64_t size);
 
+/// Of a chunk whose end is missing, the bytes up to there: as many as come out, at most `size`.
+Bytes decompress_front(Compression compression, View bytes, std::uint64_t size);
+
 }  // namespace prehend::recording::mcap

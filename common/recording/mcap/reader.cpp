@@ -5,6 +5,7 @@
 #include <queue>
 #include <set>
 
+#include "common/recording/mcap/measure.hpp"
 #include "common/recording/mcap/record_stream.hpp"
 #include "common/recording/mcap/survey.hpp"
 
@@ -23,26 +24,13 @@ Expected<Reader> Reader::open(const std::filesystem::path& path) {
   return reader;
 }
 
-Expected<Statistics> Reader::statistics() {
-  if (contents_->statistics) return *contents_->statistics;
-  Statistics counted;
-  MessageCursor cursor = messages();
-  while (true) {
-    const auto next = cursor.next();
-    if (!next) return tl::unexpected(next.error());
-    if (!*next) break;
-    counted.count((*next)->message.channel_id, (*next)->message.log_time);
-  }
-  counted.schema_count = static_cast<std::uint16_t>(contents_->schemas.size());
-  counted.channel_count = static_cast<std::uint32_t>(contents_->channels.size());
-  counted.attachment_count = static_cast<std::uint32_t>(contents_->attachments.size());
-  counted.metadata_count = static_cast<std::uint32_t>(contents_->metadata.size());
-  counted.chunk_count = static_cast<std::uint32_t>(contents_->chunks.size());
-  contents_->statistics = counted;
-  return counted;
+const Measured& Reader::measured() {
+  if (!measured_) measured_ = std::make_unique<Measured>(measure(*file_, *contents_));
+  return *measured_;
 }
 
 MessageCursor Reader::messages(Selection selection) {
+  measured();  // the times of chunks, by which they are chosen and ordered, are right from here on
   return MessageCursor(*file_, *contents_, std::move(selection));
 }
 
@@ -111,9 +99,8 @@ struct MessageCursor::State {
 
   /// Reads a source and lists its messages. On failure those before the bad place are listed.
   Expected<void> load(const Source& source) {
-    auto records = source.chunk ? read_chunk(file, *source.chunk)
-                                : file.read(source.stretch->begin,
-                                            source.stretch->end - source.stretch->begin);
+    auto records =
+        source.chunk ? read_chunk(file, *source.chunk) : read_stretch(file, *source.stretch);
     if (!records) return tl::unexpected(records.error());
     Loaded fresh{.offset = source.offset, .records = std::move(*records)};
     const auto listed = list_messages(fresh);

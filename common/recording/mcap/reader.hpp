@@ -11,17 +11,21 @@
 #include <vector>
 
 #include "common/base/error.hpp"
+#include "common/recording/mcap/compression.hpp"
 #include "common/recording/mcap/file.hpp"
 #include "common/recording/mcap/record.hpp"
 
 namespace prehend::recording::mcap {
 
-/// Records of a file from `begin` to `end` among which messages lie outside chunks.
+/// Bytes of a file from `begin` to `end` with records among which messages lie outside chunks that
+/// are whole: between chunks, or in the front of one whose end is missing.
 struct Stretch {
   std::uint64_t begin = 0;
   std::uint64_t end = 0;
   std::uint64_t message_start_time = 0;
   std::uint64_t message_end_time = 0;
+  Compression compression = Compression::none;
+  std::uint64_t size = 0;  // of the whole records, where they are compressed
 };
 
 /// What is in a file and where.
@@ -34,10 +38,19 @@ struct Contents {
   std::vector<AttachmentIndex> attachments;
   std::vector<MetadataIndex> metadata;
   std::optional<Statistics> statistics;
-  /// It has its footer: the writer was able to close it.
+  /// It has a footer: the writer was able to close it.
   bool closed = false;
-  /// What is wrong with it, first things first; what could be read is in the fields above.
+  /// What could not be read, first things first; what could is in the fields above.
   std::vector<Error> damage;
+  /// What is odd, but lost nothing.
+  std::vector<Error> remarks;
+};
+
+/// What the messages of a file are, whatever its summary says of them.
+struct Measured {
+  Statistics statistics;
+  std::vector<Error> damage;   // parts that cannot be read
+  std::vector<Error> remarks;  // what the file says of itself and is not so
 };
 
 /// Which messages are wanted.
@@ -52,7 +65,8 @@ class MessageCursor;
 
 /// Reads an MCAP file, with or without index, whole or cut short. What its summary does not cover
 /// is found by walking through it once. Lengths and offsets in the file are checked before they are
-/// used. Not thread safe; several readers of one file are.
+/// used; counts and times are taken from the messages themselves, which are read once for that. Not
+/// thread safe; several readers of one file are.
 class Reader {
  public:
   /// Fails when it is not an MCAP file of this major version or cannot be read. Everything less is
@@ -62,8 +76,9 @@ class Reader {
   const Contents& contents() const { return *contents_; }
   const File& file() const { return *file_; }
 
-  /// The file's statistics, or made by reading all messages where it has none.
-  Expected<Statistics> statistics();
+  /// Counts and times of all messages that can be read.
+  const Measured& measured();
+  const Statistics& statistics() { return measured().statistics; }
 
   /// Messages in order of log time, in order of the file where it is the same. Several cursors may
   /// be open; each must not outlive the reader.
@@ -80,6 +95,7 @@ class Reader {
   // Behind pointers, so that cursors survive a move.
   std::unique_ptr<File> file_;
   std::unique_ptr<Contents> contents_;
+  std::unique_ptr<Measured> measured_;
 };
 
 /// A message with its channel; both are valid until the cursor moves on.

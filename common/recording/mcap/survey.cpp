@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "common/recording/mcap/compression.hpp"
 #include "common/recording/mcap/record_stream.hpp"
 
 namespace prehend::recording::mcap {
@@ -67,6 +68,8 @@ class Survey {
   Expected<void> take_summary();
   /// Walks through what the indexes do not cover.
   void walk_gaps();
+  /// The footer was met, though not where the file ends.
+  bool ended() const { return ended_; }
 
  private:
   struct Region {
@@ -78,15 +81,19 @@ class Survey {
   void note(const RawRecord& record);
   Expected<void> take(const RawRecord& record);
   Expected<void> take_chunk(const RawRecord& record);
+  Expected<void> take_inside(View records);
+  std::uint64_t salvage(std::uint64_t offset, std::uint64_t end);
+  bool holds_data(std::uint64_t offset) const;
+  void note_what_follows(std::uint64_t position);
   void take_message(const RawRecord& record, const Message& message);
 
   const File& file_;
   const DataSection& frame_;
   Contents& contents_;
   std::vector<Region> regions_;  // that the indexes cover, in order
-  Statistics counted_;           // of what was walked through
   bool after_chunk_ = false;     // message indexes that come now belong to the last chunk
   bool in_stretch_ = false;
+  bool zeros_ = false, ended_ = false;
 };
 
 Expected<void> Survey::take_summary() {
@@ -192,15 +199,6 @@ void Survey::walk_gaps() {
   }
   walk(position, frame_.data_end);
   std::ranges::sort(contents_.chunks, {}, &ChunkIndex::chunk_start_offset);
-  // All of it was walked through: then it is counted too.
-  if (regions_.empty() && !contents_.statistics) {
-    counted_.schema_count = static_cast<std::uint16_t>(contents_.schemas.size());
-    counted_.channel_count = static_cast<std::uint32_t>(contents_.channels.size());
-    counted_.attachment_count = static_cast<std::uint32_t>(contents_.attachments.size());
-    counted_.metadata_count = static_cast<std::uint32_t>(contents_.metadata.size());
-    counted_.chunk_count = static_cast<std::uint32_t>(contents_.chunks.size());
-    contents_.statistics = counted_;
-  }
 }
 
 void Survey::walk(std::uint64_t begin, std::uint64_t end) {
@@ -209,10 +207,22 @@ void Survey::walk(std::uint64_t begin, std::uint64_t end) {
   while (true) {
     const auto record = records.next();
     if (!record) {
-      contents_.damage.push_back(record.error());
+      Error error = record.error();
+      if (const std::uint64_t kept = salvage(records.position(), end))
+        error.what += ", " + std::to_string(kept) + " messages of it could be read";
+      (holds_data(records.position()) ? contents_.damage : contents_.remarks)
+          .push_back(std::move(error));
       return;
     }
-    if (!*record || (*record)->opcode == DataEnd::opcode) return;
+    if (!*record) return;
+    if ((*record)->opcode == DataEnd::opcode) return note_what_follows(records.position());
+    if ((*record)->opcode == 0) {
+      if (!zeros_)
+        contents_.damage.push_back({"zeros in place of a record", file_.at((*record)->offset),
+                                    "as a disk leaves them that lost its power"});
+      zeros_ = true;
+      continue;
+    }
     if (auto taken = take(**record); !taken)
       contents_.damage.push_back(at(file_, (*record)->offset, taken.error()).value());
   }
@@ -258,20 +268,7 @@ Expected<void> Survey::take_chunk(const RawRecord& raw) {
   if (!chunk) return tl::unexpected(chunk.error());
   const auto expanded = expand(*chunk);
   if (!expanded) return tl::unexpected(expanded.error());
-  ChunkRecords inside(*expanded);
-  while (true) {
-    const auto each = inside.next();
-    if (!each) return tl::unexpected(each.error());
-    if (!*each) break;
-    const auto record = parse((*each)->opcode, (*each)->content);
-    if (!record) return tl::unexpected(record.error());
-    if (const auto* schema = std::get_if<Schema>(&*record))
-      contents_.schemas.emplace(schema->id, *schema);
-    else if (const auto* channel = std::get_if<Channel>(&*record))
-      contents_.channels.emplace(channel->id, *channel);
-    else if (const auto* message = std::get_if<Message>(&*record))
-      counted_.count(message->channel_id, message->log_time);
-  }
+  if (auto taken = take_inside(*expanded); !taken) return taken;
   contents_.chunks.push_back({.message_start_time = chunk->message_start_time,
                               .message_end_time = chunk->message_end_time,
                               .chunk_start_offset = raw.offset,
@@ -283,9 +280,95 @@ Expected<void> Survey::take_chunk(const RawRecord& raw) {
   return {};
 }
 
+/// Schemas and channels of a chunk.
+Expected<void> Survey::take_inside(View records) {
+  ChunkRecords inside(records);
+  while (true) {
+    const auto each = inside.next();
+    if (!each) return tl::unexpected(each.error());
+    if (!*each) return {};
+    const auto record = parse((*each)->opcode, (*each)->content);
+    if (!record) return tl::unexpected(record.error());
+    if (const auto* schema = std::get_if<Schema>(&*record))
+      contents_.schemas.emplace(schema->id, *schema);
+    else if (const auto* channel = std::get_if<Channel>(&*record))
+      contents_.channels.emplace(channel->id, *channel);
+  }
+}
+
+/// A chunk that begins here and whose end is missing becomes a stretch of its whole records.
+/// Returns how many messages are in it.
+std::uint64_t Survey::salvage(std::uint64_t offset, std::uint64_t end) {
+  end = std::min(end, file_.size());
+  if (end < offset + record_head) return 0;
+  const auto bytes = file_.read(offset, end - offset);
+  if (!bytes || bytes->front() != Chunk::opcode) return 0;
+  Cursor cursor(View(*bytes).subspan(record_head));
+  cursor.take(2 * sizeof(std::uint64_t));  // times, which messages know better
+  const auto size = cursor.number<std::uint64_t>();
+  cursor.take(sizeof(std::uint32_t));  // the CRC is of the whole
+  const auto compression = compression_named(cursor.string());
+  cursor.number<std::uint64_t>();
+  if (!cursor.good() || !compression) return 0;
+  const Bytes records = decompress_front(*compression, cursor.rest(), size);
+  Stretch stretch{.begin = end - cursor.rest().size(), .compression = *compression};
+  Statistics inside;
+  ChunkRecords front(records);
+  for (auto raw = front.next(); raw && *raw; raw = front.next()) {
+    const auto record = parse((*raw)->opcode, (*raw)->content);
+    if (!record) break;
+    stretch.size = (*raw)->end();
+    if (const auto* message = std::get_if<Message>(&*record))
+      inside.count(message->channel_id, message->log_time);
+  }
+  if (!take_inside(View(records).first(stretch.size)) || inside.message_count == 0) return 0;
+  stretch.end = *compression == Compression::none ? stretch.begin + stretch.size : end;
+  stretch.message_start_time = inside.message_start_time;
+  stretch.message_end_time = inside.message_end_time;
+  contents_.stretches.push_back(stretch);
+  return inside.message_count;
+}
+
+/// Does a record that is cut short here lose more than an index, which was made of the rest?
+bool Survey::holds_data(std::uint64_t offset) const {
+  const auto opcode = file_.read(offset, 1);
+  if (!opcode) return true;
+  switch (opcode->front()) {
+    case MessageIndex::opcode:
+    case ChunkIndex::opcode:
+    case AttachmentIndex::opcode:
+    case Statistics::opcode:
+    case MetadataIndex::opcode:
+    case SummaryOffset::opcode:
+    case DataEnd::opcode:
+    case Footer::opcode:
+      return false;
+    default:
+      return true;
+  }
+}
+
+/// Behind the end of the data come the summary, the footer and eight bytes; whatever comes then is
+/// another recording, or what a disk had there.
+void Survey::note_what_follows(std::uint64_t position) {
+  RecordStream records(file_, position, file_.size());
+  for (auto raw = records.next(); raw && *raw; raw = records.next()) {
+    if ((*raw)->opcode != Footer::opcode) continue;
+    const std::uint64_t ended = records.position() + magic.size();
+    ended_ = ended <= file_.size();
+    if (ended >= file_.size()) return;
+    const auto next =
+        file_.read(ended, std::min<std::uint64_t>(magic.size(), file_.size() - ended));
+    contents_.damage.push_back(
+        {std::to_string(file_.size() - ended) + " bytes behind the recording's end are not read" +
+             (next && is_magic(*next) ? ", another recording begins there" : ""),
+         file_.at(ended), "`tail -c +" + std::to_string(ended + 1) + "` gives them"});
+    return;
+  }
+}
+
 void Survey::take_message(const RawRecord& raw, const Message& message) {
   after_chunk_ = false;
-  counted_.count(message.channel_id, message.log_time);
   if (!in_stretch_ || raw.offset - contents_.stretches.back().begin >= max_stretch)
     contents_.stretches.push_back({raw.offset, raw.end(), message.log_time, message.log_time});
   in_stretch_ = true;
@@ -314,13 +397,22 @@ Expected<Contents> survey(const File& file) {
       contents = Contents{.header = *header};
       contents.damage.push_back(taken.error());
     }
-  } else {
-    contents.damage.push_back(Error{"the file has no end: its writer did not close it", file.name(),
-                                    "prehend recording recover makes it whole"});
   }
-  contents.closed = frame.footer.has_value();
-  Survey(file, frame, contents).walk_gaps();
+  Survey by_walking(file, frame, contents);
+  by_walking.walk_gaps();
+  contents.closed = frame.footer || by_walking.ended();
+  if (!contents.closed)
+    contents.remarks.push_back({"the file has no end: its writer did not close it", file.name(),
+                                "prehend recording recover makes it whole"});
   return contents;
+}
+
+Expected<Bytes> read_stretch(const File& file, const Stretch& stretch) {
+  auto bytes = file.read(stretch.begin, stretch.end - stretch.begin);
+  if (!bytes || stretch.compression == Compression::none) return bytes;
+  Bytes records = decompress_front(stretch.compression, *bytes, stretch.size);
+  if (records.size() < stretch.size) return fail("is not as it was", file.at(stretch.begin));
+  return records;
 }
 
 Expected<Bytes> read_chunk(const File& file, const ChunkIndex& index) {

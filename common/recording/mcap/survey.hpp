@@ -12,6 +12,9 @@ Expected<Contents> survey(const File& file);
 /// A chunk of the file as it was indexed, decompressed and checked.
 Expected<Bytes> read_chunk(const File& file, const ChunkIndex& index);
 
+/// The records of a stretch, whole ones.
+Expected<Bytes> read_stretch(const File& file, const Stretch& stretch);
+
 /// The same failure, said to be at this place of the file.
 tl::unexpected<Error> at(const File& file, std::uint64_t offset, Error error);
 

@@ -11,6 +11,7 @@
 
 #include "common/base/paths.hpp"
 #include "common/base/printable.hpp"
+#include "common/base/toml_document.hpp"
 #include "common/model/toml_values.hpp"
 #include "common/proto/pose_numbers.hpp"
 #include "common/proto/sealed_file.hpp"
@@ -214,6 +215,9 @@ std::string to_toml(const TaskModel& task) {
 
 namespace {
 
+constexpr double farthest = 10;  // m, of any place that a person showed
+constexpr std::int64_t max_demonstrations = 1'000'000;
+
 /// { position_m = [3], turn_deg = [3] }: axis times angle.
 Expected<Pose> pose_in(const toml::table& table, std::string_view key, const std::string& where) {
   const toml::table* pose = table[key].as_table();
@@ -223,6 +227,8 @@ Expected<Pose> pose_in(const toml::table& table, std::string_view key, const std
     return tl::unexpected(ok.error());
   const auto position = model::numbers(pose->get("position_m"), 3, here + ".position_m");
   if (!position) return tl::unexpected(position.error());
+  if (position->cwiseAbs().maxCoeff() > farthest)
+    return fail("is too far away to be meant", here + ".position_m", "metres");
   const auto degrees = model::numbers(pose->get("turn_deg"), 3, here + ".turn_deg");
   if (!degrees) return tl::unexpected(degrees.error());
   const Eigen::Vector3d turn = *degrees * std::numbers::pi / 180;
@@ -282,6 +288,8 @@ Expected<Step> step_in(const toml::table& table, const std::string& where) {
              via = model::number_or(table, "via_height_m", 0, where);
   if (!spread) return tl::unexpected(spread.error());
   if (!via) return tl::unexpected(via.error());
+  if (!(*spread >= 0 && *spread <= farthest && *via >= 0 && *via <= farthest))
+    return fail("spread_m and via_height_m are 0 to 10", where, "metres");
   made.X_OG = *X_OG;
   made.X_RO = *X_RO;
   made.spread = *spread;
@@ -295,7 +303,7 @@ Expected<Step> step_in(const toml::table& table, const std::string& where) {
 }  // namespace
 
 Expected<TaskModel> from_toml(std::string_view text, const std::string& file) {
-  const auto root = model::parse_toml(text, file);
+  const auto root = parse_toml(text, file);
   if (!root) return tl::unexpected(root.error());
   if (auto ok = model::only_keys(*root, {"name", "demonstrations", "step"}, file,
                                  "see prehend tasks show");
@@ -305,7 +313,12 @@ Expected<TaskModel> from_toml(std::string_view text, const std::string& file) {
   if (!name) return tl::unexpected(name.error());
   const auto count = value_or(*root, "demonstrations", std::int64_t{0}, "number", file);
   if (!count) return tl::unexpected(count.error());
-  if (*count < 0) return fail("demonstrations are fewer than none", file);
+  if (*count < 0 || *count > max_demonstrations)
+    return fail(fmt::format("demonstrations must be 0 to {}", max_demonstrations), file);
+  // Its file bears the name.
+  if (auto path = task_path(*name, "."); !path || name->find('/') != std::string::npos)
+    return fail(fmt::format("the name «{}» is no name of a file", printable(*name)), file,
+                "letters, digits and blanks");
   TaskModel made{*name, static_cast<std::size_t>(*count), {}};
   const auto steps = model::entries(*root, "step");
   if (!steps) return tl::unexpected(model::located(steps.error(), file));

@@ -32,10 +32,8 @@ Expected<std::unique_ptr<Film>> Film::open(const std::filesystem::path& file) {
   std::unique_ptr<Film> made(new Film(std::move(*reader)));
   if (!made->next_)
     return fail("holds no message of a lab", file.string(), "prehend recording info FILE");
-  auto statistics = made->reader_.statistics();
-  if (!statistics) return tl::unexpected(statistics.error());
   made->begin_ = made->time_ = made->next_time_;
-  made->end_ = from_ns(static_cast<std::int64_t>(statistics->message_end_time));
+  made->end_ = from_ns(static_cast<std::int64_t>(made->reader_.statistics().message_end_time));
   return made;
 }
 

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "common/service/life_cycle.hpp"
+#include "common/tool/output.hpp"
 #include "services/console/service/recording.hpp"
 #include "services/console/service/service.hpp"
 
@@ -11,7 +12,9 @@ int main(int argc, char** argv) {
   const bool recorded = std::any_of(arguments.begin(), arguments.end(), [](const auto& argument) {
     return argument == "--recording" || argument.starts_with("--recording=");
   });
-  if (recorded) return prehend::console::show_recording(arguments);
+  if (recorded)
+    return prehend::tool::with_whole_output(
+        [&] { return prehend::console::show_recording(arguments); });
   return prehend::service::run<prehend::console::Service>(
       argc, argv,
       {.name = "console",

@@ -1,9 +1,13 @@
 #include "services/glove/devices/landmark_line.hpp"
 
+#include <algorithm>
+#include <array>
+#include <cctype>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "services/glove/core/frame.hpp"
+#include "services/glove/core/plausible_hand.hpp"
 
 namespace prehend::glove {
 namespace {
@@ -16,6 +20,35 @@ constexpr double farthest = 5;  // m
 /// Where landmark i of 21 stands among WebXR's 25: each finger has its metacarpal before it.
 std::size_t webxr_index(std::size_t i) {
   return i < 5 ? i : i + (i - 1) / 4;
+}
+
+/// OpenXR's 26 are those of WebXR behind the palm.
+std::size_t place_of(std::size_t i, std::size_t count) {
+  return count == 21 ? i : webxr_index(i) + (count == 26 ? 1 : 0);
+}
+
+/// "Right", as some trackers write it, is right.
+std::string small_letters(const Json& word) {
+  if (!word.is_string()) return {};
+  auto text = word.get<std::string>();
+  std::ranges::transform(text, text.begin(),
+                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return text;
+}
+
+/// s since 1970 of a time in s, ms, µs or ns, of which only one lies between 2001 and 2100; any
+/// other number stays.
+double in_seconds(double stamp) {
+  constexpr double from = 1e9, until = 4.2e9;
+  for (const double unit : {1e-3, 1e-6, 1e-9})
+    if (stamp * unit >= from && stamp * unit <= until) return stamp * unit;
+  return stamp;
+}
+
+/// Python writes what is not finite as NaN and Infinity, which is no JSON.
+bool has_no_number(std::string_view text) {
+  return text.find("NaN") != std::string_view::npos ||
+         text.find("Infinity") != std::string_view::npos;
 }
 
 /// Whether the line's buttons can be meant; they are put into it.
@@ -37,7 +70,7 @@ bool take_buttons(const Json& buttons, LandmarkLine& line) {
 tl::expected<LandmarkLine, std::string_view> parse_landmarks(std::string_view text) {
   const auto refuse = [](std::string_view reason) { return tl::unexpected(reason); };
   const Json json = Json::parse(text, nullptr, false);
-  if (!json.is_object()) return refuse("unreadable");
+  if (!json.is_object()) return refuse(has_no_number(text) ? "not finite" : "unreadable");
   const auto field = [&](const char* name) -> const Json& {
     static const Json none;
     const auto found = json.find(name);
@@ -45,22 +78,23 @@ tl::expected<LandmarkLine, std::string_view> parse_landmarks(std::string_view te
   };
   if (field("version") != landmark_line_version) return refuse("unknown version");
   LandmarkLine line;
-  const Json &hand = field("hand"), &origin = field("origin"), &points = field("points_m");
+  const Json &origin = field("origin"), &points = field("points_m");
+  const std::string hand = small_letters(field("hand"));
   line.left = hand == "left";
   line.in_room = origin == "room";
   if ((!line.left && hand != "right") || (!line.in_room && origin != "hand") || !points.is_array())
     return refuse("unreadable");
   if (const Json& stamp = field("stamp_s"); !stamp.is_null()) {
     if (!stamp.is_number()) return refuse("unreadable");
-    line.stamp = stamp.get<double>();
+    line.stamp = in_seconds(stamp.get<double>());
     // Beyond, nanoseconds since 1970 do not fit into what the messages have for them.
     if (!(std::abs(*line.stamp) < 9e9)) return refuse("out of range");
   }
   if (!take_buttons(field("buttons"), line)) return refuse("unreadable");
-  if (points.size() != 21 && points.size() != 25) return refuse("wrong count");
-  const bool webxr = points.size() == 25;
+  if (points.size() != 21 && points.size() != 25 && points.size() != 26)
+    return refuse("wrong count");
   for (std::size_t i = 0; i < line.points.size(); ++i) {
-    const Json& point = points[webxr ? webxr_index(i) : i];
+    const Json& point = points[place_of(i, points.size())];
     if (!point.is_array() || point.size() != 3) return refuse("unreadable");
     for (std::size_t k = 0; k < 3; ++k) {
       // What is not finite has no number in JSON; programs write null.
@@ -68,9 +102,37 @@ tl::expected<LandmarkLine, std::string_view> parse_landmarks(std::string_view te
       line.points[i][static_cast<Eigen::Index>(k)] = point[k].get<double>();
     }
     if (!line.points[i].allFinite()) return refuse("not finite");
-    if (line.points[i].norm() > farthest) return refuse("out of range");
+  }
+  const auto is_far = [](const Vector3d& point) { return point.norm() > farthest; };
+  if (std::ranges::any_of(line.points, is_far)) {
+    const std::string_view why = why_no_hand(line.points, line.left);
+    return refuse(why.starts_with("in ") ? why : "out of range");
   }
   return line;
+}
+
+std::vector<std::string_view> documents_in(std::string_view datagram) {
+  std::vector<std::string_view> found;
+  while (!datagram.empty()) {
+    std::size_t end = 0, depth = 0;
+    bool quoted = false, ended = false;
+    for (; end < datagram.size() && datagram[end] != '\n' && !ended; ++end) {
+      const char c = datagram[end];
+      if (quoted && c == '\\')
+        ++end;
+      else if (c == '"')
+        quoted = !quoted;
+      else if (!quoted && c == '{')
+        ++depth;
+      else if (!quoted && c == '}' && depth > 0)
+        ended = --depth == 0;
+    }
+    end = std::min(end, datagram.size());
+    const std::string_view text = datagram.substr(0, end);
+    if (text.find_first_not_of(" \t\r") != std::string_view::npos) found.push_back(text);
+    datagram.remove_prefix(end < datagram.size() && datagram[end] == '\n' ? end + 1 : end);
+  }
+  return found;
 }
 
 std::string to_line(const LandmarkLine& line, bool webxr) {

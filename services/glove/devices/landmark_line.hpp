@@ -16,13 +16,15 @@
 ///    "points_m": [[x, y, z], …]}
 ///
 ///   version   1
-///   stamp_s   optional: time of the picture, s since 1970-01-01T00:00:00Z on this machine's clock
-///   hand      "left" or "right": whose hand it is
+///   stamp_s   optional: time of the picture, s since 1970-01-01T00:00:00Z on this machine's clock;
+///             ms, µs and ns are told by their size
+///   hand      "left" or "right", in any letters: whose hand it is
 ///   origin    "room": the points are where the hand is, in one frame that stays where it is, the
 ///             tracker's (tracker.X_WT). "hand": only relative to each other they are right, as of
 ///             a webcam; the hand is then held at the scene's X_WH
 ///   points_m  21 points as MediaPipe has them (bare_hand.hpp), or 25 in the order of WebXR, which
-///             also has the four metacarpals; metres, at most 5 from the origin
+///             also has the four metacarpals, or the 26 of OpenXR, with the palm first; metres, at
+///             most 5 from the origin
 ///   buttons   optional: numbers of the buttons that are held, 1 to 8; [] for none. Who has buttons
 ///             says so in every line
 namespace prehend::glove {
@@ -38,8 +40,12 @@ struct LandmarkLine {
 };
 
 /// Fails with the reason why it cannot be used: "unreadable", "unknown version", "wrong count",
-/// "not finite" or "out of range".
+/// "not finite", "in millimetres", "in centimetres" or "out of range".
 tl::expected<LandmarkLine, std::string_view> parse_landmarks(std::string_view line);
+
+/// The documents of a datagram, one after the other: a line each, or several in a line. What is
+/// none goes up to the end of its line.
+std::vector<std::string_view> documents_in(std::string_view datagram);
 
 /// The line, without a line break. `webxr`: with 25 points, metacarpals halfway from the wrist.
 std::string to_line(const LandmarkLine& line, bool webxr = false);

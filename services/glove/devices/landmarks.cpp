@@ -1,6 +1,10 @@
 #include "services/glove/devices/landmarks.hpp"
 
+#include <algorithm>
+#include <map>
+
 #include "common/base/clock.hpp"
+#include "services/glove/core/plausible_hand.hpp"
 #include "services/glove/devices/datagrams.hpp"
 #include "services/glove/devices/frame_clock.hpp"
 #include "services/glove/devices/hand_in_frame.hpp"
@@ -16,14 +20,13 @@ using Clock = std::chrono::steady_clock;
 constexpr double stale = 0.3;  // s, as the processor has it
 constexpr Duration max_silence = milliseconds(500);
 
-/// From the wrist, m: the middle knuckle at least and at most, and the farthest of all points.
-constexpr double short_palm = 0.04, long_palm = 0.18, long_hand = 0.35;
+/// How far any point moves at least between two measurements of a living hand, m. Trackers have
+/// more noise, also where they round.
+constexpr double frozen = 1e-6;
 
-bool is_hand(const Landmarks& points) {
-  const double palm = (points[9] - points[0]).norm();
-  if (palm < short_palm || palm > long_palm) return false;
-  for (const auto& point : points)
-    if ((point - points[0]).norm() > long_hand) return false;
+bool is_still(const Landmarks& a, const Landmarks& b) {
+  for (std::size_t i = 0; i < a.size(); ++i)
+    if ((a[i] - b[i]).cwiseAbs().maxCoeff() > frozen) return false;
   return true;
 }
 
@@ -52,11 +55,14 @@ class LandmarksDevice final : public Device {
     while (!stop.stop_requested()) {
       const auto datagram = socket->read(milliseconds(50));
       if (!datagram) return tl::unexpected(datagram.error());
-      if (!datagram->refused.empty()) sink_.drop(datagram->refused, 1);
+      if (!datagram->refused.empty()) drop(datagram->refused);
       if (receive(datagram->bytes, process_now())) last = Clock::now();
-      if (Clock::now() - last > max_silence)
-        return fail("no usable landmarks come", receiver_.address,
-                    "start the hand tracking program");
+      if (Clock::now() - last <= max_silence) continue;
+      // The port stays open: who sends to a closed one is refused, and may give up.
+      say(silence().message());
+      refused_.clear();
+      clock_.restart();
+      last = Clock::now();
     }
     return {};
   }
@@ -64,23 +70,41 @@ class LandmarksDevice final : public Device {
   /// True if there was a hand in it.
   bool receive(std::string_view datagram, Time now) {
     bool any = false;
-    while (!datagram.empty()) {
-      const std::size_t end = datagram.find('\n');
-      const std::string_view text = datagram.substr(0, end);
-      datagram.remove_prefix(end == std::string_view::npos ? datagram.size() : end + 1);
-      if (text.empty()) continue;
+    for (const std::string_view text : documents_in(datagram)) {
       const auto line = parse_landmarks(text);
       const std::string_view reason = line ? use(*line, now, any) : line.error();
-      if (!reason.empty()) sink_.drop(reason, 1);
+      if (!reason.empty()) drop(reason);
       any = any || reason.empty();
     }
+    if (any) refused_.clear();
     return any;
+  }
+
+  /// Once, until it is another complaint or a hand has come.
+  void say(std::string complaint) {
+    if (complaint != said_) sink_.degraded(complaint);
+    said_ = std::move(complaint);
+  }
+
+  void drop(std::string_view reason) {
+    ++refused_[std::string(reason)];
+    sink_.drop(reason, 1);
+  }
+
+  /// What is wrong when no hand comes: nothing does, or none of it can be used.
+  Error silence() const {
+    const auto often =
+        std::ranges::max_element(refused_, {}, [](const auto& entry) { return entry.second; });
+    if (often == refused_.end())
+      return {"no landmarks come", receiver_.address, "start the hand tracking program"};
+    return {"landmarks come, but cannot be used: " + often->first, receiver_.address,
+            std::string(advice_on(often->first))};
   }
 
   /// Why it cannot be used; empty if it was. `second`: the datagram had a hand already.
   std::string_view use(const LandmarkLine& line, Time now, bool second) {
     if (line.left != left_) return "other hand";
-    if (!is_hand(line.points)) return "not a hand";
+    if (const std::string_view why = why_no_hand(line.points, line.left); !why.empty()) return why;
     if (line.stamp) {
       const Time stamp(seconds(*line.stamp));
       const double age = to_seconds(now - stamp);
@@ -89,6 +113,7 @@ class LandmarksDevice final : public Device {
       if (stamp == last_stamp_) return line.points == last_points_ ? "repeated" : "second hand";
       if (stamp < last_stamp_) return "out of order";
       last_stamp_ = stamp;
+      if (is_still(line.points, last_points_)) return "frozen";
     } else {
       if (second) return "second hand";
       if (line.points == last_points_) return "repeated";
@@ -104,6 +129,7 @@ class LandmarksDevice final : public Device {
     frame->stamp = last_stamp_;
     frame->held = line.held;
     thread_.well();
+    said_.clear();
     sink_.frame(std::move(*frame));
     return {};
   }
@@ -117,7 +143,9 @@ class LandmarksDevice final : public Device {
   std::uint64_t sequence_ = 0;
   Time last_stamp_{};
   Landmarks last_points_;
+  std::map<std::string, std::uint64_t> refused_;  // since the last usable hand, by reason
   FrameClock clock_;
+  std::string said_;   // what was complained of
   Persistent thread_;  // last: joined before the rest goes
 };
 

@@ -58,6 +58,8 @@ Expected<std::unique_ptr<Device>> create_recording(const DeviceOptions& options)
             recording->left() ? " of a left hand, mirrored into a right one" : "");
   if (const std::string told = recording->left_out(); !told.empty())
     log::warning("{}: left out: {}", options.file.string(), told);
+  for (const std::string& remark : recording->remarks())
+    log::warning("{}: {}", options.file.string(), remark);
   PacedOptions paced{.every_frame = true,
                      .at_end = "the recording has ended; the hand stays as it is"};
   return std::make_unique<PacedDevice>(std::make_unique<Recording>(std::move(*recording)),

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -21,11 +22,12 @@ struct RecordingOptions {
 /// A recorded bare hand as a glove with sensors on the back of the hand and on all five fingertips.
 /// Two formats, told apart by their first line:
 ///  - Leap: `frame,t_us,fps,hand,…,palm_x,…`, mm and µs; positions of palm and joints
-///  - 21 landmarks: `frame,l0_x,…,l20_z`, metres in any frame, without time stamps
-/// Fails when its middle finger is never longer than 2 cm or mostly longer than 30 cm, or its
-/// frames are less than half a millisecond apart: units are others. In H the recorded middle
-/// knuckle lies where that of the hand model lies. If there are rows of a right hand, those of a
-/// left one are left out; a recording of left hands only is mirrored.
+///  - 21 landmarks: `frame,l0_x,…,l20_z`, metres in any frame; in place of `frame` a time, named
+///    `timestamp`, `time`, `stamp` or `t` with its unit: `_s`, `_ms`, `_us` or `_ns`
+/// Fails, with the reason, when most rows are no hand in these units (plausible_hand.hpp), or
+/// frames are less than half a millisecond apart. In H the recorded middle knuckle lies where that
+/// of the hand model lies. If there are rows of a right hand, those of a left one are left out; a
+/// recording of left hands only, or whose fingers bend as those of a left hand, is mirrored.
 class Recording final : public FrameSource {
  public:
   static Expected<Recording> load(const std::filesystem::path& file,
@@ -43,11 +45,16 @@ class Recording final : public FrameSource {
   std::size_t other_hand() const { return other_hand_; }
   /// The rows that were left out in few words; empty where none was.
   std::string left_out() const;
+  /// What is odd about the others: gaps, numbers that begin anew, a hand that is mirrored.
+  const std::vector<std::string>& remarks() const { return remarks_; }
 
  private:
+  friend class RecordingReader;
   std::vector<Frame> frames_;
   bool left_ = false;
   std::size_t unreadable_ = 0, other_hand_ = 0;
+  std::map<std::string, std::size_t> no_hands_;  // rows, by what they are instead
+  std::vector<std::string> remarks_;
 };
 
 }  // namespace prehend::glove

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <toml++/toml.h>
 
 #include <algorithm>
 #include <cmath>
@@ -10,6 +9,7 @@
 #include <numeric>
 #include <string_view>
 
+#include "common/base/toml_document.hpp"
 #include "services/glove/core/joint_sensors.hpp"
 
 namespace prehend::glove {
@@ -47,12 +47,9 @@ Expected<UserCalibration> load_user(const std::filesystem::path& file) {
   const auto bad = [&](const std::string& what) {
     return fail(what, file.string(), "make it with prehend glove calibrate");
   };
-  toml::table root;
-  try {
-    root = toml::parse_file(file.string());
-  } catch (const toml::parse_error& error) {
-    return bad(std::string(error.description()));
-  }
+  const auto document = load_toml(file, "make it with prehend glove calibrate");
+  if (!document) return tl::unexpected(document.error());
+  const toml::table& root = *document;
   UserCalibration user;
   user.user = root["user"].value_or(std::string());
   user.scale = root["hand_scale"].value_or(std::nan(""));

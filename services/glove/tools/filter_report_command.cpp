@@ -59,6 +59,8 @@ int report(const FilterReportArguments& arguments) {
     }
     if (const std::string told = recording->left_out(); !told.empty())
       log::warning("{}: left out: {}", file.string(), told);
+    for (const std::string& remark : recording->remarks())
+      log::warning("{}: {}", file.string(), remark);
     const std::vector<Frame> frames = frames_of(*recording, arguments.rate);
     FilterMeasurement one(arguments.noise);
     for (int round = 0; round < arguments.rounds; ++round) one.add(frames);

@@ -90,6 +90,8 @@ Expected<FrameInput> FrameInput::recorded(const std::filesystem::path& file) {
     if (!recording) return tl::unexpected(recording.error());
     if (const std::string told = recording->left_out(); !told.empty())
       log::warning("{}: left out: {}", file.string(), told);
+    for (const std::string& remark : recording->remarks())
+      log::warning("{}: {}", file.string(), remark);
     state->recorded = frames_of(*recording);
   }
   if (state->recorded.empty()) return fail("holds no glove/frame", file.string());

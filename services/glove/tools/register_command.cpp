@@ -3,6 +3,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "common/base/finite_number.hpp"
 #include "common/base/toml_text.hpp"
 #include "services/glove/core/calibration/toucher.hpp"
 #include "services/glove/tools/asking.hpp"
@@ -25,12 +26,9 @@ Expected<std::vector<Eigen::Vector3d>> known_points(const RegisterArguments& arg
         {-0.2, -0.15, 0}, {0.2, -0.15, 0}, {0.2, 0.15, 0}, {-0.2, 0.15, 0}};
   std::vector<Eigen::Vector3d> points;
   for (const std::string& text : arguments.points) {
-    Eigen::Vector3d p;
-    int used = 0;
-    if (std::sscanf(text.c_str(), "%lf,%lf,%lf%n", &p.x(), &p.y(), &p.z(), &used) != 3 ||
-        used != static_cast<int>(text.size()) || !p.allFinite())
-      return fail("a point is not X,Y,Z in m", text);
-    points.push_back(p);
+    const auto numbers = finite_list(text);
+    if (!numbers || numbers->size() != 3) return fail("a point is not X,Y,Z in m", text);
+    points.emplace_back(numbers->data());
   }
   return points;
 }

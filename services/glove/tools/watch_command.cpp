@@ -6,6 +6,7 @@
 #include <memory>
 #include <thread>
 
+#include "common/base/terminal.hpp"
 #include "common/dds/participant.hpp"
 #include "common/service/arguments.hpp"
 #include "common/service/consent_key.hpp"
@@ -89,7 +90,7 @@ int watch(const WatchArguments& arguments) {
   constexpr double snapshot_after = 2;  // s, in which every topic says something
   const double duration =
       arguments.duration > 0 ? arguments.duration : (arguments.json ? snapshot_after : 1e9);
-  const bool terminal = !arguments.json && ::isatty(STDOUT_FILENO) == 1;
+  const bool terminal = !arguments.json && has_cursor(STDOUT_FILENO);
   const auto pause = std::chrono::milliseconds(terminal ? 250 : 1000);
   std::unique_ptr<Consent> consent;
   if (arguments.consent) {

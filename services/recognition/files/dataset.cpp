@@ -1,5 +1,7 @@
 #include "services/recognition/files/dataset.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "common/base/progress.hpp"
@@ -28,7 +30,9 @@ Expected<TrainingView> load_view(const std::filesystem::path& file) {
   const auto mask = load_mask(beside);
   if (!mask) return tl::unexpected(mask.error());
   if (mask->width != picture->width || mask->height != picture->height)
-    return fail("has another size than its picture", beside.string());
+    return fail(fmt::format("has {}x{} px, its picture {}x{}", mask->width, mask->height,
+                            picture->width, picture->height),
+                beside.string(), "draw it over the pixels as stored, without the EXIF turn");
   view.mask = shrink_mask(*mask, view.picture.width, view.picture.height);
   return view;
 }

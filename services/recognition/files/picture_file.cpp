@@ -9,11 +9,17 @@
 #include <optional>
 
 #include "common/base/file_text.hpp"
+#include "common/base/natural_order.hpp"
 
 namespace prehend::recognition {
 namespace {
 
 constexpr std::size_t max_pixels = 40'000'000;
+constexpr const char* picture_kinds = "jpeg, png, bmp, tiff and webp are known";
+
+/// Pixels as they are stored, whatever an EXIF tag says of a turn: a lens is calibrated, a mask
+/// drawn and a place computed in the pixels that the sensor gave.
+constexpr int as_stored = cv::IMREAD_COLOR | cv::IMREAD_IGNORE_ORIENTATION;
 
 /// What `read` says, with OpenCV's exceptions (thrown for some broken files) as nothing.
 template <class Read>
@@ -27,7 +33,7 @@ cv::Mat guarded(Read read) {
 
 Expected<Picture> from_bgr(const cv::Mat& image, const std::string& where) {
   if (image.empty() || image.type() != CV_8UC3)
-    return fail("is no picture that can be read", where, "jpeg and png are known");
+    return fail("is no picture that can be read", where, picture_kinds);
   if (image.cols < 8 || image.rows < 8) return fail("is smaller than 8 px", where);
   if (static_cast<std::size_t>(image.total()) > max_pixels)
     return fail("has more than 40 million pixels", where, "make it smaller");
@@ -88,7 +94,7 @@ Expected<Picture> decode_picture(std::span<const std::uint8_t> bytes, const std:
   return from_bgr(guarded([&] {
                     const cv::Mat raw(1, static_cast<int>(bytes.size()), CV_8UC1,
                                       const_cast<std::uint8_t*>(bytes.data()));
-                    return cv::imdecode(raw, cv::IMREAD_COLOR);
+                    return cv::imdecode(raw, as_stored);
                   }),
                   where);
 }
@@ -187,7 +193,9 @@ std::vector<std::filesystem::path> pictures_in(const std::filesystem::path& fold
                          ending == ".heif" || ending == ".avif";
     if (picture && entry.path().stem().extension() != ".mask") found.push_back(entry.path());
   }
-  std::sort(found.begin(), found.end());
+  std::sort(found.begin(), found.end(), [](const auto& a, const auto& b) {
+    return natural_less(a.filename().string(), b.filename().string());
+  });
   return found;
 }
 

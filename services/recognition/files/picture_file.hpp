@@ -12,7 +12,8 @@
 namespace prehend::recognition {
 
 /// Pictures as files and as bytes (jpeg, png, ...; grey, 16-bit and transparent ones become 8-bit
-/// RGB, of an animation the first picture counts).
+/// RGB, of an animation the first picture counts). Pixels stay where they are stored; EXIF turns
+/// are ignored.
 /// Refused: what cannot be read or is cut short, less than 8 px or more than 40 million pixels.
 Expected<Picture> load_picture(const std::filesystem::path& file);
 Expected<Picture> decode_picture(std::span<const std::uint8_t> bytes, const std::string& where);
@@ -33,8 +34,9 @@ void draw_frame(Picture& picture, double x, double y, double width, double heigh
 Picture shrink(const Picture& picture, int longest);
 Plane shrink_mask(const Plane& mask, int width, int height);
 
-/// Files in a folder whose name ends like a picture's, sorted by name; masks are left out. Kinds
-/// that load_picture() does not know are among them, so that it is said.
+/// Files in a folder whose name ends like a picture's, in natural order of their names (`shot2`
+/// before `shot10`); masks are left out. Kinds that load_picture() does not know are among them, so
+/// that it is said.
 std::vector<std::filesystem::path> pictures_in(const std::filesystem::path& folder);
 
 }  // namespace prehend::recognition

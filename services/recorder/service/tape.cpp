@@ -37,8 +37,9 @@ Expected<Tape> Tape::open(const std::vector<std::filesystem::path>& files, const
     if (!reader) return tl::unexpected(reader.error());
     auto file = std::make_unique<File>(File{std::move(*reader), {}, {}, {}, {}});
     for (const Error& error : file->reader.contents().damage) tape.note(error);
-    const auto statistics = file->reader.statistics();
-    if (!statistics) return tl::unexpected(statistics.error());
+    for (const Error& remark : file->reader.contents().remarks) tape.remarks_.push_back(remark);
+    for (const Error& remark : file->reader.measured().remarks) tape.remarks_.push_back(remark);
+    const recording::mcap::Statistics& statistics = file->reader.statistics();
     const auto& contents = file->reader.contents();
     for (const auto& [id, channel] : contents.channels) {
       const auto schema = contents.schemas.find(channel.schema_id);
@@ -55,10 +56,10 @@ Expected<Tape> Tape::open(const std::vector<std::filesystem::path>& files, const
       const auto added = file->streams.emplace(id, std::move(*stream)).first;
       if (older) file->older.insert(&added->second);
     }
-    tape.files_.push_back(std::move(file));
-    if (statistics->message_count == 0) continue;
-    const Time first = from_ns(static_cast<std::int64_t>(statistics->message_start_time));
-    const Time last = from_ns(static_cast<std::int64_t>(statistics->message_end_time));
+    tape.files_.push_back(std::move(file));  // the statistics stay where they are
+    if (statistics.message_count == 0) continue;
+    const Time first = from_ns(static_cast<std::int64_t>(statistics.message_start_time));
+    const Time last = from_ns(static_cast<std::int64_t>(statistics.message_end_time));
     tape.start_ = any ? std::min(tape.start_, first) : first;
     tape.end_ = any ? std::max(tape.end_, last) : last;
     any = true;

@@ -49,6 +49,8 @@ class Tape {
 
   /// What could not be read, first things first, a hundred at most.
   const std::vector<Error>& damage() const { return damage_; }
+  /// What is odd, but lost nothing.
+  const std::vector<Error>& remarks() const { return remarks_; }
 
  private:
   struct File {
@@ -63,7 +65,7 @@ class Tape {
 
   std::vector<std::unique_ptr<File>> files_;
   Time recording_start_{}, start_{}, end_{};
-  std::vector<Error> damage_;
+  std::vector<Error> damage_, remarks_;
 };
 
 }  // namespace prehend::recorder

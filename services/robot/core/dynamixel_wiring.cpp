@@ -5,6 +5,7 @@
 #include <numbers>
 #include <tuple>
 
+#include "common/base/toml_document.hpp"
 #include "common/model/toml_values.hpp"
 #include "services/robot/core/dynamixel_protocol.hpp"
 
@@ -83,7 +84,7 @@ Expected<Servo> servo_in(const toml::table& table, const Kind& kind, const model
 
 Expected<std::vector<Servo>> parse_wiring(std::string_view toml, const model::HandModel& hand,
                                           const std::string& file) {
-  const auto root = model::parse_toml(toml, file);
+  const auto root = parse_toml(toml, file);
   if (!root) return tl::unexpected(root.error());
   const auto at = [&](const Error& error) { return tl::unexpected(model::located(error, file)); };
   if (auto known = model::only_keys(*root, {"servos", "servo"}, "", page); !known)

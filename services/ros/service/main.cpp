@@ -3,6 +3,7 @@
 #include "common/base/log.hpp"
 #include "common/ros2/nodes/nodes.hpp"
 #include "common/service/arguments.hpp"
+#include "common/tool/output.hpp"
 #include "services/ros/service/tell_nodes.hpp"
 
 int main(int argc, char** argv) {
@@ -21,11 +22,13 @@ int main(int argc, char** argv) {
       ->capture_default_str();
   app.add_option("--hand", options.hand, "the robot hand that is told; without: the first heard");
   log::set_name("ros");
-  if (const auto code = service::parse(app, {argv + 1, argv + argc})) return *code;
-  const auto domain = ros2::domain_of_nodes();
-  if (!domain) return service::complain(domain.error(), exit_wrong_use);
-  options.domain = *domain;
-  const auto config = lab.load();
-  if (!config) return service::complain(config.error(), exit_wrong_use);
-  return ros::tell_nodes(*config, options);
+  return tool::with_whole_output([&] {
+    if (const auto code = service::parse(app, {argv + 1, argv + argc})) return *code;
+    const auto domain = ros2::domain_of_nodes();
+    if (!domain) return service::complain(domain.error(), exit_wrong_use);
+    options.domain = *domain;
+    const auto config = lab.load();
+    if (!config) return service::complain(config.error(), exit_wrong_use);
+    return ros::tell_nodes(*config, options);
+  });
 }

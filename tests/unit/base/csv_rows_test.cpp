@@ -66,6 +66,32 @@ TEST(CsvRows, OfNothingAreNone) {
     EXPECT_FALSE(CsvRows(text).next()) << text;
 }
 
+// As spreadsheets write them.
+TEST(CsvRows, ReadWhatSpreadsheetsMakeOfThem) {
+  for (const std::string_view text :
+       {"\xef\xbb\xbf"
+        "a,B,name\r\n1.5,-2,x\r\n",
+        "A;b;Name\n1,5;-2;x\n", "a\tb\tNAME\n1,5\t-2\tx\n", "a, b ,name\n1.5,-2,x",
+        "\"a\",\"b\",\"name\"\n\"1.5\",-2,\"x\"\n"}) {
+    CsvRows rows(text);
+    auto row = rows.next();
+    ASSERT_TRUE(row) << text;
+    EXPECT_EQ(row->number("a"), 1.5) << text;
+    EXPECT_EQ(row->number("b"), -2) << text;
+    EXPECT_EQ(row->text("name"), "x") << text;
+    EXPECT_FALSE(row->bad()) << text;
+    EXPECT_EQ(row->line(), 2u);
+    EXPECT_FALSE(rows.next());
+  }
+  CsvRows quoted("a,b\n\"x, y\",\"z\n\n\"q\"r,2\n");
+  auto row = quoted.next();
+  EXPECT_EQ(row->text("a"), "x, y");
+  EXPECT_EQ(row->text("b"), "\"z");  // without its other quote
+  row = quoted.next();
+  EXPECT_EQ(row->text("a"), "\"q\"r");
+  EXPECT_EQ(row->line(), 4u);
+}
+
 // An empty cell at the end of a line is a cell.
 TEST(CsvRows, CountEmptyCells) {
   CsvRows rows("a,b,c\n,,\n1,,\n");

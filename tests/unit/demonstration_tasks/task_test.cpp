@@ -189,7 +189,9 @@ TEST(TaskToml, ComesBackAndSaysWhatIsWrong) {
     return made ? std::string("taken") : made.error().message();
   };
   EXPECT_NE(refused("upright", "uprigth").find("uprigth"), std::string::npos);
-  EXPECT_NE(refused("position_m = [", "position_m = [nan, ").find("step 1"), std::string::npos);
+  EXPECT_NE(
+      refused("position_m = [", "position_m = [nan, ").find("position_m is not a finite number"),
+      std::string::npos);
   EXPECT_NE(refused("after = []", "after = [9]").find("after step 9"), std::string::npos);
   EXPECT_NE(refused("name = ", "name ").find("lay.toml"), std::string::npos);
   // A value of another type passed as an absent one, and the step lost what it said.
@@ -210,6 +212,16 @@ TEST(TaskToml, ComesBackAndSaysWhatIsWrong) {
     EXPECT_NE(told.find(key), std::string::npos) << key << " = " << value << ": " << told;
   }
   EXPECT_EQ(another("upright", "true"), "taken");
+  EXPECT_EQ(another("demonstrations", "1000000"), "taken");
+  // What nobody can have shown.
+  for (const auto& [key, value] :
+       {std::pair("name", "\"../tea\""), std::pair("name", "\"a/b\""),
+        std::pair("demonstrations", "9223372036854775807"), std::pair("via_height_m", "1000.0")})
+    EXPECT_NE(another(key, value), "taken") << key << " = " << value;
+  const std::size_t place = text.find("position_m = [");
+  const std::string far = "position_m = [1000.0, 0, 0]";
+  EXPECT_NE(refused(text.substr(place, text.find(']', place) + 1 - place), far).find("too far"),
+            std::string::npos);
 }
 
 }  // namespace

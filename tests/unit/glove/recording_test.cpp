@@ -6,8 +6,10 @@
 #include <cstdlib>
 #include <filesystem>
 #include <string>
+#include <tuple>
 #include <vector>
 
+#include "services/glove/core/bare_hand.hpp"
 #include "services/glove/core/features.hpp"
 #include "services/glove/core/processor.hpp"
 #include "services/glove/files/hand_recording.hpp"
@@ -237,6 +239,127 @@ TEST(Recording, SaysWhatWasLeftOut) {
       mixed->left_out(),
       "1 rows say nothing usable, or are not later than those before; 1 rows of the left hand");
   EXPECT_EQ(Recording::parse(leap_header() + leap(0, false), "whole", room)->left_out(), "");
+}
+
+/// Landmarks of a hand that closes, in rows of these times: the hand model's, moved and scaled.
+struct Table {
+  std::vector<double> times;
+  std::string column = "frame";
+  double scale = 1;
+  bool mirrored = false, picture = false;
+
+  std::string text() const {
+    std::string all = column;
+    for (int i = 0; i < 21; ++i) all += fmt::format(",l{0}_x,l{0}_y,l{0}_z", i);
+    for (std::size_t n = 0; n < times.size(); ++n) {
+      const double closure = static_cast<double>(n) / static_cast<double>(times.size());
+      Landmarks points =
+          landmarks_of(model::HumanHand(1),
+                       model::HumanHand::posture({closure, closure, closure, closure, closure}));
+      all += fmt::format("\n{}", times[n]);
+      const Vector3d wrist = points[0];
+      for (const Vector3d& p : points) {
+        const Vector3d shown = picture ? Vector3d(0.5, 0.8, 0) + 4 * (p - wrist) : p;
+        all += fmt::format(",{},{},{}", scale * shown.x(), scale * (mirrored ? -1 : 1) * shown.y(),
+                           scale * shown.z());
+      }
+    }
+    return all + "\n";
+  }
+};
+
+std::vector<double> counted(int rows, double step = 1) {
+  std::vector<double> times;
+  for (int n = 0; n < rows; ++n) times.push_back(n * step);
+  return times;
+}
+
+TEST(Recording, UnitsOfLandmarksAreNamed) {
+  ASSERT_TRUE(Recording::parse(Table{counted(30)}.text(), "good", room));
+  for (const auto& [scale, picture, what] :
+       {std::tuple(1000.0, false, "in millimetres"), std::tuple(100.0, false, "in centimetres"),
+        std::tuple(1.0, true, "in image coordinates"), std::tuple(0.1, false, "not a hand")}) {
+    Table table{counted(30)};
+    table.scale = scale;
+    table.picture = picture;
+    const auto refused = Recording::parse(table.text(), "other", room);
+    ASSERT_FALSE(refused) << what;
+    EXPECT_NE(refused.error().what.find(what), std::string::npos) << refused.error().message();
+  }
+}
+
+// Guards a left hand that was read as a right one: its fingers bent backwards.
+TEST(Recording, BentFingersTellTheHand) {
+  Table table{counted(30)};
+  const auto right = Recording::parse(table.text(), "right", room);
+  table.mirrored = true;
+  const auto left = Recording::parse(table.text(), "left", room);
+  ASSERT_TRUE(right && left);
+  EXPECT_FALSE(right->left());
+  EXPECT_TRUE(right->remarks().empty());
+  EXPECT_TRUE(left->left());
+  ASSERT_EQ(left->remarks().size(), 1u);
+  EXPECT_NE(left->remarks()[0].find("left hand"), std::string::npos);
+  ASSERT_EQ(left->size(), 30u);
+  for (std::size_t n = 0; n < 30; ++n)
+    for (std::size_t s = 1; s < 6; ++s) {
+      const auto in_hand = [&](const Recording& recording) {
+        const Frame frame = *recording.frame(n);
+        return invariant_feature(make_pose(frame.readings[0].p_TS, frame.readings[0].q_TS),
+                                 frame.readings[s].p_TS);
+      };
+      EXPECT_LT((in_hand(*left) - in_hand(*right)).norm(), 1e-9);
+    }
+}
+
+TEST(Recording, TimesGapsAndRestartsAreRead) {
+  for (const auto& [column, step] :
+       {std::pair("timestamp_ms", 33.0), std::pair("t_s", 0.033), std::pair("TIME_US", 33000.0)}) {
+    const auto recording = Recording::parse(Table{counted(30, step), column}.text(), "t", room);
+    ASSERT_TRUE(recording) << recording.error().message();
+    EXPECT_NEAR(to_seconds(recording->frame(10)->stamp.time_since_epoch()), 0.33, 1e-6) << column;
+  }
+  const auto unknown = Recording::parse(Table{counted(30), "timestamp"}.text(), "t", room);
+  ASSERT_FALSE(unknown);
+  EXPECT_NE(unknown.error().message().find("timestamp_ms"), std::string::npos);
+  const auto none = Recording::parse(Table{counted(30), "number"}.text(), "t", room);
+  ASSERT_FALSE(none);
+  EXPECT_NE(none.error().message().find("no column says when"), std::string::npos);
+
+  std::vector<double> twice = counted(30), lost = counted(40);
+  for (const double time : counted(30)) twice.push_back(time);
+  lost.erase(lost.begin() + 10, lost.begin() + 20);
+  const auto restarted = Recording::parse(Table{twice}.text(), "twice", room);
+  ASSERT_TRUE(restarted);
+  EXPECT_EQ(restarted->size(), 60u);
+  ASSERT_EQ(restarted->remarks().size(), 1u);
+  EXPECT_NE(restarted->remarks()[0].find("begin anew in line 32"), std::string::npos)
+      << restarted->remarks()[0];
+  const auto gap = Recording::parse(Table{lost}.text(), "lost", room);
+  ASSERT_TRUE(gap);
+  EXPECT_EQ(gap->size(), 30u);
+  ASSERT_EQ(gap->remarks().size(), 1u);
+  EXPECT_NE(gap->remarks()[0].find("0.37 s before line 12"), std::string::npos)
+      << gap->remarks()[0];
+}
+
+// What others sent: each is read or its fault named.
+TEST(Recording, ReadsOrNamesWhatStrangersBring) {
+  const fs::path folder = shared_data() / "strangers" / "16-landmark-csv";
+  if (!fs::exists(folder)) GTEST_SKIP() << "no " << folder;
+  const auto read = [&](const char* name) { return Recording::load(folder / name, room); };
+  for (const char* name :
+       {"good.csv", "capital_header.csv", "excel_german.csv", "excel_utf8_bom_crlf.csv",
+        "timestamp_not_frame.csv", "frame_numbers_restart.csv", "left_hand.csv"}) {
+    ASSERT_TRUE(read(name)) << name << read(name).error().message();
+    EXPECT_EQ(read(name)->size(), 90u) << name;
+  }
+  EXPECT_TRUE(read("left_hand.csv")->left());
+  EXPECT_FALSE(read("frame_numbers_restart.csv")->remarks().empty());
+  EXPECT_FALSE(read("lost_frames.csv")->remarks().empty() &&
+               read("lost_frames.csv")->left_out().empty());
+  EXPECT_NE(read("millimetres.csv").error().what.find("millimetres"), std::string::npos);
+  EXPECT_NE(read("image_0_to_1.csv").error().what.find("image"), std::string::npos);
 }
 
 TEST(Recording, RefusesOtherFiles) {

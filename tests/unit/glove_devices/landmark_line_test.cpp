@@ -68,6 +68,48 @@ TEST(LandmarkLine, SaysWhichButtonsAreHeld) {
     EXPECT_EQ(refusal(replaced(good, "[2,8]", wrong)), "unreadable") << wrong;
 }
 
+// As other trackers mean the same.
+TEST(LandmarkLine, UnderstandsWhatOthersWrite) {
+  const LandmarkLine truth = some_line();
+  const std::string good = to_line(truth), webxr = to_line(truth, true);
+  const auto openxr = parse_landmarks(replaced(webxr, "[[", "[[9e9,0,0],["));
+  ASSERT_TRUE(openxr) << openxr.error();
+  EXPECT_EQ(openxr->points, truth.points) << "26 joints: the palm comes first";
+  for (const char* hand : {"\"Right\"", "\"RIGHT\""})
+    EXPECT_FALSE(parse_landmarks(replaced(good, "\"right\"", hand))->left) << hand;
+  EXPECT_TRUE(parse_landmarks(replaced(good, "\"right\"", "\"Left\""))->left);
+  for (const char* stamp : {"1732200000125", "1732200000125000", "1732200000125000000"}) {
+    const auto line = parse_landmarks(replaced(good, "1732200000.125", stamp));
+    ASSERT_TRUE(line) << line.error();
+    EXPECT_NEAR(*line->stamp, 1732200000.125, 1e-5) << stamp;
+  }
+  EXPECT_EQ(parse_landmarks(replaced(good, "1732200000.125", "12.5"))->stamp, 12.5);
+}
+
+TEST(LandmarkLine, NamesTheUnitOfLengths) {
+  LandmarkLine line = some_line();
+  for (auto& point : line.points) point *= 1000;
+  EXPECT_EQ(refusal(to_line(line)), "in millimetres");
+  for (auto& point : line.points) point /= 10;
+  EXPECT_EQ(refusal(to_line(line)), "in centimetres");
+}
+
+TEST(LandmarkLine, DocumentsAreFoundHoweverTheyStand) {
+  const std::string one = R"({"a":{"b":"}\"\n{"},"c":[1]})", two = R"({"d":2})";
+  const auto is = [](const std::string& text, const std::vector<std::string_view>& documents) {
+    return documents_in(text) == documents;
+  };
+  EXPECT_TRUE(is(one + "\n" + two + "\n", {one, two}));
+  EXPECT_TRUE(is(one + two, {one, two}));
+  EXPECT_TRUE(is("\n" + one + "\r\n\n", {one}));
+  EXPECT_TRUE(is("hello\n" + two, {"hello", two}));
+  const std::string odd = "}" + two;
+  EXPECT_TRUE(is(odd, {odd}));
+  EXPECT_TRUE(is("{\"a\n" + two, {"{\"a", two}));
+  EXPECT_TRUE(is("{\"\\", {"{\"\\"}));
+  EXPECT_TRUE(is("", {}));
+}
+
 TEST(LandmarkLine, SaysWhyItCannotBeUsed) {
   const std::string good = to_line(some_line());
   EXPECT_EQ(refusal(good), "");
@@ -82,7 +124,7 @@ TEST(LandmarkLine, SaysWhyItCannotBeUsed) {
   EXPECT_EQ(refusal(replaced(good, "[[", "[[0,0,0],[")), "wrong count");
   EXPECT_EQ(refusal(replaced(good, "[[", "[[null,0,0],[0,0,0],[0,0,0],[0,0,0],[")), "not finite");
   EXPECT_EQ(refusal(replaced(good, "[[", "[[9,0,0],[0,0,0],[0,0,0],[0,0,0],[")), "out of range");
-  EXPECT_EQ(refusal(replaced(good, "[[", "[[NaN,0,0],[")), "unreadable") << "no JSON";
+  EXPECT_EQ(refusal(replaced(good, "[[", "[[NaN,0,0],[")), "not finite") << "as Python writes it";
   EXPECT_EQ(refusal(replaced(good, "[[", "[[1e999,0,0],[")), "unreadable");
 }
 

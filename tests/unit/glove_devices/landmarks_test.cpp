@@ -44,7 +44,10 @@ class LandmarksTest : public ::testing::Test {
     // Until it listens: what nobody hears is lost.
     for (int n = 0; listener_.all().empty(); ++n) {
       ASSERT_LT(n, 500) << "no frame comes";
-      send({.left = left, .in_room = true, .points = hand_at(0.001 * n, 0.5)});
+      Landmarks points = hand_at(0.001 * n, 0.5);
+      if (left)
+        for (auto& point : points) point.x() = -point.x();
+      send({.left = left, .in_room = true, .points = points});
       listener_.frames(1, 0.02);
     }
   }
@@ -129,15 +132,61 @@ TEST_F(LandmarksTest, RefusesAndCountsWhatTrackersGetWrong) {
       refused("wrong count", R"({"version":1,"hand":"right","origin":"room","points_m":[]})"));
   EXPECT_TRUE(refused("unreadable", "hello"));
   EXPECT_TRUE(refused("unreadable", std::string("\xff\xfe\x00\x80", 4)));
-  Landmarks collapsed;
-  collapsed.fill(Vector3d(0.1, 0, 0));
-  EXPECT_TRUE(refused("not a hand", to_line({.in_room = true, .points = collapsed})));
+  Landmarks lost;
+  lost.fill(Vector3d(0.1, 0, 0));
+  EXPECT_TRUE(refused("all points in one place", to_line({.in_room = true, .points = lost})));
   // After all that a good line is a frame.
   const std::size_t before = listener_.all().size();
   send({.stamp = now(), .in_room = true, .points = hand_at(0.3, 0.5)});
   EXPECT_TRUE(listener_.frame_with(
       [&](const Frame& f) { return (f.readings[1].p_TS - hand_at(0.3, 0.5)[4]).norm() < 1e-9; }));
   EXPECT_GT(listener_.all().size(), before);
+}
+
+// Guards the robot against a hand that is not there: frozen with new stamps, mirrored, without a
+// palm. None of them leads, and the status says which it is while datagrams come.
+TEST_F(LandmarksTest, AHandThatIsNotThereLeadsNothing) {
+  start();
+  const Landmarks good = hand_at(0.2, 0.5);
+  send({.stamp = now(), .in_room = true, .points = good});
+  ASSERT_TRUE(listener_.frame_with(
+      [&](const Frame& f) { return (f.readings[1].p_TS - good[4]).norm() < 1e-9; }));
+  const std::size_t before = listener_.all().size();
+  Landmarks mirrored = good, collapsed = good, trembling = good;
+  for (auto& point : mirrored) point.y() = -0.8 - point.y();
+  collapsed[17] = collapsed[5];
+  const auto sent = [&](const Landmarks& points, const std::string& reason) {
+    for (int n = 0; n < 20; ++n) {
+      send({.stamp = now(), .in_room = true, .points = points});
+      ::usleep(2000);
+    }
+    return refused(reason, to_line({.stamp = now(), .in_room = true, .points = points}));
+  };
+  EXPECT_TRUE(sent(good, "frozen"));
+  EXPECT_TRUE(sent(mirrored, "a mirrored hand"));
+  EXPECT_TRUE(sent(collapsed, "a collapsed palm"));
+  EXPECT_EQ(listener_.all().size(), before);
+  // A living hand that keeps still trembles.
+  trembling[8] += Vector3d(1e-5, 0, 0);
+  send({.stamp = now(), .in_room = true, .points = trembling});
+  EXPECT_TRUE(listener_.frame_with(
+      [&](const Frame& f) { return (f.readings[2].p_TS - trembling[8]).norm() < 1e-9; }));
+}
+
+TEST_F(LandmarksTest, SaysWhyDatagramsThatComeCannotBeUsed) {
+  start();
+  Landmarks points = hand_at(0.2, 0.5);
+  for (auto& point : points) point *= 1000;
+  const std::string wrong = to_line({.in_room = true, .points = points});
+  bool told = false;
+  for (int n = 0; n < 1000 && !told; ++n) {
+    sender_->write(wrong);
+    ::usleep(5000);
+    for (const std::string& line : listener_.lines())
+      told = told || (line.find("in millimetres") != std::string::npos &&
+                      line.find("divide by 1000") != std::string::npos);
+  }
+  EXPECT_TRUE(told);
 }
 
 // With a token, only those who know it lead the hand; the others are counted.

@@ -181,7 +181,7 @@ TEST(HandFile, RefusesWhatIsNoHandAndSaysWhere) {
            {false, "closing = -1", "closing = -1\ncoupling = \"rigid\"", "springs"},
            {false, "upper = 0.025", "upper = 0.6", "thumb"},
            {false, "upper = 0.025", "upper = -0.1", "thumb"},
-           {false, "upper = 0.025", "upper = nan", "thumb"},
+           {false, "upper = 0.025", "upper = nan", "upper is not a finite number"},
            {false, "joint = \"slide\"", "joint = \"knuckle\"", "knuckle"},
            {false, "joint = \"slide\"", "joint = \"finger\"", "finger"},
            {false, "joint = \"slide\"", "joint = \"nobody\"", "nobody"},

@@ -90,6 +90,14 @@ TEST(Scene, BadFilesSayWhatIsWrong) {
       {"[[object]]\nname = \"Unicorn\"\nX_WO = [0,0,0,1,0,0,0]\n", "Unicorn"},
       {"[[object]]\nname = \"Cup\"\nX_WO = [0,0,0,0,0,0,0]\n", "zero norm"},
       {"[[object]]\nname = \"Cup\"\nX_WO = [0,0,nan,1,0,0,0]\n", "finite"},
+      {"[[object]]\nname = \"Cup\"\nX_WO = [0,0,-5,1,0,0,0]\n", "below the table"},
+      {"[[object]]\nname = \"Cup\"\nX_WO = [1e300,0,0.05,1,0,0,0]\n", "too far"},
+      {"[[object]]\nname = \"Cup\"\nX_WO = [0,0,0.05,1,0,0,0]\n"
+       "[[object]]\nname = \"Cup\"\nX_WO = [1,0,0.05,1,0,0,0]\n",
+       "two objects are named 'Cup'"},
+      {"[[object]]\nname = \"Cup\"\nX_WO = [0,0,0.05,1,0,0,0]\n"
+       "[[object]]\nname = \"Talc\"\nX_WO = [0.01,0,0.05,1,0,0,0]\n",
+       "inside each other"},
       {"[demonstrator]\ntarget = \"Cup\"\n", "stands nowhere"},
       {"[demonstrator]\nhand_scale = 9\n", "hand_scale"},
       {"[demonstrator]\nreach = [0.1, 0.1]\n", "reach needs four numbers"},

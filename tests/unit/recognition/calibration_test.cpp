@@ -11,12 +11,14 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <nlohmann/json.hpp>
 #include <numbers>
 
 #include "common/base/random.hpp"
 #include "services/recognition/files/picture_file.hpp"
 #include "services/recognition/tools/calibration/board_taker.hpp"
 #include "tests/support/paths/paths.hpp"
+#include "tests/support/shared_data.hpp"
 #include "tests/unit/recognition/fixture.hpp"
 
 namespace prehend::recognition {
@@ -205,46 +207,115 @@ TEST(Calibration, ViewsThatDetermineNothingAreRefused) {
   EXPECT_FALSE(locate_camera(truth, {}, board, {}));
 }
 
-TEST(Calibration, CommandWritesTheLabsKeys) {
-  const auto folder =
-      std::filesystem::temp_directory_path() / ("boards" + std::to_string(getpid()));
-  std::filesystem::create_directories(folder / "pictures");
-  for (std::size_t i = 0; i < shots().size(); ++i)
-    ASSERT_TRUE(save_png(folder / "pictures" / (std::to_string(100 + i) + ".png"), shots()[i]));
-  std::ofstream(folder / "pictures" / "200.png") << "no picture";
-  std::ofstream(folder / "lab.toml")
-      << "[lab]\nrig = \"test\"\n[camera]  # ours\nname = \"left\"\n";
-  const auto run = [&](const std::string& arguments) {
+/// `prehend camera calibrate` in a folder of its own, with pictures and a configuration.
+class CalibrateCommand : public ::testing::Test {
+ protected:
+  CalibrateCommand() {
+    std::filesystem::create_directories(pictures_);
+    std::ofstream(folder_ / "lab.toml")
+        << "[lab]\nrig = \"test\"\n[camera]  # ours\nname = \"left\"\n";
+  }
+  ~CalibrateCommand() override { std::filesystem::remove_all(folder_); }
+
+  int run(const std::string& arguments) {
     const std::string command = test::in_programs("prehend-camera") + " calibrate --config " +
-                                (folder / "lab.toml").string() + " " + arguments + " >" +
-                                (folder / "out").string() + " 2>" + (folder / "err").string();
+                                (folder_ / "lab.toml").string() + " " + arguments + " >" +
+                                (folder_ / "out").string() + " 2>" + (folder_ / "err").string();
     const int status = std::system(command.c_str());
     return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-  };
-  const std::string pictures = (folder / "pictures").string();
+  }
+  std::string text(const char* file) const {
+    std::ifstream stream(folder_ / file);
+    return {std::istreambuf_iterator<char>(stream), {}};
+  }
+  void shoot(const std::string& name, const Picture& picture) {
+    ASSERT_TRUE(save_png(pictures_ / name, picture));
+  }
+  /// How far X_WC of the printed document is from the truth, m.
+  double off() const {
+    const auto document = nlohmann::json::parse(text("out"));
+    const auto& p = document["camera"]["X_WC"];
+    return (Eigen::Vector3d(p[0], p[1], p[2]) - true_camera().X_WC.translation()).norm();
+  }
+
+  std::filesystem::path folder_ =
+      std::filesystem::temp_directory_path() / ("boards" + std::to_string(getpid()));
+  std::filesystem::path pictures_ = folder_ / "pictures";
+};
+
+TEST_F(CalibrateCommand, WritesTheLabsKeys) {
+  for (std::size_t i = 0; i < shots().size(); ++i)
+    shoot(std::to_string(100 + i) + ".png", shots()[i]);
+  std::ofstream(pictures_ / "200.png") << "no picture";
+  const std::string pictures = pictures_.string();
   EXPECT_EQ(run(pictures + " --place -0.1,0.05,0.3 --write --json"), 0);
-  std::ifstream out(folder / "out");
-  std::string line;
-  std::getline(out, line);
-  EXPECT_NE(line.find("\"X_WC\":["), std::string::npos) << line;
-  EXPECT_FALSE(std::getline(out, line));  // nothing else
-  std::ifstream lab(folder / "lab.toml");
-  const std::string text(std::istreambuf_iterator<char>(lab), {});
+  const auto document = nlohmann::json::parse(text("out"));  // nothing else is printed
+  EXPECT_EQ(document["camera"]["X_WC"].size(), 7u);
+  EXPECT_EQ(document["left_out"].back(), "200.png");
+  const std::string lab = text("lab.toml");
   for (const char* key : {"[camera]  # ours", "name = \"left\"", "width = 640", "height = 480",
                           "focal = [60", "centre = [32", "distortion = [-0.1", "X_WC = ["})
-    EXPECT_NE(text.find(key), std::string::npos) << key << " in " << text;
+    EXPECT_NE(lab.find(key), std::string::npos) << key << " in " << lab;
   // What it wrote is a configuration that the same command takes.
   EXPECT_EQ(run(pictures + " --only place --place -0.1,0.05,0.3"), 0);
   EXPECT_EQ(run(pictures + " --worst 0.01"), 1);
   EXPECT_EQ(run(pictures + " --columns 8"), 2);  // looks the same upside down
   EXPECT_EQ(run(pictures + " --place 1,2"), 2);  // three numbers
-  std::filesystem::create_directories(folder / "bare");
-  ASSERT_TRUE(save_png(folder / "bare" / "1.png", Picture(640, 480)));
-  EXPECT_EQ(run((folder / "bare").string()), 1);  // no board in sight
-  EXPECT_EQ(run((folder / "none").string()), 3);
+  std::filesystem::create_directories(folder_ / "bare");
+  ASSERT_TRUE(save_png(folder_ / "bare" / "1.png", Picture(640, 480)));
+  EXPECT_EQ(run((folder_ / "bare").string()), 1);  // no board in sight
+  EXPECT_EQ(run((folder_ / "none").string()), 3);
   EXPECT_EQ(run("device:/dev/none"), 3);
   EXPECT_EQ(run(""), 2);
-  std::filesystem::remove_all(folder);
+}
+
+// Guards the table's picture: another one was taken in its stead, and the camera placed elsewhere.
+TEST_F(CalibrateCommand, TheTablesPictureIsNeverAnotherOne) {
+  for (std::size_t i = 0; i < shots().size(); ++i)
+    shoot("s" + std::to_string(i + 2) + ".png", shots()[i]);
+  const std::string at = pictures_.string() + " --place -0.1,0.05,0.3 --json ";
+  // s2 comes before s10; the first is named.
+  ASSERT_EQ(run(at), 0) << text("err");
+  EXPECT_LT(off(), 0.01);
+  EXPECT_NE(text("out").find("/s2.png\""), std::string::npos) << text("out");
+  EXPECT_NE(text("err").find("s2.png"), std::string::npos) << text("err");
+  // An unreadable first picture, and one without the board, are errors that name it.
+  std::ofstream(pictures_ / "s1.png") << "no picture";
+  EXPECT_EQ(run(at), 3);
+  EXPECT_NE(text("err").find("s1.png"), std::string::npos) << text("err");
+  EXPECT_NE(text("err").find("--table-picture"), std::string::npos) << text("err");
+  EXPECT_EQ(run(at + "--only intrinsics"), 0);  // does not ask for the table
+  shoot("s1.png", Picture(640, 480));
+  EXPECT_EQ(run(at), 1);
+  EXPECT_NE(text("err").find("s1.png"), std::string::npos) << text("err");
+  // Chosen by name or path, it is taken wherever it stands.
+  ASSERT_EQ(run(at + "--table-picture s2.png"), 0) << text("err");
+  EXPECT_LT(off(), 0.01);
+  ASSERT_EQ(run(at + "--table-picture " + (pictures_ / "s2.png").string()), 0) << text("err");
+  EXPECT_LT(off(), 0.01);
+  EXPECT_EQ(run(at + "--table-picture absent.png"), 3);
+  EXPECT_NE(text("err").find("absent.png"), std::string::npos) << text("err");
+}
+
+// Guards the place against pictures of another size than the lens was calibrated for.
+TEST_F(CalibrateCommand, ALensOfAnotherSizePlacesNothing) {
+  shoot("1.png", draw(true_camera(), lying(-0.1, 0.05, 0.3), 0));
+  const std::string place = pictures_.string() + " --only place --place -0.1,0.05,0.3 --set ";
+  EXPECT_EQ(run(place + "camera.width=480 --set camera.height=640"), 2);
+  EXPECT_NE(text("err").find("640x480"), std::string::npos) << text("err");
+  EXPECT_NE(text("err").find("480x640"), std::string::npos) << text("err");
+}
+
+// Pictures with and without a turn in their EXIF tags, the pixels the same.
+TEST_F(CalibrateCommand, ExifTurnsChangeNothing) {
+  const auto pictures = shared_data() / "strangers" / "19-exif-turned-pictures";
+  if (!std::filesystem::exists(pictures)) GTEST_SKIP() << "no " << pictures;
+  std::vector<nlohmann::json> documents;
+  for (const char* folder : {"plain", "tagged"}) {
+    ASSERT_EQ(run((pictures / folder).string() + " --json"), 0) << text("err");
+    documents.push_back(nlohmann::json::parse(text("out"))["camera"]);
+  }
+  EXPECT_EQ(documents[0], documents[1]);
 }
 
 TEST(BoardTaker, TakesStillAndDifferentViewsOnly) {

@@ -9,6 +9,7 @@
 
 #include "common/base/random.hpp"
 #include "services/recognition/cameras/camera.hpp"
+#include "services/recognition/files/dataset.hpp"
 #include "tests/support/shared_data.hpp"
 #include "tests/unit/recognition/fixture.hpp"
 
@@ -92,6 +93,56 @@ TEST_F(PictureFile, AJpegThatEndsEarlyIsRefused) {
   auto more = whole;
   more.resize(more.size() + 100, 0);  // what cameras may add behind the end
   EXPECT_TRUE(decode_picture(more, "memory"));
+}
+
+/// The same jpeg with a turn of 1 to 8 in an EXIF tag, as phones write it.
+std::vector<std::uint8_t> turned(std::vector<std::uint8_t> jpeg, std::uint8_t turn) {
+  const std::vector<std::uint8_t> tag{0xff, 0xe1, 0,    34,   'E', 'x', 'i', 'f', 0, 0,  // APP1
+                                      'M',  'M',  0,    0x2a, 0,   0,   0,   8,  // TIFF, big endian
+                                      0,    1,    0x01, 0x12, 0,   3,   0,   0,   0, 1,
+                                      0,    turn, 0,    0,    0,   0,   0,   0};  // one entry
+  jpeg.insert(jpeg.begin() + 2, tag.begin(), tag.end());
+  return jpeg;
+}
+
+// Guards pixels as geometry: a camera was placed 180° wrong since its pictures were turned.
+TEST_F(PictureFile, PixelsStayWhereTheyAreStored) {
+  const auto bytes = encode_jpeg(gradient(80, 60));
+  const Picture stored = decode_picture(bytes, "memory").value();
+  for (std::uint8_t turn = 1; turn <= 8; ++turn) {
+    const auto picture = decode_picture(turned(bytes, turn), "memory");
+    ASSERT_TRUE(picture) << picture.error().message();
+    EXPECT_EQ(picture->width, 80) << int(turn);
+    EXPECT_EQ(picture->rgb, stored.rgb) << int(turn);
+  }
+}
+
+// A mask lies over the pixels of its picture, whatever the picture's tag says.
+TEST_F(PictureFile, AMaskLiesOverAPictureThatIsTaggedAsTurned) {
+  const auto bytes = turned(encode_jpeg(gradient(80, 60)), 3);
+  std::ofstream(folder_ / "a.jpg", std::ios::binary)
+      .write(reinterpret_cast<const char*>(bytes.data()), std::ssize(bytes));
+  Plane mask(80, 60);
+  mask.at(70, 50) = 1;  // there green and red are bright; turned by half, they are dark
+  ASSERT_TRUE(save_png(folder_ / "a.mask.png", mask));
+  const auto view = load_view(folder_ / "a.jpg");
+  ASSERT_TRUE(view) << view.error().message();
+  EXPECT_EQ(view->mask.at(70, 50), 1);
+  EXPECT_GT(int(view->picture.at(70, 50)[0]), 200);
+  // Drawn over the turned picture it does not fit; that is said with both sizes.
+  ASSERT_TRUE(save_png(folder_ / "a.mask.png", Plane(60, 80)));
+  const auto refused = load_view(folder_ / "a.jpg");
+  ASSERT_FALSE(refused);
+  EXPECT_NE(refused.error().message().find("60x80"), std::string::npos);
+  EXPECT_NE(refused.error().message().find("EXIF"), std::string::npos);
+}
+
+TEST_F(PictureFile, NamesCountInNaturalOrder) {
+  for (const char* name : {"shot10.png", "shot2.png", "shot1.png", "shot2.mask.png"})
+    ASSERT_TRUE(save_png(folder_ / name, gradient(16, 16)));
+  std::vector<std::string> names;
+  for (const auto& file : pictures_in(folder_)) names.push_back(file.filename());
+  EXPECT_EQ(names, (std::vector<std::string>{"shot1.png", "shot2.png", "shot10.png"}));
 }
 
 TEST_F(PictureFile, HugeOnesAreRefusedBeforeTheyAreUnpacked) {

@@ -91,11 +91,11 @@ TEST(Config, MistakesAreNamed) {
   const std::pair<const char*, const char*> files[] = {
       {"[glove]\nrat = 40\n", "glove.rat"},
       {"[glove]\nrat = 40\n", "did you mean glove.rate"},
-      {"[glove]\nrat = 40\n", ":2"},
-      {"[glove]\nrate = \"fast\"\n", "a number"},
+      {"[glove]\nrat = 40\n", ": line 2"},
+      {"[glove]\nrate = \"fast\"\n", "a finite number"},
       {"[glvoe]\nrate = 3\n", "glvoe.rate"},
       {"rate = 3\n", "rate"},
-      {"[glove\n", ":1"},
+      {"[glove\n", ": line 1"},
       {"[lab]\ndomain = 1.5\n", "whole number"},
   };
   for (const auto& [text, expected] : files) {
@@ -114,6 +114,38 @@ TEST(Config, MistakesAreNamed) {
 
 // A misspelt variable that is passed over leaves off what it should have switched on: keys above
 // all.
+// Guards ranges: nan passes every comparison with a bound.
+TEST(Config, NumbersAreFiniteWhereverTheyComeFrom) {
+  const auto file = write("[glove]\nrate = 40\n");
+  for (const char* word : {"nan", "inf", "-inf", "1e309", "", "5m", "1\n[glove]\nrate = nan"}) {
+    for (const ConfigKey& key : config_keys()) {
+      const bool listed = std::holds_alternative<std::vector<double>>(key.fallback);
+      if (!listed && !std::holds_alternative<double>(key.fallback) &&
+          !std::holds_alternative<std::int64_t>(key.fallback))
+        continue;
+      const std::string value = listed ? "[1.0, " + std::string(word) + "]" : word;
+      if (listed && *word == 0) continue;  // [1.0, ] is a list
+      const std::string name(key.name);
+      const auto set = Config::load(file, {name + "=" + value});
+      ASSERT_FALSE(set) << name << "=" << value;
+      EXPECT_NE(set.error().message().find(name), std::string::npos) << set.error().message();
+    }
+    setenv("PREHEND_GLOVE_RATE", word, 1);
+    EXPECT_FALSE(Config::load(file)) << word;
+    unsetenv("PREHEND_GLOVE_RATE");
+    EXPECT_FALSE(Config::load(write("[glove]\nrate = " + std::string(word) + "\n"))) << word;
+    write("[glove]\nrate = 40\n");
+  }
+}
+
+// Guards --config FOLDER, which ran with defaults.
+TEST(Config, AFolderIsNoConfiguration) {
+  const auto config = Config::load(std::filesystem::temp_directory_path());
+  ASSERT_FALSE(config);
+  EXPECT_NE(config.error().message().find(std::filesystem::temp_directory_path()),
+            std::string::npos);
+}
+
 TEST(Config, MisspeltVariablesAreNamed) {
   const auto file = write("");
   for (const auto& [name, meant] : std::initializer_list<std::pair<const char*, const char*>>{

@@ -4,10 +4,13 @@
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
+#include <charconv>
 #include <chrono>
 #include <iostream>
+#include <string_view>
 
 #include "common/base/log_format.hpp"
+#include "common/base/terminal.hpp"
 #include "services/cli/tools/demo/demonstration.hpp"
 #include "services/cli/tools/demo/series.hpp"
 
@@ -20,8 +23,7 @@ using Clock = std::chrono::steady_clock;
 class Screen {
  public:
   explicit Screen(bool quiet)
-      : quiet_(quiet || log::format() == log::Format::json),
-        terminal_(::isatty(STDERR_FILENO) != 0) {}
+      : quiet_(quiet || log::format() == log::Format::json), terminal_(has_cursor(STDERR_FILENO)) {}
   ~Screen() { clear(); }
 
   void show(const std::string& text) {
@@ -50,16 +52,17 @@ class Screen {
 
 /// "A..B" or "A" as seeds.
 bool read_range(const std::string& text, SeriesOptions& series) {
-  unsigned long long first = 0, last = 0;
-  int used = 0;
-  const int length = static_cast<int>(text.size());
-  if (std::sscanf(text.c_str(), "%llu..%llu%n", &first, &last, &used) != 2 || used != length) {
-    if (std::sscanf(text.c_str(), "%llu%n", &first, &used) != 1 || used != length) return false;
-    last = first;
-  }
-  series.first = first;
-  series.last = last;
-  return first <= last && last - first < 10000;
+  const auto read = [](std::string_view word, std::uint64_t& seed) {
+    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), seed);
+    return error == std::errc() && end == word.data() + word.size();
+  };
+  const std::size_t dots = text.find("..");
+  const std::string_view first = std::string_view(text).substr(0, dots);
+  if (!read(first, series.first)) return false;
+  if (!read(dots == std::string::npos ? first : std::string_view(text).substr(dots + 2),
+            series.last))
+    return false;
+  return series.first <= series.last && series.last - series.first < 10000;
 }
 
 /// What measures, sees and moves.

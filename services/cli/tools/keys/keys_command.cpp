@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "common/base/file_text.hpp"
+#include "common/base/log.hpp"
 #include "common/dds/security.hpp"
 #include "common/service/arguments.hpp"
 #include "services/cli/tools/keys/keystore.hpp"
@@ -61,11 +62,12 @@ int show(const Keystore& store, bool json) {
          {"trouble", entry.trouble ? entry.trouble->message() : ""},
          {"writes", entry.permissions.writes},
          {"reads", entry.permissions.reads}});
-    table += fmt::format("{:<16}{:<13}{:<14}{:<12}{:<28}writes {}\n", entry.name, role_name(entry),
-                         state, day(entry.expires), dds::text(entry.permissions.scope),
-                         entry.permissions.writes.empty()
-                             ? "nothing"
-                             : fmt::format("{}", fmt::join(entry.permissions.writes, ", ")));
+    table +=
+        fmt::format("{:<15} {:<12} {:<13} {:<11} {:<27} writes {}\n", entry.name, role_name(entry),
+                    state, day(entry.expires), dds::text(entry.permissions.scope),
+                    entry.permissions.writes.empty()
+                        ? "nothing"
+                        : fmt::format("{}", fmt::join(entry.permissions.writes, ", ")));
     if (entry.trouble && !entry.revoked) table += "  " + entry.trouble->message() + "\n";
   }
   std::cout
@@ -164,7 +166,9 @@ int add(const Keystore& store, const Arguments& arguments) {
   if (!scope) return complain(scope.error(), exit_wrong_use);
   const auto done =
       store.add(arguments.name, *role, arguments.validity(), arguments.renew, now(), *scope);
-  return done ? exit_done : complain(done.error(), exit_no);
+  if (!done) return complain(done.error(), exit_no);
+  log::info("made {} for {}; --rig chooses another", arguments.name, dds::text(*scope));
+  return exit_done;
 }
 
 int write_out(const std::string& file, const std::string& text) {

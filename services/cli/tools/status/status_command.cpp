@@ -10,6 +10,7 @@
 #include <thread>
 
 #include "common/base/clock.hpp"
+#include "common/base/terminal.hpp"
 #include "common/dds/participant.hpp"
 #include "common/service/arguments.hpp"
 #include "common/service/membership.hpp"
@@ -113,7 +114,7 @@ int status_command(const std::vector<std::string>& arguments) {
                        [&](const std::string& name) { return view.is_up(name, process_now()); });
   };
   const bool live =
-      !given.json && !given.once && given.awaited.empty() && ::isatty(STDOUT_FILENO) == 1;
+      !given.json && !given.once && given.awaited.empty() && has_cursor(STDOUT_FILENO);
   if (live) clear_terminal();
   const Time begin = process_now();
   Time next_page = begin + std::chrono::milliseconds(500);

@@ -2,9 +2,12 @@
 #include "services/demonstration/tools/person/person_command.hpp"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cmath>
 #include <optional>
+#include <string_view>
 
+#include "common/base/finite_number.hpp"
 #include "common/service/arguments.hpp"
 #include "common/service/shell.hpp"
 #include "services/demonstration/tools/person/outputs.hpp"
@@ -30,15 +33,12 @@ Expected<Transfer> transfer_of(const std::string& text, const model::Catalogue& 
   Transfer made{text.substr(0, equals), Eigen::Vector3d::Zero(), 0};
   const model::CatalogueObject* known = catalogue.find(made.object);
   if (!known) return wrong_use("is not in the catalogue", made.object);
-  std::vector<double> numbers;
-  for (const std::string& part : CLI::detail::split(text.substr(equals + 1), ',')) {
-    double number = 0;
-    if (!CLI::detail::lexical_cast(part, number) || !(std::abs(number) < 5)) return wrong();
-    numbers.push_back(number);
-  }
-  if (numbers.size() != 2 && numbers.size() != 3) return wrong();
-  made.to = {numbers[0], numbers[1],
-             numbers.size() == 3 ? numbers[2] : model::half_extents(known->shape).z()};
+  const auto numbers = finite_list(std::string_view(text).substr(equals + 1));
+  if (!numbers || (numbers->size() != 2 && numbers->size() != 3) ||
+      std::any_of(numbers->begin(), numbers->end(), [](double n) { return std::abs(n) >= 5; }))
+    return wrong();
+  made.to = {(*numbers)[0], (*numbers)[1],
+             numbers->size() == 3 ? (*numbers)[2] : model::half_extents(known->shape).z()};
   return made;
 }
 

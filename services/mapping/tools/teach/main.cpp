@@ -1,5 +1,8 @@
+#include "common/tool/output.hpp"
 #include "services/mapping/tools/teach/teach_command.hpp"
 
 int main(int argc, char** argv) {
-  return prehend::mapping::teach_command({argv + 1, argv + argc});
+  return prehend::tool::with_whole_output([&] {
+    return prehend::mapping::teach_command({argv + 1, argv + argc});
+  });
 }

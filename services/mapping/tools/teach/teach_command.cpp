@@ -5,6 +5,7 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
 
+#include "common/base/finite_number.hpp"
 #include "common/base/log.hpp"
 #include "common/service/arguments.hpp"
 #include "common/service/shell.hpp"
@@ -67,11 +68,11 @@ Expected<std::multimap<std::string, double>> parse_labels(const std::vector<std:
   std::multimap<std::string, double> labels;
   for (const std::string& text : texts) {
     const auto at = text.rfind('@');
-    char* end = nullptr;
-    const double time = at == std::string::npos ? 0 : std::strtod(text.c_str() + at + 1, &end);
-    if (at == std::string::npos || end == text.c_str() + at + 1 || *end != 0)
-      return fail("a label is not POSTURE@SECONDS", text);
-    labels.emplace(text.substr(0, at), time);
+    const auto time = at == std::string::npos
+                          ? std::nullopt
+                          : finite_number(std::string_view(text).substr(at + 1));
+    if (!time) return fail("a label is not POSTURE@SECONDS", text);
+    labels.emplace(text.substr(0, at), *time);
   }
   return labels;
 }

@@ -1,13 +1,13 @@
 #include "services/mapping/tools/training/scheme.hpp"
 
 #include <fmt/format.h>
-#include <toml++/toml.h>
 
 #include <algorithm>
 #include <numbers>
 #include <optional>
 
 #include "common/base/paths.hpp"
+#include "common/base/toml_document.hpp"
 
 namespace prehend::mapping {
 
@@ -251,12 +251,9 @@ Expected<Scheme> Scheme::load(const std::filesystem::path& file, const model::Ha
   const auto refuse = [&](const std::string& what, const std::string& element = {}) {
     return fail(what, element.empty() ? file.string() : file.string() + ", " + element);
   };
-  toml::table table;
-  try {
-    table = toml::parse_file(file.string());
-  } catch (const toml::parse_error& error) {
-    return refuse(std::string(error.description()));
-  }
+  const auto document = load_toml(file, "a scheme is TOML");
+  if (!document) return tl::unexpected(document.error());
+  const toml::table& table = *document;
   if (table["hand"].value_or(std::string()) != hand.name())
     return refuse(fmt::format("is not for the hand «{}»", hand.name()));
   auto scheme = Reader(table, hand).read();

@@ -2,13 +2,13 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <charconv>
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <numbers>
 
 #include "common/arm/inverse.hpp"
+#include "common/base/finite_number.hpp"
 #include "common/model/arm_choice.hpp"
 #include "services/planner/tools/arm/commands.hpp"
 
@@ -24,20 +24,9 @@ struct SolveArguments {
 
 Expected<Pose> pose_from(const std::string& text) {
   constexpr const char* form = "write x,y,z,qw,qx,qy,qz: metres, and a quaternion";
-  std::vector<double> values;
-  const char* at = text.data();
-  const char* const end = at + text.size();
-  while (at != end) {
-    while (at != end && (*at == ' ' || *at == '+')) ++at;
-    double value = 0;
-    const auto [next, failed] = std::from_chars(at, end, value);
-    if (failed != std::errc() || (next != end && *next != ','))
-      return wrong_use("is no list of numbers", "--pose=" + text, form);
-    values.push_back(value);
-    if (next != end && next + 1 == end)
-      return wrong_use("ends with a comma", "--pose=" + text, form);
-    at = next == end ? end : next + 1;
-  }
+  const auto numbers = finite_list(text);
+  if (!numbers) return wrong_use("is no list of finite numbers", "--pose=" + text, form);
+  const std::vector<double>& values = *numbers;
   if (values.size() != 7)
     return wrong_use(fmt::format("has {} numbers in place of 7", values.size()), "--pose=" + text,
                      form);

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "services/planner/tools/hand_import/numbers.hpp"
+#include "common/base/finite_number.hpp"
 
 namespace prehend::planner {
 namespace {

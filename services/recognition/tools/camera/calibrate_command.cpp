@@ -7,7 +7,9 @@
 #include <nlohmann/json.hpp>
 #include <opencv2/core/utility.hpp>
 #include <opencv2/core/utils/logger.hpp>
+#include <optional>
 
+#include "common/base/finite_number.hpp"
 #include "common/base/log.hpp"
 #include "common/base/progress.hpp"
 #include "common/base/toml_text.hpp"
@@ -32,17 +34,23 @@ struct Arguments {
 
 struct Seen {
   std::vector<BoardView> views;
-  std::vector<std::string> names;  // of the pictures
+  std::vector<std::string> names;     // of the pictures with a view
+  std::vector<std::string> left_out;  // those that show no board or cannot be read
+  std::optional<BoardView> table;     // of the board lying on the table
+  std::string table_name;             // of its picture
   int width = 0, height = 0, pictures = 0;
 };
 
+/// The same failure, of a program that ends with this code.
+tl::unexpected<Error> told(Error error, Exit exit) {
+  error.exit = exit;
+  return tl::unexpected<Error>(std::move(error));
+}
+
 Expected<TablePose> lying_at(const std::string& text) {
-  TablePose made;
-  int used = 0;
-  if (std::sscanf(text.c_str(), "%lf,%lf,%lf%n", &made.x, &made.y, &made.yaw, &used) != 3 ||
-      used != static_cast<int>(text.size()) || !std::isfinite(made.x + made.y + made.yaw))
-    return fail("is not X,Y,YAW in m and rad", text);
-  return made;
+  const auto numbers = finite_list(text);
+  if (!numbers || numbers->size() != 3) return fail("is not X,Y,YAW in m and rad", text);
+  return TablePose{(*numbers)[0], (*numbers)[1], (*numbers)[2]};
 }
 
 Expected<void> add(Seen& seen, const Picture& picture, const std::string& name) {
@@ -56,22 +64,63 @@ Expected<void> add(Seen& seen, const Picture& picture, const std::string& name) 
               name, "all pictures of a calibration must have one size");
 }
 
+constexpr const char* choose_another =
+    "the board must lie on the table, wholly in sight; --table-picture FILE chooses another";
+
+/// Sees the board on the table in this picture, or says why not: another picture in its stead would
+/// place the camera elsewhere.
+Expected<void> add_table(Seen& seen, const Expected<Picture>& picture, const std::string& name,
+                         const Chessboard& board) {
+  if (!picture)
+    return fail("is the table's picture: " + picture.error().what, name, choose_another);
+  if (const auto good = add(seen, *picture, name); !good) return good;
+  seen.table = find_chessboard(*picture, board);
+  seen.table_name = name;
+  if (seen.table) return {};
+  return fail("is the table's picture and shows no board", name, choose_another, exit_no);
+}
+
+/// The picture that was chosen for the table, by its path or by its name in the folder; else the
+/// first. Empty when the table is not asked for.
+std::filesystem::path table_picture(const Arguments& arguments, const std::filesystem::path& folder,
+                                    const std::vector<std::filesystem::path>& files) {
+  if (arguments.only == "intrinsics") return {};
+  if (arguments.table.empty()) return files.front();
+  std::error_code error;
+  const auto within = folder / arguments.table;
+  return std::filesystem::exists(within, error) ? within : std::filesystem::path(arguments.table);
+}
+
 Expected<Seen> in_folder(const Arguments& arguments, const std::filesystem::path& folder) {
   const auto files = pictures_in(folder);
   if (files.empty()) return fail("has no picture", folder.string(), "jpg, png, ...");
   Seen seen;
   Progress progress("pictures");
+  const auto table = table_picture(arguments, folder, files);
+  if (!table.empty())
+    if (const auto good = add_table(seen, load_picture(table), table.string(), arguments.board);
+        !good)
+      return tl::unexpected(good.error());
+  std::error_code same;
   for (const auto& file : files) {
-    const auto picture = load_picture(file);
-    if (!picture) {
-      log::warning("left out: {}", picture.error().message());
+    const std::string name = file.filename().string();
+    if (!table.empty() && std::filesystem::equivalent(file, table, same)) {
+      seen.views.push_back(*seen.table);
+      seen.names.push_back(name);
       continue;
     }
-    if (const auto good = add(seen, *picture, file.string()); !good)
-      return tl::unexpected(good.error());
-    if (auto view = find_chessboard(*picture, arguments.board)) {
+    const auto picture = load_picture(file);
+    if (picture)
+      if (const auto good = add(seen, *picture, file.string()); !good)
+        return tl::unexpected(good.error());
+    auto view = picture ? find_chessboard(*picture, arguments.board) : std::nullopt;
+    if (view) {
       seen.views.push_back(std::move(*view));
-      seen.names.push_back(file.filename().string());
+      seen.names.push_back(name);
+    } else {
+      seen.left_out.push_back(name);
+      log::warning("left out: {}",
+                   picture ? file.string() + ": shows no board" : picture.error().message());
     }
     progress.show(static_cast<std::size_t>(seen.pictures), files.size());
   }
@@ -101,6 +150,15 @@ Expected<Seen> from_camera(const Arguments& arguments, const CameraOptions& want
     log::info("{} of {} taken", taker.views().size(), arguments.views);
   }
   seen.views = taker.views();
+  if (arguments.only == "intrinsics") return seen;
+  if (!arguments.table.empty()) {
+    const auto good =
+        add_table(seen, load_picture(arguments.table), arguments.table, arguments.board);
+    if (!good) return tl::unexpected(good.error());
+  } else if (!seen.views.empty()) {
+    seen.table = seen.views.front();
+    seen.table_name = seen.names.front();
+  }
   return seen;
 }
 
@@ -122,12 +180,6 @@ nlohmann::ordered_json to_json(const CameraModel& camera) {
           {"centre", {camera.centre.x(), camera.centre.y()}},
           {"distortion", camera.distortion},
           {"X_WC", {p.x(), p.y(), p.z(), q.w(), q.x(), q.y(), q.z()}}};
-}
-
-/// The same failure, of a program that ends with this code.
-tl::unexpected<Error> told(Error error, Exit exit) {
-  error.exit = exit;
-  return tl::unexpected<Error>(std::move(error));
 }
 
 /// The lens, from all views. True: exact enough.
@@ -159,20 +211,19 @@ Expected<bool> calibrate_lens(const Arguments& arguments, const Seen& seen, cons
 Expected<bool> calibrate_place(const Arguments& arguments, const Seen& seen,
                                const Chessboard& board, const TablePose& lying, CameraModel& camera,
                                nlohmann::ordered_json& report) {
-  std::optional<BoardView> view;
-  if (!arguments.table.empty()) {
-    const auto picture = load_picture(arguments.table);
-    if (!picture) return told(picture.error(), exit_broken);
-    view = find_chessboard(*picture, board);
-  } else if (!seen.views.empty()) {
-    view = seen.views.front();
-  }
-  if (!view)
-    return told({"shows no board", arguments.table.empty() ? "the first picture" : arguments.table,
-                 "the board must lie on the table, wholly in sight"},
-                exit_no);
-  const auto place = locate_camera(camera, *view, board, lying);
+  if (!seen.table)
+    return told(
+        {"shows no board", "the first picture", "the board must lie on the table, wholly in sight"},
+        exit_no);
+  if (camera.width != seen.width || camera.height != seen.height)
+    return told({fmt::format("has {}x{} px, the configured lens {}x{}", seen.width, seen.height,
+                             camera.width, camera.height),
+                 seen.table_name, "calibrate the lens, too: without --only place"},
+                exit_wrong_use);
+  const auto place = locate_camera(camera, *seen.table, board, lying);
   if (!place) return told(place.error(), exit_no);
+  log::info("the board lies on the table in {}", seen.table_name);
+  report["table_picture"] = seen.table_name;
   camera.X_WC = place->X_WC;
   log::info("place: residual {:.2f} px, {:.1f} mm on the table", place->residual,
             1000 * place->on_table);
@@ -191,7 +242,7 @@ int calibrate_with(const Arguments& arguments) {
   auto camera = configured_camera(*config);
   if (!camera) return service::complain(camera.error(), exit_broken);
   const auto seen = look(arguments, *camera);
-  if (!seen) return service::complain(seen.error(), exit_broken);
+  if (!seen) return service::complain(seen.error());
   log::info("the board is in sight in {} of {} pictures", seen->views.size(), seen->pictures);
 
   nlohmann::ordered_json report;
@@ -217,6 +268,7 @@ int calibrate_with(const Arguments& arguments) {
   if (arguments.json) {
     report["camera"] = to_json(*camera);
     report["views"] = seen->views.size();
+    report["left_out"] = seen->left_out;
     std::cout << report.dump() << '\n';
   } else {
     std::cout << "[camera]\n";
@@ -233,10 +285,10 @@ void add_calibrate(tool::Program& program) {
   const auto a = std::make_shared<Arguments>();
   a->lab.add_to(*command);
   command
-      ->add_option("source", a->source,
-                   "a folder of pictures, or " +
-                       camera_words({CameraLine::device, CameraLine::stream}) +
-                       "; the first picture shows the board lying on the table")
+      ->add_option(
+          "source", a->source,
+          "a folder of pictures, or " + camera_words({CameraLine::device, CameraLine::stream}) +
+              "; the first picture (shot2 comes before shot10) shows the board lying on the table")
       ->required();
   command->add_option("--columns", a->board.columns, "inner corners in a row")
       ->capture_default_str();
@@ -247,8 +299,9 @@ void add_calibrate(tool::Program& program) {
                    "X,Y,YAW: where the first inner corner lies on the table (m), and the turn of "
                    "the rows (rad); the first corner is that beside the dark corner square")
       ->capture_default_str();
-  command->add_option("--table", a->table,
-                      "the picture of the board on the table, instead of the first");
+  command->add_option("--table-picture,--table", a->table,
+                      "the picture of the board on the table, instead of the first: a file, or its "
+                      "name in the folder");
   command->add_option("--only", a->only, "intrinsics, or place (with the lens as configured)")
       ->check(CLI::IsMember({"intrinsics", "place"}));
   command->add_option("--views", a->views, "views taken from a running camera")

@@ -1,6 +1,7 @@
 #include <CLI/CLI.hpp>
 
 #include "common/base/log.hpp"
+#include "common/tool/output.hpp"
 #include "common/tool/program.hpp"
 #include "services/recorder/tools/dataset/export.hpp"
 
@@ -16,6 +17,8 @@ int main(int argc, char** argv) {
       ->check(CLI::IsMember(recorder::dataset_formats()));
   app.add_option("-o,--output", options.output, "what is made")->required();
   recorder::add_dataset_options(app, options);
-  if (const auto code = tool::parse(app, argc, argv)) return *code;
-  return recorder::dataset::write_dataset(options);
+  return tool::with_whole_output([&] {
+    const auto code = tool::parse(app, argc, argv);
+    return code ? *code : recorder::dataset::write_dataset(options);
+  });
 }

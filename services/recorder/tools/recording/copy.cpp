@@ -155,7 +155,7 @@ Expected<void> copy_messages(std::vector<Reader>& sources, Writer& writer,
     }
   };
   for (std::size_t i = 0; i < sources.size(); ++i) {
-    if (sources[i].contents().statistics) total += sources[i].contents().statistics->message_count;
+    total += sources[i].statistics().message_count;
     cursors.push_back(sources[i].messages(options.selection));
     advance(i);
   }
@@ -186,12 +186,14 @@ Expected<void> copy_messages(std::vector<Reader>& sources, Writer& writer,
 Expected<CopyResult> copy(std::vector<Reader>& sources, const std::filesystem::path& to,
                           const CopyOptions& options) {
   CopyResult result;
-  for (const Reader& source : sources) {
+  for (Reader& source : sources) {
     std::error_code none;
     if (std::filesystem::equivalent(source.file().name(), to, none))
       return fail("would replace what it is made from", to.string(), "choose another name");
     result.damage.insert(result.damage.end(), source.contents().damage.begin(),
                          source.contents().damage.end());
+    for (const auto* remarks : {&source.contents().remarks, &source.measured().remarks})
+      result.remarks.insert(result.remarks.end(), remarks->begin(), remarks->end());
   }
   const std::filesystem::path unfinished = to.string() + ".part";
   const auto write = [&]() -> Expected<void> {

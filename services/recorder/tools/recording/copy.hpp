@@ -20,7 +20,8 @@ struct CopyOptions {
 
 struct CopyResult {
   std::uint64_t messages = 0;
-  std::vector<Error> damage;  // what of the sources could not be read
+  std::vector<Error> damage;   // what of the sources could not be read
+  std::vector<Error> remarks;  // what is odd in them, but lost nothing
 };
 
 /// Writes one recording with the messages of several in order of log time, their schemas and

@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "common/base/log_format.hpp"
+#include "common/base/terminal.hpp"
 #include "common/recording/compare/recorded_topic.hpp"
 #include "services/recorder/tools/recording/commands.hpp"
 #include "services/recorder/tools/recording/copy.hpp"
@@ -36,7 +37,7 @@ void add_common(CLI::App& command, EditArguments& arguments) {
 }
 
 std::function<void(double)> progress_bar() {
-  if (::isatty(STDERR_FILENO) == 0 || log::format() == log::Format::json) return {};
+  if (!has_cursor(STDERR_FILENO) || log::format() == log::Format::json) return {};
   return [shown = -1](double share) mutable {
     const int percent = static_cast<int>(100 * share);
     if (percent == shown) return;
@@ -55,19 +56,18 @@ std::uint64_t moment(std::uint64_t start, double seconds) {
   return start + static_cast<std::uint64_t>(std::llround(seconds * 1e9));
 }
 
-/// The recordings of `files` into one. `tolerant`: damage is what one came for.
-int run(const EditArguments& arguments, bool tolerant) {
+/// The recordings of `files` into one.
+int run(const EditArguments& arguments) {
   std::vector<recording::mcap::Reader> sources;
   std::uint64_t start = std::numeric_limits<std::uint64_t>::max(), end = 0;
   for (const std::string& file : arguments.files) {
     auto reader = recording::mcap::Reader::open(file);
     if (!reader) return complain_of(file, reader.error());
-    const auto statistics = reader->statistics();
-    if (statistics && statistics->message_count > 0)
-      start = std::min(start, statistics->message_start_time);
+    const recording::mcap::Statistics& statistics = reader->statistics();
+    if (statistics.message_count > 0) start = std::min(start, statistics.message_start_time);
     if (!arguments.topics.empty() && matching(arguments.topics, reader->contents()).empty())
       return complain(no_such_topic(arguments.topics, file), exit_no);
-    if (statistics) end = std::max(end, statistics->message_end_time);
+    end = std::max(end, statistics.message_end_time);
     sources.push_back(std::move(*reader));
   }
   if (!(arguments.from_s <= arguments.until_s))
@@ -93,6 +93,7 @@ int run(const EditArguments& arguments, bool tolerant) {
   const auto result = copy(sources, arguments.to, options);
   if (!result) return complain(result.error(), exit_broken);
   for (const Error& error : result->damage) log::warning(error);
+  for (const Error& error : result->remarks) log::warning(error);
   if (arguments.json) {
     nlohmann::ordered_json damage = nlohmann::ordered_json::array();
     for (const Error& error : result->damage) damage.push_back(error.message());
@@ -104,7 +105,8 @@ int run(const EditArguments& arguments, bool tolerant) {
   } else {
     fmt::print("{}: {} messages\n", arguments.to, result->messages);
   }
-  return result->damage.empty() || tolerant ? exit_done : exit_no;
+  // Part of the sources is not in what was made.
+  return result->damage.empty() ? exit_done : exit_no;
 }
 
 }  // namespace
@@ -118,7 +120,7 @@ void add_cut(tool::Program& program) {
   command->add_option("--until", arguments->until_s, "s after its start, inclusive");
   command->add_option("--topic", arguments->topics, "only these; * and ? stand for anything");
   add_common(*command, *arguments);
-  program.on(*command, [arguments] { return run(*arguments, false); });
+  program.on(*command, [arguments] { return run(*arguments); });
 }
 
 void add_merge(tool::Program& program) {
@@ -126,7 +128,7 @@ void add_merge(tool::Program& program) {
   const auto arguments = std::make_shared<EditArguments>();
   command->add_option("FILE", arguments->files, "recordings")->required();
   add_common(*command, *arguments);
-  program.on(*command, [arguments] { return run(*arguments, false); });
+  program.on(*command, [arguments] { return run(*arguments); });
 }
 
 void add_recover(tool::Program& program) {
@@ -136,7 +138,7 @@ void add_recover(tool::Program& program) {
   arguments->files.resize(1);
   command->add_option("FILE", arguments->files[0], "recording")->required();
   add_common(*command, *arguments);
-  program.on(*command, [arguments] { return run(*arguments, true); });
+  program.on(*command, [arguments] { return run(*arguments); });
 }
 
 }  // namespace prehend::recorder

@@ -16,9 +16,11 @@
 #include "common/base/log.hpp"
 #include "common/base/log_format.hpp"
 #include "common/base/paths.hpp"
+#include "common/base/printable.hpp"
 #include "common/recording/compare/recorded_topic.hpp"
 #include "services/recorder/tools/dataset_options/dataset_options.hpp"
 #include "services/recorder/tools/recording/commands.hpp"
+#include "services/recorder/tools/recording/export_names.hpp"
 #include "services/recorder/tools/recording/table.hpp"
 
 namespace prehend::recorder {
@@ -47,19 +49,24 @@ int become_dataset(const DatasetOptions& options) {
                   exit_broken);
 }
 
-/// glove/frame in CSV is glove-frame.csv.
-std::filesystem::path file_name(const ExportArguments& arguments, std::string topic) {
-  std::ranges::replace(topic, '/', '-');
-  return std::filesystem::path(arguments.folder) / (topic + "." + arguments.format);
-}
+/// Messages that are in no table, and why.
+struct LeftOut {
+  std::uint64_t count = 0;
+  std::string why;
+};
 
 class Export {
  public:
   Export(const ExportArguments& arguments, recording::mcap::Reader& reader)
-      : arguments_(arguments), reader_(reader), types_(reader) {}
+      : arguments_(arguments),
+        reader_(reader),
+        types_(reader),
+        names_(export_names(reader.contents())) {}
 
   int run() {
-    bool damaged = false;
+    bool damaged = !reader_.contents().damage.empty();
+    for (const Error& error : reader_.contents().damage) log::warning(error);
+    for (const Error& error : reader_.measured().remarks) log::warning(error);
     auto cursor = reader_.messages({.wanted = [&](const recording::mcap::Channel& channel) {
       const auto topic = recording::recorded_topic(channel, reader_.contents());
       return topic.end.empty() && matches(arguments_.topics, topic.name);
@@ -74,30 +81,36 @@ class Export {
       if (!*next) break;
       if (auto done = write(**next); !done) return complain(done.error(), exit_broken);
     }
-    for (const auto& [topic, count] : undecoded_)
-      log::warning("{}: {} messages could not be decoded", topic, count);
-    return damaged || !undecoded_.empty() ? exit_no : exit_done;
+    if (auto done = close(); !done) return complain(done.error(), exit_broken);
+    for (const auto& [topic, left] : left_out_)
+      log::warning("{}: {} messages are left out: {}", printable(topic), left.count, left.why);
+    if (tables_.empty())
+      return complain({"no message could be exported", arguments_.file,
+                       "prehend recording info FILE says what it holds"},
+                      exit_no);
+    return damaged || !left_out_.empty() ? exit_no : exit_done;
   }
 
  private:
   Expected<void> write(const recording::mcap::ReadMessage& read) {
     const auto& [channel, message] = read;
-    const std::string topic = recording::recorded_topic(*channel, reader_.contents()).name;
+    const TableKey& table = key_of(*channel);
     const recording::types::Structure* type = types_.of(*channel);
     const auto value = type ? recording::types::decode(*type, message.data)
                             : Expected<recording::types::Value>(fail("its type is not described"));
     if (!value) {
-      ++undecoded_[topic];
+      LeftOut& left = left_out_[table.first];
+      if (left.count++ == 0) left.why = why_not(*channel, value.error());
       return {};
     }
-    const auto out = stream(topic, *type);
+    const auto out = stream(table, *type);
     if (!out) return tl::unexpected(out.error());
     if (arguments_.format == "csv") {
       **out << message.log_time << ',' << message.publish_time << ',' << message.sequence;
       for (const std::string& cell : cells(*type, *value)) **out << ',' << cell;
       **out << '\n';
     } else {
-      **out << Json{{"topic", topic},
+      **out << Json{{"topic", table.first},
                     {"log_time_ns", message.log_time},
                     {"publish_time_ns", message.publish_time},
                     {"sequence", message.sequence},
@@ -105,20 +118,54 @@ class Export {
                    .dump(-1, ' ', false, Json::error_handler_t::replace)
             << '\n';
     }
-    if (!**out) return fail("cannot be written", file_name(arguments_, topic).string());
+    if (!**out) return not_written(table);
     return {};
   }
 
-  /// Where the topic's rows go; a table begins with its heading.
-  Expected<std::ostream*> stream(const std::string& topic,
-                                 const recording::types::Structure& type) {
-    const bool fresh = begun_.insert(topic).second;
+  const TableKey& key_of(const recording::mcap::Channel& channel) {
+    const auto known = keys_.find(channel.id);
+    if (known != keys_.end()) return known->second;
+    return keys_.emplace(channel.id, table_of(channel, reader_.contents())).first->second;
+  }
+
+  /// Of a message that cannot be decoded: how it is encoded decides.
+  std::string why_not(const recording::mcap::Channel& channel, const Error& error) const {
+    const auto& schemas = reader_.contents().schemas;
+    const auto schema = schemas.find(channel.schema_id);
+    const std::string described =
+        schema == schemas.end() ? "without a schema"
+                                : fmt::format("schema {} ({})", printable(schema->second.name),
+                                              printable(schema->second.encoding));
+    if (channel.message_encoding == "cdr") return fmt::format("{}, {}", error.what, described);
+    return fmt::format("encoding «{}», {}; only CDR is read", printable(channel.message_encoding),
+                       described);
+  }
+
+  std::filesystem::path file_of(const TableKey& table) const {
+    return std::filesystem::path(arguments_.folder) / (names_.at(table) + "." + arguments_.format);
+  }
+  tl::unexpected<Error> not_written(const TableKey& table) const {
+    return fail("cannot be written",
+                arguments_.folder.empty() ? "standard output" : file_of(table).string(),
+                "is there room, and is the folder writable?");
+  }
+
+  /// Where the table's rows go; a table of CSV begins with its heading. The folder is made with its
+  /// first file.
+  Expected<std::ostream*> stream(const TableKey& table, const recording::types::Structure& type) {
+    const auto [place, fresh] = tables_.try_emplace(table);
     std::ostream* out = &std::cout;
     if (!arguments_.folder.empty()) {
-      std::ofstream& file = files_[topic];
-      if (fresh) file.open(file_name(arguments_, topic));
-      if (!file) return fail("cannot be written", file_name(arguments_, topic).string());
-      out = &file;
+      if (fresh) {
+        std::error_code problem;
+        std::filesystem::create_directories(arguments_.folder, problem);
+        if (problem) return fail(problem.message(), arguments_.folder);
+        place->second.open(file_of(table));
+        if (names_.at(table).size() != file_topic_size(table))
+          log::info("{} is in {}", printable(table.first), file_of(table).string());
+      }
+      if (!place->second) return not_written(table);
+      out = &place->second;
     }
     if (fresh && arguments_.format == "csv") {
       *out << "log_time_ns,publish_time_ns,sequence";
@@ -127,29 +174,53 @@ class Export {
     }
     return out;
   }
+  static std::size_t file_topic_size(const TableKey& table) {
+    return table.first.size() - (table.first.starts_with('/') ? 1 : 0);
+  }
+
+  /// What is still in buffers may find no room.
+  Expected<void> close() {
+    for (auto& [table, file] : tables_) {
+      if (arguments_.folder.empty()) continue;
+      file.close();
+      if (!file) return not_written(table);
+    }
+    return {};
+  }
 
   const ExportArguments& arguments_;
   recording::mcap::Reader& reader_;
   recording::RecordedTypes types_;
-  std::set<std::string> begun_;
-  std::map<std::string, std::ofstream> files_;
-  std::map<std::string, std::uint64_t> undecoded_;
+  std::map<TableKey, std::string> names_;
+  std::map<std::uint16_t, TableKey> keys_;  // by channel
+  std::map<TableKey, std::ofstream> tables_;
+  std::map<std::string, LeftOut> left_out_;  // by topic
 };
+
+/// Tables of these topics that have messages.
+std::set<TableKey> wanted_tables(const ExportArguments& arguments,
+                                 recording::mcap::Reader& reader) {
+  std::set<TableKey> tables;
+  for (const auto& [id, count] : reader.statistics().channel_message_counts) {
+    const auto channel = reader.contents().channels.find(id);
+    if (channel == reader.contents().channels.end() || count == 0) continue;
+    const auto topic = recording::recorded_topic(channel->second, reader.contents());
+    if (topic.end.empty() && matches(arguments.topics, topic.name))
+      tables.insert(table_of(channel->second, reader.contents()));
+  }
+  return tables;
+}
 
 int run_tables(const ExportArguments& arguments) {
   auto reader = recording::mcap::Reader::open(arguments.file);
   if (!reader) return complain_of(arguments.file, reader.error());
-  const auto topics = matching(arguments.topics, reader->contents());
-  if (topics.empty()) return complain(no_such_topic(arguments.topics, arguments.file), exit_no);
-  if (arguments.folder.empty() && arguments.format == "csv" && topics.size() > 1)
-    return complain({"a table holds one topic", fmt::format("{} topics", topics.size()),
+  const auto tables = wanted_tables(arguments, *reader);
+  if (matching(arguments.topics, reader->contents()).empty())
+    return complain(no_such_topic(arguments.topics, arguments.file), exit_no);
+  if (arguments.folder.empty() && arguments.format == "csv" && tables.size() > 1)
+    return complain({"a table holds one topic of one type", fmt::format("{} tables", tables.size()),
                      "choose one with --topic, or a folder for all with -o"},
                     exit_wrong_use);
-  if (!arguments.folder.empty()) {
-    std::error_code problem;
-    std::filesystem::create_directories(arguments.folder, problem);
-    if (problem) return complain({problem.message(), arguments.folder, ""}, exit_broken);
-  }
   return Export(arguments, *reader).run();
 }
 

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "common/base/log_format.hpp"
+#include "common/base/printable.hpp"
 #include "services/recorder/tools/recording/commands.hpp"
 #include "services/recorder/tools/recording/summary.hpp"
 
@@ -37,20 +38,20 @@ void print(const Json& document) {
     fmt::print("from {} to {}\n", date(document["start_ns"].get<std::uint64_t>()),
                date(document["end_ns"].get<std::uint64_t>()));
   for (const Json& topic : document["topics"])
-    fmt::print("  {:24} {:10} {}\n", topic["name"].get<std::string>(),
-               topic["count"].get<std::uint64_t>(), topic["type"].get<std::string>());
+    fmt::print("  {:24} {:10} {}\n", printable(topic["name"].get<std::string>()),
+               topic["count"].get<std::uint64_t>(), printable(topic["type"].get<std::string>()));
 }
 
 int info(const InfoArguments& arguments) {
   auto reader = recording::mcap::Reader::open(arguments.file);
   if (!reader) return complain_of(arguments.file, reader.error());
-  const auto document = summary(*reader);
-  if (!document) return complain(document.error(), exit_no);
+  const Json document = summary(*reader);
   if (arguments.json)
-    std::cout << document->dump(-1, ' ', false, Json::error_handler_t::replace) << '\n';
+    std::cout << document.dump(-1, ' ', false, Json::error_handler_t::replace) << '\n';
   else
-    print(*document);
-  for (const Error& error : reader->contents().damage) log::warning(error);
+    print(document);
+  for (const char* kind : {"damage", "remarks"})
+    for (const Json& text : document[kind]) log::warning("{}", text.get<std::string>());
   return exit_done;
 }
 

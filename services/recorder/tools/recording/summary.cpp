@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <initializer_list>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -55,10 +56,9 @@ std::uint64_t lost(const recording::mcap::Reader& reader) {
 
 }  // namespace
 
-Expected<Json> summary(recording::mcap::Reader& reader) {
-  const auto known = reader.statistics();
-  if (!known) return tl::unexpected(known.error());
-  const recording::mcap::Statistics& statistics = *known;
+Json summary(recording::mcap::Reader& reader) {
+  const recording::mcap::Measured& measured = reader.measured();
+  const recording::mcap::Statistics& statistics = measured.statistics;
   const recording::mcap::Contents& contents = reader.contents();
   const double duration =
       static_cast<double>(statistics.message_end_time - statistics.message_start_time) * 1e-9;
@@ -81,8 +81,14 @@ Expected<Json> summary(recording::mcap::Reader& reader) {
   for (const auto& each : contents.attachments) document["attachments"].push_back(each.name);
   document["metadata"] = Json::array();
   for (const auto& each : contents.metadata) document["metadata"].push_back(each.name);
-  document["damage"] = Json::array();
-  for (const Error& error : contents.damage) document["damage"].push_back(error.message());
+  const auto messages = [](std::initializer_list<const std::vector<Error>*> lists) {
+    Json all = Json::array();
+    for (const auto* list : lists)
+      for (const Error& error : *list) all.push_back(error.message());
+    return all;
+  };
+  document["damage"] = messages({&contents.damage, &measured.damage});
+  document["remarks"] = messages({&contents.remarks, &measured.remarks});
   return document;
 }
 

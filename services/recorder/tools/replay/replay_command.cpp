@@ -7,6 +7,7 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
 
+#include "common/base/finite_number.hpp"
 #include "common/base/log.hpp"
 #include "common/base/log_format.hpp"
 #include "common/service/arguments.hpp"
@@ -72,12 +73,7 @@ Expected<Time> time_of(const std::string& text) {
   std::tm parts{};
   if (const char* end = ::strptime(text.c_str(), "%Y-%m-%dT%H:%M:%SZ", &parts); end && *end == '\0')
     return from_ns(static_cast<std::int64_t>(::timegm(&parts)) * 1'000'000'000);
-  try {
-    std::size_t used = 0;
-    const double s = std::stod(text, &used);
-    if (used == text.size() && s >= 0 && s < 9e9) return Time(seconds(s));
-  } catch (const std::exception&) {
-  }
+  if (const auto s = finite_number(text); s && *s >= 0 && *s < 9e9) return Time(seconds(*s));
   return fail("is no time", "--start-at " + text, "for example 2026-01-31T12:00:00Z");
 }
 
@@ -196,6 +192,7 @@ int replay(const Arguments& arguments) {
   auto tape = open_tape({arguments.files.begin(), arguments.files.end()}, arguments.topics);
   if (!tape) return service::complain(tape.error(), exit_broken);
   for (const Error& damage : tape->damage()) log::warning(damage);
+  for (const Error& remark : tape->remarks()) log::warning(remark);
   warn_of_old_commands(*tape, arguments);
   const auto options = player_options(arguments, *tape);
   if (!options) return service::complain(options.error(), exit_wrong_use);
@@ -221,6 +218,11 @@ int replay(const Arguments& arguments) {
   log::info("{} messages played{}", stats.published,
             stats.refused ? fmt::format(", {} could not be", stats.refused) : "");
   if (arguments.json) std::cout << document(*service).dump() << "\n";
+  // What could not be read was not played.
+  if (*ended == exit_done && service->damage() > 0)
+    return service::complain({fmt::format("{} parts could not be read", service->damage()),
+                              arguments.files.front(), "prehend recording verify FILE names them"},
+                             exit_no);
   return *ended;
 }
 

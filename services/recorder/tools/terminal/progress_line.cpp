@@ -4,12 +4,12 @@
 #include <unistd.h>
 
 #include "common/base/log_format.hpp"
+#include "common/base/terminal.hpp"
 
 namespace prehend::recorder {
 
 ProgressLine::ProgressLine(bool quiet)
-    : quiet_(quiet || log::format() == log::Format::json),
-      terminal_(::isatty(STDERR_FILENO) != 0) {}
+    : quiet_(quiet || log::format() == log::Format::json), terminal_(has_cursor(STDERR_FILENO)) {}
 
 void ProgressLine::show(const std::string& text) {
   const auto now = std::chrono::steady_clock::now();

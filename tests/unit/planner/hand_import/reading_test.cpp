@@ -7,8 +7,8 @@
 #include <cstdlib>
 #include <fstream>
 
+#include "common/base/finite_number.hpp"
 #include "services/planner/tools/hand_import/mesh.hpp"
-#include "services/planner/tools/hand_import/numbers.hpp"
 #include "services/planner/tools/hand_import/robot_file.hpp"
 
 namespace {
@@ -81,12 +81,12 @@ TEST_F(Reading, MeshesThatWereNotFetched) {
 
 TEST(ReadingNumbers, TooSmallIsZeroAndTooLargeIsNone) {
   for (const char* tiny : {"5e-400", "-5e-400", "1e-320", "3.1E-312", "0.0e-999", "+1e-9999"})
-    EXPECT_EQ(planner::finite_number(tiny), 0.0) << tiny;
+    EXPECT_EQ(finite_number(tiny), 0.0) << tiny;
   for (const char* wrong : {"1e400", "-1e400", "nan", "inf", "1e", "0x10", "", "+", "1,5", "1 2"})
-    EXPECT_FALSE(planner::finite_number(wrong)) << wrong;
-  EXPECT_EQ(planner::finite_number("+2.5e-3"), 2.5e-3);
-  EXPECT_EQ(planner::finite_numbers(" 1\t2\n-3 "), (std::vector<double>{1, 2, -3}));
-  EXPECT_FALSE(planner::finite_numbers("1 2 x"));
+    EXPECT_FALSE(finite_number(wrong)) << wrong;
+  EXPECT_EQ(finite_number("+2.5e-3"), 2.5e-3);
+  EXPECT_EQ(finite_numbers(" 1\t2\n-3 "), (std::vector<double>{1, 2, -3}));
+  EXPECT_FALSE(finite_numbers("1 2 x"));
 }
 
 TEST_F(Reading, TheMeshFolderOfMujocosUrdf) {
