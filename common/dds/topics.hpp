@@ -64,7 +64,7 @@ inline constexpr Topic<v1::GraspCandidatesPubSubType> grasp_candidates{
     {.name = "grasp/candidates",
      .qos = {.transient_local = true},
      .writers = Role::planner,
-     .readers = Role::mapping,
+     .readers = Role::mapping | Role::performer,
      .open = true,
      .rate = "as more are found",
      .remark = "disposed when gone"}};

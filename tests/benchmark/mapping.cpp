@@ -41,10 +41,10 @@ MappingModel following(const model::HandModel& hand) {
 
 /// As many as a message holds, the surest first; only the last one comes from X_OG, the others lean
 /// away from there.
-Candidates planned(const model::HandModel& hand, std::uint32_t track, const model::Shape& shape,
-                   const Pose& X_OG) {
+model::GraspCandidates planned(const model::HandModel& hand, std::uint32_t track,
+                               const model::Shape& shape, const Pose& X_OG) {
   constexpr int count = 16;
-  Candidates all{track, shape, {}};
+  model::GraspCandidates all{track, shape, {}};
   for (int i = 0; i < count; ++i) {
     const Eigen::AngleAxisd lean(0.5 * (count - 1 - i), Eigen::Vector3d::UnitY());
     const Pose from = X_OG * make_pose(Eigen::Vector3d::Zero(), lean.toRotationMatrix());

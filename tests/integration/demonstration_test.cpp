@@ -1,11 +1,15 @@
 // Demonstrations over real DDS: a person who does not exist shows a task to real processes, which
 // learn it, keep it and do it again with a simulated hand; and what is wrong is said in one line,
 // before anything moves.
+#include <algorithm>
 #include <cstdlib>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "common/base/file_text.hpp"
 #include "common/base/paths.hpp"
+#include "common/convert/convert.hpp"
+#include "common/dds/topics.hpp"
 #include "common/model/catalogue.hpp"
 #include "common/model/placement.hpp"
 #include "common/tasks/files/task_file.hpp"
@@ -43,7 +47,34 @@ class DemonstrationLab : public Rig {
     return run("prehend", arguments, 40);
   }
 
+  /// Shows the planner this object, as a camera does, until it has searched all.
+  void plan_for(const model::CatalogueObject& object) {
+    // What other runs have found is not known here.
+    ::setenv("XDG_STATE_HOME", (folder_ / "state").c_str(), 1);
+    planner_.emplace(start("planner"));
+    v1::ObjectDetection seen;
+    seen.track(1);
+    seen.name(object.name);
+    seen.shape(convert::to_message(object.shape.kind));
+    seen.size(convert::to_message(object.shape.size));
+    seen.X_WO(convert::to_message(make_pose({0, 0, model::half_extents(object.shape).z()})));
+    seen.probability(0.9);
+    auto detections = writer(dds::object_detection);
+    auto candidates = reader(dds::grasp_candidates);
+    EXPECT_TRUE(eventually(60, [&] {
+      seen.stamp_ns(now_ns());
+      detections.write(seen);
+      for (const auto& sample : candidates.take())
+        if (!sample.info.gone && sample.data.complete()) return !sample.data.candidates().empty();
+      std::this_thread::sleep_for(std::chrono::milliseconds(20));
+      return false;
+    }));
+    detections_.emplace(std::move(detections));  // what is seen stays
+  }
+
   dds::Reader<v1::ServiceStatus> statuses_ = reader(dds::service_status);
+  std::optional<stage::Process> planner_;
+  std::optional<dds::Writer<v1::ObjectDetection>> detections_;
 };
 
 TEST_F(DemonstrationLab, AShownTaskIsUnderstoodToldAndKept) {
@@ -188,6 +219,7 @@ TEST_F(DemonstrationLab, ATaskThatCannotBeDoneMovesNothing) {
 }
 
 // The performer as a service: an operator orders by name, and hears on task/progress how it goes.
+// It takes the object as prehend-planner says.
 TEST_F(DemonstrationLab, APerformerDoesWhatIsOrderedAndEndsIt) {
   const auto catalogue =
       model::Catalogue::load(share_directory() / "models/objects/catalogue.toml").value();
@@ -207,6 +239,7 @@ TEST_F(DemonstrationLab, APerformerDoesWhatIsOrderedAndEndsIt) {
   auto performer = start("performer", {"demonstration.tasks=" + tasks()});
   wait_for("simulation");
   wait_for("performer");
+  plan_for(*catalogue.find("Talc"));
   auto progress = reader(dds::task_progress);
   const auto order = [&](Strings words) {
     words.insert(words.begin(), {"tasks", "order"});
@@ -223,6 +256,11 @@ TEST_F(DemonstrationLab, APerformerDoesWhatIsOrderedAndEndsIt) {
       progress, 120, [](const auto& said) { return said.state() != v1::TASK_RUNNING; });
   ASSERT_TRUE(done);
   EXPECT_EQ(done->state(), v1::TASK_DONE) << done->reason().to_string();
+  EXPECT_TRUE(hear<v1::ServiceStatus>(statuses_, 10, [](const v1::ServiceStatus& status) {
+    return std::any_of(status.rates().begin(), status.rates().end(), [](const v1::Rate& rate) {
+      return rate.name().to_string() == "planned grasps" && rate.total() == 1;
+    });
+  })) << "its status says by whose grasp";
   EXPECT_TRUE(eventually(10, [&] {
     const auto record = tasks::load_record(tasks() + "/TEA.task");
     return record && record->runs.size() == 1 && record->runs[0].done;

@@ -229,7 +229,7 @@ NetworkAnswer Mapping::known_answer(const Features& features, const GraspTarget&
   const model::Shape& shape = target.object.detection.shape;
   // select() lets through only what is planned and shapes that have a network.
   if (!target.planned) return *model_.intelligent(features, shape, target.X_OG);
-  const Candidate& grasp = *target.planned;
+  const model::GraspCandidate& grasp = *target.planned;
   const ClosingAnswer closed = *model_.closing(features, shape, target.X_OG);
   Eigen::VectorXd end = grasp.dof;
   for (Eigen::Index i = 0; i < end.size(); ++i)

@@ -7,6 +7,7 @@
 #include "common/base/error.hpp"
 #include "common/base/pose.hpp"
 #include "common/base/time.hpp"
+#include "common/model/grasp_candidates.hpp"
 #include "common/model/hand_model.hpp"
 #include "services/mapping/core/arbitration.hpp"
 #include "services/mapping/core/clutch.hpp"
@@ -14,7 +15,6 @@
 #include "services/mapping/core/features.hpp"
 #include "services/mapping/core/finger_distances.hpp"
 #include "services/mapping/core/follow_through.hpp"
-#include "services/mapping/core/grasp_candidates.hpp"
 #include "services/mapping/core/grasp_type.hpp"
 #include "services/mapping/core/grip_controller.hpp"
 #include "services/mapping/core/hold_timer.hpp"
@@ -97,7 +97,7 @@ class Mapping {
   Expected<void> on_detection(const Detection& detection) { return tracks_.observe(detection); }
   void on_detection_gone(std::uint32_t track) { tracks_.remove(track); }
   /// Refuses what CandidateBook::observe does.
-  Expected<void> on_candidates(Candidates planned) {
+  Expected<void> on_candidates(model::GraspCandidates planned) {
     return planned_.observe(std::move(planned), hand_);
   }
   void on_candidates_gone(std::uint32_t track) { planned_.remove(track); }
@@ -143,7 +143,7 @@ class Mapping {
   MappingOptions options_;
   FingerDistances distances_;
   ObjectTracks tracks_;
-  CandidateBook planned_;
+  model::CandidateBook planned_;
   TargetSelector targets_;
   Arbitration arbitration_;
   Trust trust_;

@@ -8,7 +8,7 @@
 namespace prehend::mapping {
 
 std::optional<GraspTarget> TargetSelector::within_reach(const ObjectTrack& track,
-                                                        const CandidateBook& planned,
+                                                        const model::CandidateBook& planned,
                                                         const Pose& X_WG, bool engaged) const {
   const Detection& detection = track.detection;
   const auto X_OG =
@@ -34,7 +34,7 @@ std::optional<GraspTarget> TargetSelector::within_reach(const ObjectTrack& track
 }
 
 std::optional<GraspTarget> TargetSelector::select(const ObjectTracks& tracks,
-                                                  const CandidateBook& planned,
+                                                  const model::CandidateBook& planned,
                                                   const Pose& X_WG) const {
   std::optional<GraspTarget> nearest, kept;
   for (const auto& [number, track] : tracks.known()) {

@@ -4,9 +4,9 @@
 #include <optional>
 
 #include "common/base/pose.hpp"
+#include "common/model/grasp_candidates.hpp"
 #include "common/model/hand_model.hpp"
 #include "services/mapping/core/arbitration.hpp"
-#include "services/mapping/core/grasp_candidates.hpp"
 #include "services/mapping/core/mapping_model.hpp"
 #include "services/mapping/core/object_tracks.hpp"
 
@@ -29,11 +29,11 @@ struct TargetOptions {
 /// An object within reach, and how to grasp it.
 struct GraspTarget {
   ObjectTrack object;
-  double distance = 0;               // m, from the hand to its nearest grasp
-  Pose X_WG = Pose::Identity();      // that grasp
-  Pose X_OG = Pose::Identity();      // the same on the object
-  Pose X_GR = Pose::Identity();      // where this hand stands in it: as planned, or PalmOffset
-  std::optional<Candidate> planned;  // the fingers of this grasp
+  double distance = 0;           // m, from the hand to its nearest grasp
+  Pose X_WG = Pose::Identity();  // that grasp
+  Pose X_OG = Pose::Identity();  // the same on the object
+  Pose X_GR = Pose::Identity();  // where this hand stands in it: as planned, or PalmOffset
+  std::optional<model::GraspCandidate> planned;  // the fingers of this grasp
 };
 
 /// Chooses the object that the hand reaches for, and stays with it. Keeps references to the hand
@@ -47,7 +47,7 @@ class TargetSelector {
   /// The object within reach of the human grasp frame X_WG: the nearest one; while one is reached
   /// for, that one or none. Objects whose shape the model does not know, and for which nothing is
   /// planned, are not there.
-  std::optional<GraspTarget> select(const ObjectTracks& tracks, const CandidateBook& planned,
+  std::optional<GraspTarget> select(const ObjectTracks& tracks, const model::CandidateBook& planned,
                                     const Pose& X_WG) const;
 
   /// Takes what select() gave for what is reached for, after Arbitration's phase went from `before`
@@ -58,8 +58,9 @@ class TargetSelector {
   const std::optional<GraspTarget>& engaged() const { return engaged_; }
 
  private:
-  std::optional<GraspTarget> within_reach(const ObjectTrack& track, const CandidateBook& planned,
-                                          const Pose& X_WG, bool engaged) const;
+  std::optional<GraspTarget> within_reach(const ObjectTrack& track,
+                                          const model::CandidateBook& planned, const Pose& X_WG,
+                                          bool engaged) const;
 
   const model::HandModel& hand_;
   const MappingModel& model_;

@@ -28,22 +28,6 @@ Expected<Detection> detection_from_message(const v1::ObjectDetection& message) {
                    Eigen::Matrix4d::Map(message.covariance().data())};
 }
 
-Expected<Candidates> candidates_from_message(const v1::GraspCandidates& message) {
-  Candidates planned{
-      message.track(),
-      {convert::from_message(message.shape()), convert::from_message(message.size())},
-      {}};
-  for (const v1::GraspCandidate& from : message.candidates()) {
-    auto X_OG = convert::from_message(from.X_OG());
-    auto X_OR = convert::from_message(from.X_OR());
-    if (!X_OG || !X_OR) return fail("pose of a grasp candidate not usable");
-    planned.candidates.push_back({*X_OG, *X_OR, convert::from_message(from.preshape()),
-                                  convert::from_message(from.dof()),
-                                  convert::from_message(from.closing()), from.room()});
-  }
-  return planned;
-}
-
 Expected<RobotState> state_from_message(const v1::HandState& message) {
   auto X_WB = convert::from_message(message.X_WB());
   if (!X_WB) return fail("pose of the robot not usable");

@@ -7,9 +7,8 @@ namespace prehend::mapping {
 
 /// A hand/posture as the mapping takes it; fails on a pose that is none.
 Expected<Posture> posture_from_message(const v1::HandPosture& message);
-/// The same of object/detection, grasp/candidates and robot/state.
+/// The same of object/detection and robot/state.
 Expected<Detection> detection_from_message(const v1::ObjectDetection& message);
-Expected<Candidates> candidates_from_message(const v1::GraspCandidates& message);
 Expected<RobotState> state_from_message(const v1::HandState& message);
 
 }  // namespace prehend::mapping

@@ -6,6 +6,7 @@
 
 #include "common/base/log.hpp"
 #include "common/convert/convert.hpp"
+#include "common/convert/grasp_candidates.hpp"
 #include "common/dds/topics.hpp"
 #include "common/service/order_book.hpp"
 #include "common/service/writers.hpp"
@@ -146,11 +147,10 @@ class Service::Topics {
   void on_candidates(const v1::GraspCandidates& message, const dds::SampleInfo& info) {
     if (message.hand().to_string() != hand_name_) return;
     if (info.gone) return mapping_.on_candidates_gone(message.track());
-    // Of another kind of hand, whose DoF may be as many.
-    if (message.model().to_string() != hand_->name().substr(0, 63))
-      return shell_.status().drop("grasp candidates of another hand");
-    const auto taken = candidates_from_message(message).and_then(
-        [&](Candidates planned) { return mapping_.on_candidates(std::move(planned)); });
+    const auto taken =
+        convert::from_message(message, *hand_).and_then([&](model::GraspCandidates planned) {
+          return mapping_.on_candidates(std::move(planned));
+        });
     if (!taken) shell_.status().drop(taken.error().what);
   }
 

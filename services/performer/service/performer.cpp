@@ -15,8 +15,10 @@
 #include "common/grasping/catalogue_bodies.hpp"
 #include "common/model/arm_choice.hpp"
 #include "common/model/catalogue.hpp"
+#include "common/model/grasp_candidates.hpp"
 #include "common/model/grasp_taxonomy.hpp"
 #include "services/performer/core/rehearsal/rehearsal.hpp"
+#include "services/performer/service/planner_ears.hpp"
 
 namespace prehend::performer {
 
@@ -88,7 +90,8 @@ class Performer::State {
         hand_name_(shell.config().text("mapping.hand_name")),
         tries_(static_cast<int>(shell.config().integer("performer.tries"))),
         commands_(shell.publish(dds::robot_command)),
-        progress_(shell.publish(dds::task_progress)) {
+        progress_(shell.publish(dds::task_progress)),
+        planned_(shell, hand_name_) {
     shell.subscribe(dds::robot_state,
                     Handler<v1::HandState>([this](auto& s, auto& i) { on_state(s, i); }));
     if (arm_)
@@ -252,9 +255,10 @@ class Performer::State {
     if (robot_->dof.size() != static_cast<Eigen::Index>(doing.hand->dofs().size()) ||
         robot_->joint.size() != static_cast<Eigen::Index>(doing.hand->joints().size()))
       return refuse({"has other joints than " + model_, hand_name_, "is it the same description?"});
+    const model::CandidateBook planned = planned_.of(*doing.hand);
     for (const auto& [name, X_WO] : places_)
       if (const auto* known = bodies_.find(name))
-        doing.things.push_back({*known, X_WO});
+        doing.things.push_back({*known, X_WO, planned.of(name, known->shape)});
       else
         log::warning("{} is not in the catalogue: it is not looked out for", name);
     doing.from = {robot_->X_WB, doing.hand->clamp(robot_->dof)};
@@ -285,6 +289,11 @@ class Performer::State {
       Error error = rehearsal.error();
       error.exit = exit_no;
       return refuse(error);
+    }
+    for (const Verdict& verdict : rehearsal->verdicts) {
+      shell_.status().count(verdict.planned ? "planned grasps" : "own grasps");
+      log::info("{}: {}", verdict.object,
+                verdict.planned ? "grasp of the planner" : "grasp of its own search");
     }
     if (doing.options.only_rehearse)
       return finish(Performed{doing.kind, true, {}, rehearsal->verdicts, 0, false});
@@ -389,6 +398,7 @@ class Performer::State {
   std::optional<v1::GateState> gate_;
   bool leader_is_performer_ = false;
   Places places_;
+  PlannerEars planned_;
   Time heard_{};
   Time stamp_{}, time_{};  // of the newest state, and how much of that time the robot has moved
   std::uint64_t sequence_ = 0, told_count_ = 0;

@@ -6,11 +6,13 @@
 #include <cmath>
 #include <utility>
 
+#include "common/grasping/planned_candidates.hpp"
+
 namespace prehend::planner {
 namespace {
 
-constexpr double grain = 0.001;   // m, to which sizes are rounded, so that plans are kept
-constexpr double upright = 0.26;  // rad, that an object may lean and still stand
+constexpr double min_size = 0.001;  // m, of half an object
+constexpr double upright = 0.26;    // rad, that an object may lean and still stand
 constexpr std::size_t max_seen = 1000, max_planned = 200;
 
 /// Objects that share a plan have the same.
@@ -36,8 +38,7 @@ PlanBook::PlanBook(const model::HandModel& hand, const grasping::CatalogueBodies
     : hand_(hand), catalogue_(catalogue), store_(std::move(store)), options_(options) {}
 
 grasping::Body PlanBook::body_of(const SeenObject& seen) const {
-  return catalogue_.seen(seen.name,
-                         {seen.shape.kind, (seen.shape.size / grain).array().round() * grain});
+  return catalogue_.seen(seen.name, grasping::shape_to_plan(seen.shape));
 }
 
 PlanBook::Entry* PlanBook::find(const std::string& key) {
@@ -56,7 +57,7 @@ void PlanBook::forget_one() {
 
 Expected<void> PlanBook::observe(const SeenObject& seen) {
   if (!is_finite(seen.X_WO)) return fail("pose of a detection not finite");
-  if (!is_valid(seen.shape) || model::half_extents(seen.shape).minCoeff() < grain)
+  if (!is_valid(seen.shape) || model::half_extents(seen.shape).minCoeff() < min_size)
     return fail("detection without a shape");
   // Written so that not-a-number fails.
   if (!(seen.probability >= options_.min_probability)) return fail("detection not probable");

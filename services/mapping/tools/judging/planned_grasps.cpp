@@ -5,29 +5,18 @@
 #include <utility>
 
 #include "common/grasping/catalogue_bodies.hpp"
-#include "common/grasping/table_grasps.hpp"
+#include "common/grasping/planned_candidates.hpp"
 
 namespace prehend::mapping {
 
-Candidates PlannedGrasps::search(const std::string& object, const model::Shape& shape) const {
-  Candidates made{1, shape, {}};  // the track of seen_object()
-  auto search = grasping::TableGraspSearch::create(hand_, objects_.seen(object, shape));
-  if (!search) return made;
-  const auto in_turn = [](std::size_t count, const auto& attempt) {
-    for (std::size_t i = 0; i < count; ++i) attempt(i);
-  };
-  while (search->try_next(in_turn)) {
-  }
-  for (const grasping::SureGrasp& grasp : search->found())
-    made.candidates.push_back({grasp.X_OG, grasp.grasp.X_OG, grasp.grasp.open, grasp.grasp.dof,
-                               grasp.grasp.closing, grasp.room});
-  return made;
+model::GraspCandidates PlannedGrasps::search(const std::string& object,
+                                             const model::Shape& shape) const {
+  // The track of seen_object().
+  return {1, shape, grasping::planned_candidates(hand_, objects_.seen(object, shape)), object};
 }
 
-Candidates PlannedGrasps::of(const BenchmarkTake& take) {
-  constexpr double grain = 0.001;  // m, as in the planner
-  model::Shape shape = take.recorded.seen_shape;
-  shape.size = (shape.size / grain).array().round() * grain;
+model::GraspCandidates PlannedGrasps::of(const BenchmarkTake& take) {
+  const model::Shape shape = grasping::shape_to_plan(take.recorded.seen_shape);
   const std::string& object = take.grasp.object;
   const std::string key = fmt::format("{} {:.3f} {:.3f} {:.3f}", object, shape.size.x(),
                                       shape.size.y(), shape.size.z());

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "common/base/error.hpp"
+#include "common/model/grasp_candidates.hpp"
 #include "services/mapping/core/mapping.hpp"
 #include "services/mapping/tools/judging/grasp_benchmark.hpp"
 
@@ -26,10 +27,10 @@ class PlannedGrasps {
  private:
   struct Entry {
     std::once_flag once;
-    Candidates found;
+    model::GraspCandidates found;
   };
-  Candidates of(const BenchmarkTake& take);
-  Candidates search(const std::string& object, const model::Shape& shape) const;
+  model::GraspCandidates of(const BenchmarkTake& take);
+  model::GraspCandidates search(const std::string& object, const model::Shape& shape) const;
 
   const model::HandModel& hand_;
   const grasping::CatalogueBodies& objects_;

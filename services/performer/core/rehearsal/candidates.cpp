@@ -1,6 +1,7 @@
 #include "services/performer/core/rehearsal/candidates.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <optional>
@@ -16,8 +17,9 @@ using Eigen::AngleAxisd;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
 
-constexpr double same_place = 0.01, same_turn = 0.1;  // m, rad: no other grasp
-constexpr double lower = 0.008;                       // m, than a hand's reach says
+constexpr double same_place = 0.01, same_turn = 0.1;            // m, rad: no other grasp
+constexpr double lower = 0.008;                                 // m, than a hand's reach says
+constexpr std::array turns{0, 30, -30, 60, -60, 90, -90, 180};  // degrees about the object's axis
 
 Pose turned(double degrees, const Pose& X_OG) {
   const AngleAxisd turn(degrees * std::numbers::pi / 180, Vector3d::UnitZ());
@@ -48,8 +50,7 @@ std::vector<Pose> grasp_poses(const model::HandModel& hand, const model::Shape& 
     found.push_back(*made);
     if (const auto below = lowered(hand, shape, *made)) found.push_back(*below);
   };
-  offer(X_OG);
-  for (const double turn : {30, -30, 60, -60, 90, -90, 180}) offer(turned(turn, X_OG));
+  for (const double turn : turns) offer(turned(turn, X_OG));
   const Vector3d y = X_OG.linear().col(1);
   const Vector3d closing = Vector3d(y.x(), y.y(), 0).norm() > 1e-6
                                ? Vector3d(y.x(), y.y(), 0).normalized()
@@ -59,7 +60,47 @@ std::vector<Pose> grasp_poses(const model::HandModel& hand, const model::Shape& 
   return found;
 }
 
+/// Closes as the planner has judged it: all fingers arrive together, and press on.
+RobotGrasp as_planned(const model::HandModel& hand, const model::GraspCandidate& candidate) {
+  RobotGrasp made{candidate.X_OR * hand.X_BG().inverse(), candidate.preshape,
+                  VectorXd::Zero(candidate.dof.size()), true};
+  for (Eigen::Index i = 0; i < made.closing.size(); ++i) {
+    const double closing = candidate.closing[i];
+    const double way = closing * (candidate.dof[i] - candidate.preshape[i]);
+    made.closing[i] =
+        closing * (std::max(0.0, way) + hand.dofs()[static_cast<std::size_t>(i)].squeeze);
+  }
+  return made;
+}
+
 }  // namespace
+
+std::vector<RobotGrasp> planned_grasps(const model::HandModel& hand, const model::Shape& shape,
+                                       const Pose& X_OG,
+                                       const std::vector<model::GraspCandidate>& planned) {
+  std::vector<model::GraspCandidate> found;
+  for (const double turn : turns) {
+    const Pose from = turned(turn, X_OG);
+    std::vector<model::GraspCandidate> there;
+    for (const model::GraspCandidate& candidate : planned) {
+      there.push_back(model::turned_to(shape, candidate, from));
+      const Pose& X = there.back().X_OR;
+      if (std::any_of(found.begin(), found.end(), [&](const model::GraspCandidate& other) {
+            return (other.X_OR.translation() - X.translation()).norm() < same_place &&
+                   angle_between(other.X_OR.linear(), X.linear()) < same_turn;
+          }))
+        there.pop_back();
+    }
+    std::stable_sort(there.begin(), there.end(), [&](const auto& a, const auto& b) {
+      return angle_between(a.X_OG.linear(), from.linear()) <
+             angle_between(b.X_OG.linear(), from.linear());
+    });
+    found.insert(found.end(), there.begin(), there.end());
+  }
+  std::vector<RobotGrasp> made;
+  for (const model::GraspCandidate& candidate : found) made.push_back(as_planned(hand, candidate));
+  return made;
+}
 
 std::vector<RobotGrasp> grasp_candidates(const model::HandModel& hand, const model::Shape& shape,
                                          const Pose& X_OG) {

@@ -117,22 +117,35 @@ void add_rolled(const model::HandModel& hand, std::vector<RobotGrasp>& grasps) {
   }
 }
 
+/// How this step's object may be taken, the likeliest first: planned grasps have been judged.
+std::vector<RobotGrasp> all_grasps(const model::HandModel& hand, const tasks::Step& step,
+                                   const std::vector<Thing>& things, bool by_arm) {
+  const auto thing = std::find_if(things.begin(), things.end(),
+                                  [&](const Thing& each) { return each.body.name == step.object; });
+  const model::Shape& shape = thing->body.shape;
+  auto all = planned_grasps(hand, shape, step.X_OG, thing->planned);
+  auto own = grasp_candidates(hand, shape, step.X_OG);
+  if (by_arm) add_rolled(hand, own);
+  all.insert(all.end(), own.begin(), own.end());
+  return all;
+}
+
 /// The first grasp that does a step and leaves room for what may be otherwise, or else the one that
 /// leaves most. Fails if none does it.
 Expected<Tried> best_trial(const model::HandModel& hand, const tasks::TaskModel& task,
                            const grasping::World& before, const Shapes& shapes,
+                           const std::vector<RobotGrasp>& candidates,
                            const RehearsalOptions& options, const std::function<void(int)>& tell) {
-  const tasks::Step& step = task.steps.front();
-  auto candidates = grasp_candidates(hand, shapes.at(step.object), step.X_OG);
-  if (options.robot) add_rolled(hand, candidates);
   int left = more_tries, tries = 0;
+  bool is_any_reached = false;
   Expected<Tried> best = fail("the hand cannot reach around it");
   for (std::size_t k = 0; k < candidates.size() && tries < options.max_tries && left >= 0; ++k) {
     tell(static_cast<int>(k));
     auto tried = try_surely(hand, task, before, shapes, candidates[k], options);
     const bool is_reached = tried || tried.error().where != out_of_reach;
-    if (!is_reached && tries > 0) continue;  // there is something better to say
-    tries += is_reached;
+    if (!is_reached && is_any_reached) continue;  // there is something better to say
+    is_any_reached |= is_reached;
+    tries += is_reached && !candidates[k].planned;
     if (!best || (tried && tried->worst < best->worst)) best = std::move(tried);
     if (!best || best->worst > will_do) continue;
     if (best->worst <= sure) break;
@@ -205,7 +218,8 @@ Expected<Rehearsal> rehearse(const model::HandModel& hand, const tasks::TaskMode
       return fail("is not in this lab", step.object, "the task " + task.name + " needs it");
     if (step.reference != tasks::the_table && !shapes.contains(step.reference))
       return fail("is not in this lab", step.reference, "the task " + task.name + " needs it");
-    auto best = best_trial(hand, alone(task, i), *world, shapes, options,
+    auto best = best_trial(hand, alone(task, i), *world, shapes,
+                           all_grasps(hand, step, things, options.robot.has_value()), options,
                            [&](int attempt) { options.tell(i, attempt); });
     if (!best)
       return fail("no grasp does step " + std::to_string(i + 1) + " of " + task.name + ": " +

@@ -16,12 +16,14 @@ namespace prehend::performer {
 struct Thing {
   grasping::Body body;
   Pose X_WO = Pose::Identity();
+  std::vector<model::GraspCandidate> planned = {};  // for it, by prehend-planner
 };
 
 struct RehearsalOptions {
-  int max_tries = 24;          // of each step; a grasp to which the arm has no way does not count
-  PerformerOptions performer;  // how the hand goes
-  VerdictOptions verdict;      // what counts as done
+  /// Of each step; what is planned does not count, nor does a grasp to which the arm has no way.
+  int max_tries = 24;
+  PerformerOptions performer;            // how the hand goes
+  VerdictOptions verdict;                // what counts as done
   std::optional<planning::Robot> robot;  // an arm that carries the hand; none: it flies
   arm::Joints posture;                   // of that arm
   /// Told before each try: which step of the task, which try of it, both from 0.
@@ -34,8 +36,9 @@ struct Rehearsal {
   std::vector<Verdict> verdicts;   // of each step
 };
 
-/// Tries a task in a world of its own, with other grasps until each step is done, and so finds
-/// grasps that hold, are reachable and move nothing else. Fails, naming the step, where none does.
+/// Tries a task in a world of its own, with planned grasps first and then with its own, until each
+/// step is done, and so finds grasps that hold, are reachable and move nothing else. Fails, naming
+/// the step, where none does.
 Expected<Rehearsal> rehearse(const model::HandModel& hand, const tasks::TaskModel& task,
                              const std::vector<Thing>& things, const HandGoal& from,
                              const RehearsalOptions& options = {});

@@ -212,19 +212,31 @@ void StepPerformer::follow(const RobotNow& robot, const Pose& X_WO) {
   next(robot, X_WO);
 }
 
+VectorXd StepPerformer::closing_speeds() const {
+  const VectorXd& way = order_.grasp.closing;
+  VectorXd speeds = VectorXd::Zero(goal_.dof.size());
+  double longest = 0;  // rad, or what stands for it
+  for (Eigen::Index i = 0; i < speeds.size(); ++i) {
+    const model::HandDof& dof = hand_.dofs()[static_cast<std::size_t>(i)];
+    speeds[i] = way.size() == 0 ? dof.closing * model::radian_of(dof) : way[i];
+    longest = std::max(longest, std::abs(speeds[i]) / model::radian_of(dof));
+  }
+  return longest > 0 ? (options_.finger_speed / longest * speeds).eval() : speeds;
+}
+
 /// Ahead of the motors until all have stood for a while; then so far past them that drives give all
 /// they have.
 void StepPerformer::close(const RobotNow& robot, const Pose& X_WO) {
   const double dt = to_seconds(robot.stamp - last_);
-  const VectorXd now = motors(robot);
+  const VectorXd now = motors(robot), speeds = closing_speeds();
   bool moves = false;
   for (Eigen::Index i = 0; i < now.size(); ++i) {
     const model::HandDof& dof = hand_.dofs()[static_cast<std::size_t>(i)];
-    if (dof.closing == 0) continue;
-    const double step = dof.closing * options_.finger_speed * model::radian_of(dof) * dt;
-    const double most = now[i] + dof.closing * dof.squeeze;
+    if (speeds[i] == 0) continue;
+    const double step = speeds[i] * dt;
+    const double most = now[i] + std::copysign(dof.squeeze, speeds[i]);
     goal_.dof[i] =
-        dof.closing > 0 ? std::min(goal_.dof[i] + step, most) : std::max(goal_.dof[i] + step, most);
+        speeds[i] > 0 ? std::min(goal_.dof[i] + step, most) : std::max(goal_.dof[i] + step, most);
     moves |= std::abs(now[i] - stood_[i]) > options_.still * stands_for * model::radian_of(dof);
   }
   goal_.dof = hand_.clamp(goal_.dof);

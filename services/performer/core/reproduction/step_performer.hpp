@@ -26,11 +26,15 @@ struct HandGoal {
   Eigen::VectorXd dof;
 };
 
-/// How a robot hand takes an object: where its base stands when the fingers close, and how they are
-/// before.
+/// How a robot hand takes an object: where its base stands when the fingers close, how they are
+/// before, and how they close.
 struct RobotGrasp {
   Pose X_OB = Pose::Identity();
   Eigen::VectorXd preshape;
+  /// Of each DoF, rad or m: on the way to all of it they go in proportion, and on past it; 0: it
+  /// rests. Empty: all that close, each as fast as it may.
+  Eigen::VectorXd closing = {};
+  bool planned = false;  // by prehend-planner
 };
 
 enum class StepPart { approach, close, lift, carry, put_down, release, retract };
@@ -56,7 +60,7 @@ struct PerformerOptions {
   double stand_off = 0.12;
   /// m. How high an object is lifted at least, whatever the task says.
   double min_lift = 0.08;
-  /// rad/s, or what stands for it (radian_of). How fast fingers close and open.
+  /// rad/s, or what stands for it (radian_of). How fast fingers close, at most, and open.
   double finger_speed = 0.8;
   /// rad/s. A finger that is slower stands.
   double still = 0.03;
@@ -109,6 +113,8 @@ class StepPerformer {
   /// Lets go and goes away, if the object is not in the hand any more.
   void give_up(const std::string& why, const RobotNow& robot, const Pose& X_WO);
   Eigen::VectorXd motors(const RobotNow& robot) const;
+  /// How fast each DoF closes, rad/s or m/s; negative the other way, 0: it does not.
+  Eigen::VectorXd closing_speeds() const;
   Pose back(const Pose& X_WB, double by) const;
   Pose raised(const Pose& X_WB) const;
 

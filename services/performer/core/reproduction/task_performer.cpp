@@ -51,6 +51,7 @@ Expected<TaskPerformer> TaskPerformer::create(const model::HandModel& hand, task
   for (std::size_t i = 0; i < task.steps.size(); ++i) {
     made.verdicts_[i].object = task.steps[i].object;
     made.verdicts_[i].reason = "was not tried";
+    made.verdicts_[i].planned = grasps[i].planned;
   }
   made.task_ = std::move(task);
   made.shapes_ = std::move(shapes);

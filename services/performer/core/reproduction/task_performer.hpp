@@ -29,6 +29,7 @@ struct Verdict {
   double error = 0, turn = 0, max_tilt = 0;  // m, rad, rad
   std::string reason;                        // why it is not done
   bool reached = true;                       // the hand has a way to it
+  bool planned = false;                      // its grasp was, by prehend-planner
 };
 
 /// An arm that carries the hand, and what it looks out for beside the task.

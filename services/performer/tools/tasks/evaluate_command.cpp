@@ -8,6 +8,7 @@
 
 #include "common/arm/mounting.hpp"
 #include "common/base/paths.hpp"
+#include "common/grasping/catalogue_bodies.hpp"
 #include "common/model/arm_choice.hpp"
 #include "common/model/catalogue.hpp"
 #include "common/model/scene.hpp"
@@ -16,6 +17,7 @@
 #include "common/stage/temporary_folder.hpp"
 #include "common/tasks/files/task_file.hpp"
 #include "services/performer/tools/tasks/commands.hpp"
+#include "services/performer/tools/trials/lab_things.hpp"
 #include "services/performer/tools/trials/trial.hpp"
 
 namespace prehend::performer {
@@ -27,7 +29,7 @@ struct EvaluateArguments {
   std::string hand = model::lab_hand(), arm;
   int tasks = 20, max_steps = 4;
   std::uint64_t seed = 1;
-  bool json = false;
+  bool planned = false, json = false;
 };
 
 /// Where the configuration that comes with the programs has it.
@@ -52,24 +54,16 @@ Json entry_of(const Tried& tried, std::uint64_t seed) {
           {"steps", tried.steps},
           {"understood", tried.understood},
           {"rehearsed", trial.rehearsed},
+          {"planned", trial.planned},
           {"done", trial.done},
           {"max_error_m", trial.max_error},
           {"max_turn_rad", trial.max_turn},
           {"reason", trial.reason}};
 }
 
-std::vector<Thing> things_of(const model::Scene& scene, const model::Catalogue& catalogue) {
-  std::vector<Thing> things;
-  for (const model::PlacedObject& placed : scene.objects) {
-    const model::CatalogueObject& known = *catalogue.find(placed.name);
-    things.push_back({{known.name, known.shape, known.mass, known.material, {}, {}}, placed.X_WO});
-  }
-  return things;
-}
-
 /// The demonstration draws it, shows it and learns it; then it is done again.
 Tried try_one(const EvaluateArguments& arguments, const model::HandModel& hand,
-              const model::Catalogue& catalogue, int steps, std::uint64_t seed,
+              const model::Catalogue& catalogue, LabThings& lab, int steps, std::uint64_t seed,
               const std::optional<planning::Robot>& robot) {
   Tried tried{.steps = steps};
   const auto refuse = [&](const std::string& reason) {
@@ -91,7 +85,9 @@ Tried try_one(const EvaluateArguments& arguments, const model::HandModel& hand,
   if (!task) return refuse(task.error().message());
   const auto scene = model::load_scene(folder->path() / "again.toml", catalogue);
   if (!scene) return refuse(scene.error().message());
-  tried.trial = try_task(hand, *task, things_of(*scene, catalogue), seed, robot);
+  const auto things = lab.of(*scene);
+  if (!things) return refuse(things.error().message());
+  tried.trial = try_task(hand, *task, *things, seed, robot);
   return tried;
 }
 
@@ -101,6 +97,9 @@ int evaluate(const EvaluateArguments& arguments) {
   const auto catalogue =
       model::Catalogue::load(share_directory() / "models" / "objects" / "catalogue.toml");
   if (!catalogue) return tool::complain(catalogue.error());
+  const auto bodies = grasping::CatalogueBodies::create(*catalogue);
+  if (!bodies) return tool::complain(bodies.error());
+  LabThings lab(*hand, *bodies, arguments.planned);
   std::optional<model::ArmModel> arm;
   std::optional<planning::Robot> robot;
   if (!arguments.arm.empty()) {
@@ -116,18 +115,21 @@ int evaluate(const EvaluateArguments& arguments) {
   Json document{{"hand", hand->name()},
                 {"arm", arm ? Json(arm->name) : Json(nullptr)},
                 {"tasks", Json::array()}};
-  int understood = 0, rehearsed = 0, done = 0;
+  int understood = 0, rehearsed = 0, done = 0, steps = 0, planned = 0;
   for (int n = 0; n < arguments.tasks; ++n) {
     const std::uint64_t seed = arguments.seed + static_cast<std::uint64_t>(n);
     const Tried tried =
-        try_one(arguments, *hand, *catalogue, 1 + n % arguments.max_steps, seed, robot);
+        try_one(arguments, *hand, *catalogue, lab, 1 + n % arguments.max_steps, seed, robot);
     const TaskTrial& trial = tried.trial;
     understood += tried.understood;
     rehearsed += trial.rehearsed;
     done += trial.done;
+    steps += trial.rehearsed ? tried.steps : 0;
+    planned += trial.planned;
     document["tasks"].push_back(entry_of(tried, seed));
     if (arguments.json) continue;
-    fmt::print("{:4} {} steps: {:10} {:5.1f} mm {:5.1f}°  {}\n", seed, tried.steps,
+    fmt::print("{:4} {} steps, {} planned: {:10} {:5.1f} mm {:5.1f}°  {}\n", seed, tried.steps,
+               trial.planned,
                trial.done        ? "done"
                : trial.rehearsed ? "not done"
                                  : "not tried",
@@ -136,12 +138,14 @@ int evaluate(const EvaluateArguments& arguments) {
   }
   document["understood"] = understood;
   document["rehearsed"] = rehearsed;
+  document["rehearsed_steps"] = steps;
+  document["planned_steps"] = planned;
   document["done"] = done;
   if (arguments.json)
     std::cout << document.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) << "\n";
   else
-    fmt::print("{} tasks: {} understood, {} rehearsed, {} done\n", arguments.tasks, understood,
-               rehearsed, done);
+    fmt::print("{} tasks: {} understood, {} rehearsed, {} done; of {} steps {} by planned grasps\n",
+               arguments.tasks, understood, rehearsed, done, steps, planned);
   return exit_done;
 }
 
@@ -163,6 +167,8 @@ void add_evaluate(tool::Program& program) {
       ->check(CLI::Range(1, 6))
       ->capture_default_str();
   command->add_option("--seed", arguments->seed, "of the first one")->capture_default_str();
+  command->add_flag("--planned", arguments->planned,
+                    "also with the grasps that prehend-planner finds for what it sees");
   command->add_flag("--json", arguments->json, "one JSON document");
   program.on(*command, [arguments] { return evaluate(*arguments); });
 }

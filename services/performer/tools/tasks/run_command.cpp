@@ -32,6 +32,7 @@ Json document_of(const tasks::TaskModel& task, const Performed& performed) {
   for (const Verdict& verdict : performed.verdicts)
     document["steps"].push_back({{"object", verdict.object},
                                  {"done", verdict.done},
+                                 {"planned", verdict.planned},
                                  {"error_m", verdict.error},
                                  {"error_rad", verdict.turn},
                                  {"max_tilt_rad", verdict.max_tilt},
@@ -42,9 +43,9 @@ Json document_of(const tasks::TaskModel& task, const Performed& performed) {
 void print(const Performed& performed) {
   for (std::size_t i = 0; i < performed.verdicts.size(); ++i) {
     const Verdict& verdict = performed.verdicts[i];
-    fmt::print("{:2} {:16} {:8} {:5.1f} mm {:5.1f}°  {}\n", i + 1, verdict.object,
-               verdict.done ? "done" : "not done", 1000 * verdict.error, verdict.turn * 57.29578,
-               verdict.reason);
+    fmt::print("{:2} {:16} {:8} {:7} {:5.1f} mm {:5.1f}°  {}\n", i + 1, verdict.object,
+               verdict.done ? "done" : "not done", verdict.planned ? "planned" : "own",
+               1000 * verdict.error, verdict.turn * 57.29578, verdict.reason);
   }
 }
 

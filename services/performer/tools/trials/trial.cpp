@@ -48,6 +48,8 @@ TaskTrial try_task(const model::HandModel& hand, const tasks::TaskModel& task,
     return trial;
   }
   trial.rehearsed = true;
+  trial.planned = static_cast<int>(std::count_if(rehearsed->grasps.begin(), rehearsed->grasps.end(),
+                                                 [](const auto& grasp) { return grasp.planned; }));
   Random random(seed * 31 + 7);
   const std::vector<Thing> truth = disturbed(things, random);
   grasping::WorldOptions physics;

@@ -18,6 +18,7 @@ struct TaskTrial {
   bool done = false;       // as it was shown, in a world where objects stand a little otherwise
   double max_error = 0;    // m, the largest of all steps; if it was performed
   double max_turn = 0;     // rad
+  int planned = 0;         // steps whose grasp was found by prehend-planner; if it was rehearsed
   std::string reason;      // why it is not done
 };
 

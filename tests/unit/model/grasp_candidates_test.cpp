@@ -1,0 +1,179 @@
+// Planned grasps answer a hand from the side that they were planned for, however the object is
+// turned; whoever knows an object by its name gets all that are sure; and what is nonsense is
+// refused whole.
+#include "common/model/grasp_candidates.hpp"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <numbers>
+
+#include "common/model/placement.hpp"
+#include "tests/support/hands.hpp"
+
+namespace prehend::model {
+namespace {
+
+using Eigen::Vector3d;
+
+const HandModel& barrett() {
+  return test::hand("barrett");
+}
+
+const Shape can{ShapeKind::cylinder, {0.03, 0.03, 0.15}};
+const Shape brick{ShapeKind::box, {0.04, 0.08, 0.16}};
+
+Pose turned(double angle) {
+  return make_pose(Vector3d::Zero(),
+                   Eigen::AngleAxisd(angle, Vector3d::UnitZ()).toRotationMatrix());
+}
+
+/// The grasp frame of a hand that comes along this direction, fingers closing horizontally.
+Pose grasp_along(const Shape& shape, const Vector3d& approach, const Vector3d& closing) {
+  return *nearest_grasp(shape, make_pose(Vector3d::Zero(), grasp_axes(approach, closing)),
+                        barrett().reach());
+}
+
+GraspCandidate candidate(const Pose& X_OG, double room = 0.75) {
+  GraspCandidate made;
+  made.X_OG = X_OG;
+  made.X_OR = X_OG * make_pose({0, 0.006, -0.004});
+  made.preshape = barrett().postures().at("open");
+  made.preshape[0] = 0.2;
+  made.dof = Eigen::Vector4d(0.2, 1.1, 1.2, 1.3);
+  made.closing = Eigen::Vector4d(0, 1, 1, 1);
+  made.room = room;
+  return made;
+}
+
+class GraspCandidatesTest : public testing::Test {
+ protected:
+  CandidateBook book;
+  std::string refused(const GraspCandidate& wrong) {
+    const auto taken = book.observe({7, can, {candidate(from_aside), wrong}}, barrett());
+    return taken ? "taken" : taken.error().what;
+  }
+  const Pose from_aside = grasp_along(can, Vector3d::UnitX(), Vector3d::UnitY());
+  const Pose from_above = grasp_along(can, -Vector3d::UnitZ(), Vector3d::UnitY());
+};
+
+TEST_F(GraspCandidatesTest, AnswerFromAnySideOfWhatIsRound) {
+  ASSERT_TRUE(book.observe({7, can, {candidate(from_aside), candidate(from_above)}}, barrett()));
+  for (double angle = -3; angle < 3.2; angle += 0.37)
+    for (const Pose& planned : {from_aside, from_above}) {
+      const Pose X_OG = turned(angle) * planned;
+      const auto found = book.answer(7, can, X_OG);
+      ASSERT_TRUE(found) << angle;
+      EXPECT_TRUE(found->X_OG.isApprox(X_OG, 1e-9));
+      EXPECT_TRUE((found->X_OG.inverse() * found->X_OR)
+                      .isApprox(planned.inverse() * candidate(planned).X_OR, 1e-9))
+          << "it stands in its approach as it was planned";
+    }
+}
+
+TEST_F(GraspCandidatesTest, OfABoxAnswerFromBothEndsAndNotFromOthers) {
+  const Vector3d x = Vector3d::UnitX(), y = Vector3d::UnitY();
+  const Pose along_y = grasp_along(brick, y, x);
+  ASSERT_TRUE(book.observe({7, brick, {candidate(along_y)}}, barrett()));
+  EXPECT_TRUE(book.answer(7, brick, along_y));
+  const auto other_end = book.answer(7, brick, grasp_along(brick, -y, -x));
+  ASSERT_TRUE(other_end);
+  EXPECT_TRUE(other_end->X_OG.isApprox(turned(std::numbers::pi) * along_y, 1e-9));
+  EXPECT_FALSE(book.answer(7, brick, grasp_along(brick, x, y)));
+  EXPECT_FALSE(book.answer(7, brick, grasp_along(brick, -Vector3d::UnitZ(), x)));
+  EXPECT_FALSE(book.answer(7, brick, grasp_along(brick, y, -x))) << "the palm upside down";
+}
+
+TEST_F(GraspCandidatesTest, PullTheHandToWhereTheyWerePlanned) {
+  const Pose X_OG = grasp_along(brick, -Vector3d::UnitZ(), Vector3d::UnitX());
+  ASSERT_TRUE(book.observe({7, brick, {candidate(X_OG)}}, barrett()));
+  Pose beside = X_OG;
+  beside.translation().y() += 0.015;
+  const auto found = book.answer(7, brick, beside);
+  ASSERT_TRUE(found);
+  EXPECT_TRUE(found->X_OG.isApprox(X_OG, 1e-9));
+}
+
+TEST_F(GraspCandidatesTest, TheOneWithTheMostRoomAnswers) {
+  ASSERT_TRUE(
+      book.observe({7, can, {candidate(from_aside, 0.2), candidate(from_aside, 0.9)}}, barrett()));
+  EXPECT_EQ(book.answer(7, can, from_aside)->room, 0.9);
+}
+
+// A grasp that stands few small errors leaves the answer to the network.
+TEST_F(GraspCandidatesTest, UnsureOnesDoNotAnswer) {
+  ASSERT_TRUE(book.observe({7, can, {candidate(from_aside, 0.5)}}, barrett()));
+  EXPECT_FALSE(book.answer(7, can, from_aside));
+}
+
+TEST_F(GraspCandidatesTest, OfAnotherObjectOrQuiteAnotherSizeDoNotAnswer) {
+  ASSERT_TRUE(book.observe({7, can, {candidate(from_aside)}}, barrett()));
+  EXPECT_FALSE(book.answer(8, can, from_aside));
+  Shape other = can;
+  other.size *= 1.1;
+  EXPECT_TRUE(book.answer(7, other, from_aside)) << "a camera that errs";
+  other.size *= 1.6;
+  EXPECT_FALSE(book.answer(7, other, from_aside));
+  other = {ShapeKind::box, 2 * can.size};
+  EXPECT_FALSE(book.answer(7, other, from_aside));
+  book.remove(7);
+  EXPECT_FALSE(book.answer(7, can, from_aside));
+}
+
+TEST_F(GraspCandidatesTest, NonsenseIsRefusedAndWhatWasKnownStays) {
+  ASSERT_TRUE(book.observe({7, can, {candidate(from_aside, 0.75)}}, barrett()));
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  GraspCandidate wrong = candidate(from_above);
+  wrong.dof.resize(3);
+  EXPECT_EQ(refused(wrong), "grasp candidate of another hand");
+  wrong = candidate(from_above);
+  wrong.preshape[1] = nan;
+  EXPECT_EQ(refused(wrong), "grasp candidate of another hand");
+  wrong = candidate(from_above);
+  wrong.dof[2] = 9;
+  EXPECT_EQ(refused(wrong), "grasp candidate beyond the hand's limits");
+  wrong = candidate(from_above);
+  wrong.X_OR.translation().z() = nan;
+  EXPECT_EQ(refused(wrong), "grasp candidate not finite");
+  wrong = candidate(from_above, nan);
+  EXPECT_EQ(refused(wrong), "grasp candidate not finite");
+  wrong = candidate(from_above);
+  wrong.X_OR.translation().x() += 0.1;
+  EXPECT_EQ(refused(wrong), "grasp candidate away from its approach");
+  wrong = candidate(from_above);
+  wrong.X_OR = wrong.X_OR * turned(0.5);
+  EXPECT_EQ(refused(wrong), "grasp candidate away from its approach");
+  EXPECT_EQ(book.answer(7, can, from_aside)->room, 0.75);
+}
+
+TEST_F(GraspCandidatesTest, OfANameAreAllThatAreSureTheSurestFirst) {
+  ASSERT_TRUE(book.observe({7, can, {}, "Can"}, barrett())) << "not searched yet";
+  ASSERT_TRUE(
+      book.observe({8,
+                    can,
+                    {candidate(from_aside, 0.9), candidate(from_above), candidate(from_aside, 0.5)},
+                    "Can"},
+                   barrett()));
+  ASSERT_TRUE(book.observe({9, brick, {candidate(from_above)}, "Brick"}, barrett()));
+  const auto found = book.of("Can", can);
+  ASSERT_EQ(found.size(), 2u);
+  EXPECT_EQ(found[0].room, 0.9);
+  EXPECT_TRUE(found[1].X_OG.isApprox(from_above));
+  EXPECT_TRUE(book.of("Cup", can).empty());
+  EXPECT_TRUE(book.of("Can", brick).empty()) << "it is said to be quite another";
+  book.remove(8);
+  EXPECT_TRUE(book.of("Can", can).empty());
+}
+
+TEST_F(GraspCandidatesTest, ARoundThingIsTakenFromAnySideABoxFromItsEnds) {
+  const auto round = turned_to(can, candidate(from_aside), turned(1.1) * from_aside);
+  EXPECT_TRUE(round.X_OG.isApprox(turned(1.1) * from_aside, 1e-9));
+  EXPECT_TRUE(round.X_OR.isApprox(turned(1.1) * candidate(from_aside).X_OR, 1e-9));
+  const Pose end = grasp_along(brick, Vector3d::UnitY(), Vector3d::UnitX());
+  EXPECT_TRUE(turned_to(brick, candidate(end), turned(1.1) * end).X_OG.isApprox(end, 1e-9));
+  EXPECT_TRUE(turned_to(brick, candidate(end), turned(2.1) * end)
+                  .X_OG.isApprox(turned(std::numbers::pi) * end, 1e-9));
+}
+
+}  // namespace
+}  // namespace prehend::model
