@@ -111,8 +111,7 @@ bool use(const std::string& path, const recording::ToleranceTable& tolerances) {
   auto reader = recording::mcap::Reader::open(path);
   fuzz::require(reader.has_value() == findings.has_value(), "opened or not, but not for all");
   if (!reader) return false;
-  const auto about = recorder::summary(*reader);
-  fuzz::require(about || !about.error().what.empty(), "not described, without a reason");
+  fuzz::require(recorder::summary(*reader).is_object(), "not described");
   compare(*reader, tolerances);
   std::vector<recording::mcap::Reader> sources;
   sources.push_back(std::move(*reader));

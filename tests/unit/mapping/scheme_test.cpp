@@ -195,7 +195,7 @@ TEST_F(BadScheme, IsRefusedByName) {
   EXPECT_THAT(refusal("human = [0, 0, 0, 1, 1]", "human = [0, 0, 0, 0, 2]"),
               HasSubstr("closed «little»: «human» is outside 0 to 1"));
   EXPECT_THAT(refusal("human = [0, 0, 0, 1, 1]", "human = [0, nan, 0, 0, 2]"),
-              HasSubstr("outside 0 to 1"));
+              HasSubstr("closed.human is not a finite number"));
   EXPECT_THAT(refusal("human = [0, 0, 0, 1, 1]", "human = [0, 0, 0, 1]"),
               HasSubstr("not five numbers"));
   EXPECT_THAT(refusal("robot = [45, 0, 0, 0]", "robot = [45, 0, 0]"),
@@ -203,13 +203,14 @@ TEST_F(BadScheme, IsRefusedByName) {
   EXPECT_THAT(refusal("robot = [45, 0, 0, 0]", "robot = [46, 0, 0, 0]"),
               HasSubstr("outside the limits"));
   EXPECT_THAT(refusal("robot = [45, 0, 0, 0]", "robot = [inf, 0, 0, 0]"),
-              HasSubstr("outside the limits"));
+              HasSubstr("closed.robot is not a finite number"));
   EXPECT_THAT(refusal("robot = [45, 0, 0, 0]", "robot = \"fist\""),
               HasSubstr("the hand has no posture «fist»"));
   EXPECT_THAT(refusal("dofs = [\"spread\"]", "dofs = [\"spreading\"]"),
               HasSubstr("no DoF «spreading»"));
   EXPECT_THAT(refusal("upper = 45", "upper = 400"), HasSubstr("wider than the hand's"));
-  EXPECT_THAT(refusal("upper = 45", "upper = nan"), HasSubstr("upside down"));
+  EXPECT_THAT(refusal("upper = 45", "upper = nan"),
+              HasSubstr("limit.upper is not a finite number"));
   EXPECT_THAT(refusal("\"precision\"", "\"pliers\""), HasSubstr("unknown grasp type «pliers»"));
 }
 
