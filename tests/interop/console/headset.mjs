@@ -66,7 +66,10 @@ const move = (x, y, z) => page.evaluate(`(async () => {
     await new Promise((later) => setTimeout(later, 100));
   }
 })()`);
-const pinch = (hand, value) => page.evaluate(`headset.hands.${hand}.updatePinchValue(${value})`);
+const pinch = (hand, value) => page.evaluate(`headset.hands.${hand}.updatePinchValue(bent.${hand} = ${value})`);
+// Living fingers tremble; a hand that is perfectly still is no hand.
+await page.evaluate(`window.bent = { left: 0, right: 0 };
+  window.trembles = setInterval(() => headset.hands.right.updatePinchValue(Math.abs(bent.right - 0.004 * Math.random())), 20)`);
 
 const first = await settled();
 await move(0.05, 0, 0);

@@ -230,7 +230,7 @@ TEST_P(EveryDevice, SaysWhenItFallsSilentAndComesBack) {
   const auto driver = device();
   driver->start(listener.sink());
   ASSERT_TRUE(listener.frames(5));
-  ASSERT_TRUE(listener.says(GetParam().line == Line::serial ? "silent" : "no usable"));
+  ASSERT_TRUE(listener.says(GetParam().line == Line::serial ? "silent" : "no landmarks"));
   ASSERT_TRUE(listener.frames(20));
   expect_sound(listener.all());
 }
