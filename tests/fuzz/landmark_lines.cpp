@@ -1,5 +1,5 @@
-// Damaged lines of a hand tracking program: a reason, or 21 finite points within reach, whose
-// sensors are sound.
+// Damaged datagrams of a hand tracking program: their documents are parts of them, in order; each
+// is refused with a reason, or is 21 finite points within reach, whose sensors are sound.
 #include "services/glove/devices/landmark_line.hpp"
 #include "tests/fuzz/fuzz.hpp"
 #include "tests/fuzz/mutation.hpp"
@@ -16,12 +16,13 @@ int main(int argc, char** argv) {
       if (left) line.stamp = 1732200000.125;
       fuzzer.seeds.push_back(to_line(line, webxr));
     }
+  fuzzer.seeds.push_back(fuzzer.seeds[0] + fuzzer.seeds[1] + "\n" + fuzzer.seeds[2]);
   fuzzer.long_round = 1'000'000;
   fuzzer.mutate = [](Random& random, std::string line) {
     return random.index(3) == 0 ? fuzz::mutate_bytes(random, std::move(line))
                                 : fuzz::mutate_number(random, std::move(line));
   };
-  fuzzer.target = [](const std::string& text) {
+  const auto is_sound = [](std::string_view text) {
     const auto line = parse_landmarks(text);
     fuzz::require(line || !line.error().empty(), "refused without a reason");
     if (!line) return false;
@@ -39,6 +40,18 @@ int main(int argc, char** argv) {
       }
     }
     return true;
+  };
+  fuzzer.target = [&](const std::string& datagram) {
+    bool any = false;
+    const char* behind = datagram.data();
+    for (const std::string_view text : documents_in(datagram)) {
+      fuzz::require(text.data() >= behind && !text.empty() &&
+                        text.data() + text.size() <= datagram.data() + datagram.size(),
+                    "a document that is not in the datagram");
+      behind = text.data() + text.size();
+      any = is_sound(text) || any;
+    }
+    return any;
   };
   return fuzz::run(fuzzer, argc, argv);
 }

@@ -8,12 +8,11 @@ extern "C" {
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <sys/wait.h>
 
 #include <algorithm>
-#include <cstdlib>
 #include <nlohmann/json.hpp>
 
+#include "tests/support/command_test.hpp"
 #include "tests/support/paths/paths.hpp"
 #include "tests/unit/recording/scratch.hpp"
 
@@ -26,21 +25,18 @@ using ::testing::HasSubstr;
 const std::string samples = test::in_sources("deploy/samples");
 const std::string with_pictures = samples + "/intelligent-grasp.mcap";
 
-struct Answer {
-  int code = -1;
-  std::string output, complaint;
-  long lines() const { return std::ranges::count(complaint, '\n'); }
-};
+using test::Answer;
+
+long lines(const Answer& answer) {
+  return std::ranges::count(answer.complaint, '\n');
+}
 
 class Export : public ::testing::Test {
  protected:
   Answer run(const std::string& text) {
-    const auto out = scratch_ / "out", err = scratch_ / "err";
-    const std::string command = "cd " + (scratch_ / "").string() +
-                                " && PATH=" + test::in_programs("") + ":$PATH && (" + text +
-                                "\n) >" + out.string() + " 2>" + err.string();
-    const int status = std::system(command.c_str());
-    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read(out), read(err)};
+    return test::answer_to("cd " + (scratch_ / "").string() + " && PATH=" + test::in_programs("") +
+                               ":$PATH && (" + text + "\n)",
+                           scratch_ / "");
   }
   static std::string read(const std::filesystem::path& path) {
     const auto bytes = testing::file_bytes(path);
@@ -53,7 +49,7 @@ class Export : public ::testing::Test {
   void refused(const std::string& arguments, int code, const std::string& words) {
     const Answer answer = run("prehend recording export " + arguments + " -o refused");
     EXPECT_EQ(answer.code, code) << arguments;
-    EXPECT_EQ(answer.lines(), 1) << answer.complaint;
+    EXPECT_EQ(lines(answer), 1) << answer.complaint;
     EXPECT_THAT(answer.complaint, HasSubstr(words)) << arguments;
     EXPECT_FALSE(there("refused"));
     EXPECT_FALSE(there("refused.unfinished"));
@@ -205,7 +201,7 @@ TEST_F(Export, NothingIsOverwritten) {
     const Answer answer =
         run("prehend recording export " + with_pictures + " --format " + format + " -o taken");
     EXPECT_EQ(answer.code, 2);
-    EXPECT_EQ(answer.lines(), 1);
+    EXPECT_EQ(lines(answer), 1);
     EXPECT_THAT(answer.complaint, HasSubstr("taken: is there already"));
   }
   EXPECT_EQ(read(scratch_ / "taken/mine"), "mine\n");

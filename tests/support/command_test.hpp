@@ -19,6 +19,16 @@ struct Answer {
   std::string output, complaint;
 };
 
+/// Runs shell text; what it says goes through files `out` and `err` of this folder.
+inline Answer answer_to(const std::string& text, const std::filesystem::path& folder) {
+  const auto out = folder / "out", err = folder / "err";
+  const std::string line =
+      "(" + text + "\n) >" + out.string() + " 2>" + err.string() + " </dev/null";
+  const int status = std::system(line.c_str());
+  return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read_file(out).value(),
+          read_file(err).value()};
+}
+
 /// Calls a command as a user does, in a folder that is the test's own, also for what users keep at
 /// home.
 class CommandTest : public testing::Test {
@@ -34,11 +44,7 @@ class CommandTest : public testing::Test {
 
   /// arguments: as typed in a shell.
   Answer run(const std::string& arguments) const {
-    const std::string line = "XDG_DATA_HOME=" + in("data") + " " + command_ + " " + arguments +
-                             " >" + in("out") + " 2>" + in("err") + " </dev/null";
-    const int status = std::system(line.c_str());
-    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read_file(in("out")).value(),
-            read_file(in("err")).value()};
+    return answer_to("XDG_DATA_HOME=" + in("data") + " " + command_ + " " + arguments, folder);
   }
 
   std::string in(const std::string& name) const { return (folder / name).string(); }

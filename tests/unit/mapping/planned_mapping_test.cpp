@@ -3,9 +3,9 @@
 #include <gtest/gtest.h>
 
 #include "common/model/grasp_candidates.hpp"
-#include "common/model/placement.hpp"
 #include "services/mapping/core/mapping.hpp"
 #include "services/mapping/tools/training/closing_lessons.hpp"
+#include "tests/support/planned_grasp.hpp"
 #include "tests/unit/mapping/fixtures.hpp"
 
 namespace prehend::mapping {
@@ -15,23 +15,8 @@ using Eigen::Vector3d;
 
 const model::Shape can{model::ShapeKind::cylinder, {0.03, 0.03, 0.15}};
 
-/// The grasp frame of a hand that comes along this direction, fingers closing horizontally.
-Pose grasp_along(const model::Shape& shape, const Vector3d& approach, const Vector3d& closing) {
-  return *model::nearest_grasp(
-      shape, make_pose(Vector3d::Zero(), model::grasp_axes(approach, closing)), barrett().reach());
-}
-
-model::GraspCandidate candidate(const Pose& X_OG) {
-  model::GraspCandidate made;
-  made.X_OG = X_OG;
-  made.X_OR = X_OG * make_pose({0, 0.006, -0.004});
-  made.preshape = barrett().postures().at("open");
-  made.preshape[0] = 0.2;
-  made.dof = Eigen::Vector4d(0.2, 1.1, 1.2, 1.3);
-  made.closing = Eigen::Vector4d(0, 1, 1, 1);
-  made.room = 0.75;
-  return made;
-}
+using test::grasp_along;
+using test::planned_grasp;
 
 /// A mapping with a network that knows how far people have closed, in reach of a can.
 class PlannedMappingTest : public testing::Test {
@@ -79,7 +64,7 @@ class PlannedMappingTest : public testing::Test {
 
 TEST_F(PlannedMappingTest, FingersGoFromThePreshapePastTheContactAndThePalmToItsPlace) {
   Mapping mapping = Mapping::create(barrett(), model(), {}).value();
-  const model::GraspCandidate planned = candidate(X_OG);
+  const model::GraspCandidate planned = planned_grasp(X_OG);
   ASSERT_TRUE(mapping.on_candidates({1, can, {planned}}));
   int ms = 0;
   const Pose X_WG = X_WO * X_OG * make_pose({0.004, -0.006, 0.005});
@@ -102,7 +87,7 @@ TEST_F(PlannedMappingTest, WithoutCandidatesItAnswersAsBefore) {
   Mapping with = Mapping::create(barrett(), model(), {}).value();
   const MappingModel plain = random_model(21);
   Mapping without = Mapping::create(barrett(), plain, {}).value();
-  ASSERT_TRUE(with.on_candidates({2, can, {candidate(X_OG)}})) << "of another track";
+  ASSERT_TRUE(with.on_candidates({2, can, {planned_grasp(X_OG)}})) << "of another track";
   int ms = 0, ms_without = 0;
   begin(with, X_WO * X_OG);
   begin(without, X_WO * X_OG);
@@ -120,7 +105,7 @@ TEST_F(PlannedMappingTest, NothingJumpsWhenCandidatesComeAndGo) {
   for (int ms = 0; ms < 6000; ms += 20) {
     (void)mapping.on_detection({1, "can", can, X_WO, 0.95, at(ms)});
     if (random.index(10) == 0) {
-      model::GraspCandidate any = candidate(X_OG);
+      model::GraspCandidate any = planned_grasp(X_OG);
       any.dof.tail(3) << random.uniform(0.5, 2), random.uniform(0.5, 2), random.uniform(0.5, 2);
       ASSERT_TRUE(mapping.on_candidates({1, can, {any}}));
     } else if (random.index(20) == 0) {

@@ -8,8 +8,7 @@
 #include <limits>
 #include <numbers>
 
-#include "common/model/placement.hpp"
-#include "tests/support/hands.hpp"
+#include "tests/support/planned_grasp.hpp"
 
 namespace prehend::model {
 namespace {
@@ -28,29 +27,14 @@ Pose turned(double angle) {
                    Eigen::AngleAxisd(angle, Vector3d::UnitZ()).toRotationMatrix());
 }
 
-/// The grasp frame of a hand that comes along this direction, fingers closing horizontally.
-Pose grasp_along(const Shape& shape, const Vector3d& approach, const Vector3d& closing) {
-  return *nearest_grasp(shape, make_pose(Vector3d::Zero(), grasp_axes(approach, closing)),
-                        barrett().reach());
-}
-
-GraspCandidate candidate(const Pose& X_OG, double room = 0.75) {
-  GraspCandidate made;
-  made.X_OG = X_OG;
-  made.X_OR = X_OG * make_pose({0, 0.006, -0.004});
-  made.preshape = barrett().postures().at("open");
-  made.preshape[0] = 0.2;
-  made.dof = Eigen::Vector4d(0.2, 1.1, 1.2, 1.3);
-  made.closing = Eigen::Vector4d(0, 1, 1, 1);
-  made.room = room;
-  return made;
-}
+using test::grasp_along;
+using test::planned_grasp;
 
 class GraspCandidatesTest : public testing::Test {
  protected:
   CandidateBook book;
   std::string refused(const GraspCandidate& wrong) {
-    const auto taken = book.observe({7, can, {candidate(from_aside), wrong}}, barrett());
+    const auto taken = book.observe({7, can, {planned_grasp(from_aside), wrong}}, barrett());
     return taken ? "taken" : taken.error().what;
   }
   const Pose from_aside = grasp_along(can, Vector3d::UnitX(), Vector3d::UnitY());
@@ -58,7 +42,8 @@ class GraspCandidatesTest : public testing::Test {
 };
 
 TEST_F(GraspCandidatesTest, AnswerFromAnySideOfWhatIsRound) {
-  ASSERT_TRUE(book.observe({7, can, {candidate(from_aside), candidate(from_above)}}, barrett()));
+  ASSERT_TRUE(
+      book.observe({7, can, {planned_grasp(from_aside), planned_grasp(from_above)}}, barrett()));
   for (double angle = -3; angle < 3.2; angle += 0.37)
     for (const Pose& planned : {from_aside, from_above}) {
       const Pose X_OG = turned(angle) * planned;
@@ -66,7 +51,7 @@ TEST_F(GraspCandidatesTest, AnswerFromAnySideOfWhatIsRound) {
       ASSERT_TRUE(found) << angle;
       EXPECT_TRUE(found->X_OG.isApprox(X_OG, 1e-9));
       EXPECT_TRUE((found->X_OG.inverse() * found->X_OR)
-                      .isApprox(planned.inverse() * candidate(planned).X_OR, 1e-9))
+                      .isApprox(planned.inverse() * planned_grasp(planned).X_OR, 1e-9))
           << "it stands in its approach as it was planned";
     }
 }
@@ -74,7 +59,7 @@ TEST_F(GraspCandidatesTest, AnswerFromAnySideOfWhatIsRound) {
 TEST_F(GraspCandidatesTest, OfABoxAnswerFromBothEndsAndNotFromOthers) {
   const Vector3d x = Vector3d::UnitX(), y = Vector3d::UnitY();
   const Pose along_y = grasp_along(brick, y, x);
-  ASSERT_TRUE(book.observe({7, brick, {candidate(along_y)}}, barrett()));
+  ASSERT_TRUE(book.observe({7, brick, {planned_grasp(along_y)}}, barrett()));
   EXPECT_TRUE(book.answer(7, brick, along_y));
   const auto other_end = book.answer(7, brick, grasp_along(brick, -y, -x));
   ASSERT_TRUE(other_end);
@@ -86,7 +71,7 @@ TEST_F(GraspCandidatesTest, OfABoxAnswerFromBothEndsAndNotFromOthers) {
 
 TEST_F(GraspCandidatesTest, PullTheHandToWhereTheyWerePlanned) {
   const Pose X_OG = grasp_along(brick, -Vector3d::UnitZ(), Vector3d::UnitX());
-  ASSERT_TRUE(book.observe({7, brick, {candidate(X_OG)}}, barrett()));
+  ASSERT_TRUE(book.observe({7, brick, {planned_grasp(X_OG)}}, barrett()));
   Pose beside = X_OG;
   beside.translation().y() += 0.015;
   const auto found = book.answer(7, brick, beside);
@@ -95,19 +80,19 @@ TEST_F(GraspCandidatesTest, PullTheHandToWhereTheyWerePlanned) {
 }
 
 TEST_F(GraspCandidatesTest, TheOneWithTheMostRoomAnswers) {
-  ASSERT_TRUE(
-      book.observe({7, can, {candidate(from_aside, 0.2), candidate(from_aside, 0.9)}}, barrett()));
+  ASSERT_TRUE(book.observe(
+      {7, can, {planned_grasp(from_aside, 0.2), planned_grasp(from_aside, 0.9)}}, barrett()));
   EXPECT_EQ(book.answer(7, can, from_aside)->room, 0.9);
 }
 
 // A grasp that stands few small errors leaves the answer to the network.
 TEST_F(GraspCandidatesTest, UnsureOnesDoNotAnswer) {
-  ASSERT_TRUE(book.observe({7, can, {candidate(from_aside, 0.5)}}, barrett()));
+  ASSERT_TRUE(book.observe({7, can, {planned_grasp(from_aside, 0.5)}}, barrett()));
   EXPECT_FALSE(book.answer(7, can, from_aside));
 }
 
 TEST_F(GraspCandidatesTest, OfAnotherObjectOrQuiteAnotherSizeDoNotAnswer) {
-  ASSERT_TRUE(book.observe({7, can, {candidate(from_aside)}}, barrett()));
+  ASSERT_TRUE(book.observe({7, can, {planned_grasp(from_aside)}}, barrett()));
   EXPECT_FALSE(book.answer(8, can, from_aside));
   Shape other = can;
   other.size *= 1.1;
@@ -121,26 +106,26 @@ TEST_F(GraspCandidatesTest, OfAnotherObjectOrQuiteAnotherSizeDoNotAnswer) {
 }
 
 TEST_F(GraspCandidatesTest, NonsenseIsRefusedAndWhatWasKnownStays) {
-  ASSERT_TRUE(book.observe({7, can, {candidate(from_aside, 0.75)}}, barrett()));
+  ASSERT_TRUE(book.observe({7, can, {planned_grasp(from_aside, 0.75)}}, barrett()));
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  GraspCandidate wrong = candidate(from_above);
+  GraspCandidate wrong = planned_grasp(from_above);
   wrong.dof.resize(3);
   EXPECT_EQ(refused(wrong), "grasp candidate of another hand");
-  wrong = candidate(from_above);
+  wrong = planned_grasp(from_above);
   wrong.preshape[1] = nan;
   EXPECT_EQ(refused(wrong), "grasp candidate of another hand");
-  wrong = candidate(from_above);
+  wrong = planned_grasp(from_above);
   wrong.dof[2] = 9;
   EXPECT_EQ(refused(wrong), "grasp candidate beyond the hand's limits");
-  wrong = candidate(from_above);
+  wrong = planned_grasp(from_above);
   wrong.X_OR.translation().z() = nan;
   EXPECT_EQ(refused(wrong), "grasp candidate not finite");
-  wrong = candidate(from_above, nan);
+  wrong = planned_grasp(from_above, nan);
   EXPECT_EQ(refused(wrong), "grasp candidate not finite");
-  wrong = candidate(from_above);
+  wrong = planned_grasp(from_above);
   wrong.X_OR.translation().x() += 0.1;
   EXPECT_EQ(refused(wrong), "grasp candidate away from its approach");
-  wrong = candidate(from_above);
+  wrong = planned_grasp(from_above);
   wrong.X_OR = wrong.X_OR * turned(0.5);
   EXPECT_EQ(refused(wrong), "grasp candidate away from its approach");
   EXPECT_EQ(book.answer(7, can, from_aside)->room, 0.75);
@@ -148,13 +133,13 @@ TEST_F(GraspCandidatesTest, NonsenseIsRefusedAndWhatWasKnownStays) {
 
 TEST_F(GraspCandidatesTest, OfANameAreAllThatAreSureTheSurestFirst) {
   ASSERT_TRUE(book.observe({7, can, {}, "Can"}, barrett())) << "not searched yet";
-  ASSERT_TRUE(
-      book.observe({8,
-                    can,
-                    {candidate(from_aside, 0.9), candidate(from_above), candidate(from_aside, 0.5)},
-                    "Can"},
-                   barrett()));
-  ASSERT_TRUE(book.observe({9, brick, {candidate(from_above)}, "Brick"}, barrett()));
+  ASSERT_TRUE(book.observe(
+      {8,
+       can,
+       {planned_grasp(from_aside, 0.9), planned_grasp(from_above), planned_grasp(from_aside, 0.5)},
+       "Can"},
+      barrett()));
+  ASSERT_TRUE(book.observe({9, brick, {planned_grasp(from_above)}, "Brick"}, barrett()));
   const auto found = book.of("Can", can);
   ASSERT_EQ(found.size(), 2u);
   EXPECT_EQ(found[0].room, 0.9);
@@ -166,12 +151,12 @@ TEST_F(GraspCandidatesTest, OfANameAreAllThatAreSureTheSurestFirst) {
 }
 
 TEST_F(GraspCandidatesTest, ARoundThingIsTakenFromAnySideABoxFromItsEnds) {
-  const auto round = turned_to(can, candidate(from_aside), turned(1.1) * from_aside);
+  const auto round = turned_to(can, planned_grasp(from_aside), turned(1.1) * from_aside);
   EXPECT_TRUE(round.X_OG.isApprox(turned(1.1) * from_aside, 1e-9));
-  EXPECT_TRUE(round.X_OR.isApprox(turned(1.1) * candidate(from_aside).X_OR, 1e-9));
+  EXPECT_TRUE(round.X_OR.isApprox(turned(1.1) * planned_grasp(from_aside).X_OR, 1e-9));
   const Pose end = grasp_along(brick, Vector3d::UnitY(), Vector3d::UnitX());
-  EXPECT_TRUE(turned_to(brick, candidate(end), turned(1.1) * end).X_OG.isApprox(end, 1e-9));
-  EXPECT_TRUE(turned_to(brick, candidate(end), turned(2.1) * end)
+  EXPECT_TRUE(turned_to(brick, planned_grasp(end), turned(1.1) * end).X_OG.isApprox(end, 1e-9));
+  EXPECT_TRUE(turned_to(brick, planned_grasp(end), turned(2.1) * end)
                   .X_OG.isApprox(turned(std::numbers::pi) * end, 1e-9));
 }
 

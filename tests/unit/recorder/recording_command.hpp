@@ -3,9 +3,7 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <sys/wait.h>
 
-#include <cstdlib>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -13,21 +11,18 @@
 #include "services/recorder/service/describe.hpp"
 #include "services/recorder/service/recording_file.hpp"
 #include "services/recorder/service/tape.hpp"
+#include "tests/support/command_test.hpp"
 #include "tests/support/paths/paths.hpp"
 #include "tests/unit/recording/scratch.hpp"
 
 namespace prehend::recorder {
 using Json = nlohmann::json;
 using dds::RawSample;
+using test::Answer;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
 inline constexpr std::int64_t begin_ns = 1'700'000'000'000'000'000;
-
-struct Answer {
-  int code = -1;
-  std::string output, complaint;
-};
 
 struct Changes {
   double weight = 0;             // added to the seventh command
@@ -43,16 +38,9 @@ class RecordingCommand : public ::testing::Test {
  protected:
   /// Runs shell text in the test's folder, with the programs of this build.
   Answer run(const std::string& text) {
-    const auto out = scratch_ / "out", err = scratch_ / "err";
-    const std::string command = "cd " + (scratch_ / "").string() +
-                                " && PATH=" + test::in_programs("") + ":$PATH && (" + text +
-                                "\n) >" + out.string() + " 2>" + err.string();
-    const int status = std::system(command.c_str());
-    const auto read = [](const std::filesystem::path& path) {
-      const auto bytes = testing::file_bytes(path);
-      return std::string(bytes.begin(), bytes.end());
-    };
-    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read(out), read(err)};
+    return test::answer_to("cd " + (scratch_ / "").string() + " && PATH=" + test::in_programs("") +
+                               ":$PATH && (" + text + "\n)",
+                           scratch_ / "");
   }
 
   void make(const std::string& name, const Changes& changes = {}) {

@@ -359,8 +359,8 @@ TEST_F(OfAScene, EverythingStandsThereOrIsSaidToBeMissing) {
   EXPECT_FALSE(simulation_->build(scene_, *bodies_));
 }
 
-// A lab on a busy machine ended with «no grasp was closed within 45 s»: what the hand had knocked
-// over lay there for ever, while the drawn camera showed it where it had stood.
+// Otherwise it lies there for ever, while the drawn camera, which is told the scene, shows it where
+// it stood, and no later reach finds it.
 TEST_F(OfAScene, WhatWasKnockedOverStandsAgainOnceTheHandIsFar) {
   ASSERT_TRUE(simulation_->build(scene_, *bodies_));
   const Pose stood = simulation_->world().body_motion(0).X_WO;
