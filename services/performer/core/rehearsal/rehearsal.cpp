@@ -42,7 +42,8 @@ double used(const Trial& trial, const tasks::Step& step, const VerdictOptions& l
   const Verdict& verdict = trial.verdict;
   if (!verdict.done) return std::numeric_limits<double>::infinity();
   const double tilt = step.upright ? verdict.max_tilt / limits.max_tilt : 0;
-  return std::max({verdict.error / limits.max_error, verdict.turn / limits.max_turn, tilt});
+  return std::max(
+      {verdict.error / limits.max_error, verdict.turn / limits.max_turn, tilt, verdict.others});
 }
 
 /// One step, in a copy of the world. Fails if it cannot be tried.

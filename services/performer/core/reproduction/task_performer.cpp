@@ -142,12 +142,15 @@ void TaskPerformer::judge() {
     verdict.reason = fmt::format("is turned by {:.0f}°", degrees(verdict.turn));
   else if (step.upright && verdict.max_tilt > limits_.max_tilt)
     verdict.reason = fmt::format("was tilted by {:.0f}°", degrees(verdict.max_tilt));
+  verdict.others = 0;
   for (const auto& [name, X] : before_) {
-    if (!verdict.reason.empty() || name == step.object) continue;
+    if (name == step.object) continue;
     const Pose& now = places_.at(name);
-    if ((now.translation() - X.translation()).norm() > limits_.max_moved ||
-        angle_between(now.linear(), X.linear()) > limits_.max_other_turn)
-      verdict.reason = name + " was moved as well";
+    const double share =
+        std::max((now.translation() - X.translation()).norm() / limits_.max_moved,
+                 angle_between(now.linear(), X.linear()) / limits_.max_other_turn);
+    verdict.others = std::max(verdict.others, share);
+    if (verdict.reason.empty() && share > 1) verdict.reason = name + " was moved as well";
   }
   verdict.done = verdict.reason.empty();
 }

@@ -27,6 +27,7 @@ struct Verdict {
   std::string object;
   bool done = false;
   double error = 0, turn = 0, max_tilt = 0;  // m, rad, rad
+  double others = 0;                         // of what any other object may move, the share it did
   std::string reason;                        // why it is not done
   bool reached = true;                       // the hand has a way to it
   bool planned = false;                      // its grasp was, by prehend-planner
