@@ -23,8 +23,10 @@ class Robot : public Rig {
     EXPECT_TRUE(eventually(20, [&] { return std::filesystem::exists(port()); }));
     return process;
   }
+  /// The emulated robot may wait 0.3 s for a processor, beside other tests.
   Strings settings(Strings more = {}) const {
-    more.insert(more.end(), {"robot.port=" + port(), "safety.deadman=false"});
+    more.insert(more.begin(),
+                {"robot.port=" + port(), "safety.deadman=false", "robot.lost_after=2"});
     return more;
   }
   void serve(const Strings& more = {}) { service_.emplace(start("robot", settings(more))); }
