@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "services/mapping/core/grasp_type.hpp"
+#include "tests/support/hands.hpp"
 #include "tests/unit/mapping/fixtures.hpp"
 
 namespace prehend::mapping {
@@ -69,6 +70,26 @@ TEST(GraspType, FollowsApproachAndFingers) {
   }
   EXPECT_EQ(grasp_type(1.2, above, false), GraspType::circular_sphere);
   EXPECT_EQ(grasp_type(1.2, above, true), GraspType::precision);
+}
+
+TEST(GraspType, ClosingIsTheMeanFromTheOpenEnd) {
+  for (const std::string& name : test::hand_names()) {
+    const model::HandModel& hand = test::hand(name);
+    Eigen::VectorXd open(static_cast<Eigen::Index>(hand.dofs().size())), closed = open;
+    double range = 0;
+    int count = 0;
+    for (std::size_t i = 0; i < hand.dofs().size(); ++i) {
+      const model::HandDof& dof = hand.dofs()[i];
+      const bool up = dof.closing > 0;
+      open[static_cast<Eigen::Index>(i)] = up ? dof.lower : dof.upper;
+      closed[static_cast<Eigen::Index>(i)] = up ? dof.upper : dof.lower;
+      if (dof.closing == 0) continue;
+      range += dof.upper - dof.lower;
+      ++count;
+    }
+    EXPECT_NEAR(mean_closing(hand, open), 0, 1e-12) << name;
+    EXPECT_NEAR(mean_closing(hand, closed), count == 0 ? 0 : range / count, 1e-12) << name;
+  }
 }
 
 }  // namespace
