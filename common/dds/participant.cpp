@@ -49,6 +49,7 @@ void apply(Qos& qos, const TopicQos& contract, int depth, bool lockstep) {
   qos.resource_limits().max_samples_per_instance = 0;
   qos.resource_limits().allocated_samples = 1;
   qos.endpoint().history_memory_policy = rtps::PREALLOCATED_WITH_REALLOC_MEMORY_MODE;
+  qos.user_data().setValue({contract.user_data.begin(), contract.user_data.end()});
   // Data sharing fails between users and containers and delays restarts by seconds.
   qos.data_sharing().off();
   if (lockstep) return;

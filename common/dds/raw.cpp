@@ -325,6 +325,13 @@ Expected<RawWriter> RawWriter::create(Participant& participant, const RawTopic& 
   return RawWriter(*made);
 }
 
+std::size_t RawWriter::readers() const {
+  fdds::PublicationMatchedStatus status;
+  return succeeded(writer_->get_publication_matched_status(status))
+             ? static_cast<std::size_t>(status.current_count)
+             : 0;
+}
+
 bool RawWriter::write(const RawSample& sample, Time sent) {
   auto* data = const_cast<RawSample*>(&sample);
   if (sample.kind == RawSample::Kind::data) {

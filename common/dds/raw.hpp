@@ -123,6 +123,8 @@ class RawWriter {
   /// Writes or ends the sample's instance; `sent` becomes its source time stamp. False when it
   /// could not be queued.
   bool write(const RawSample& sample, Time sent);
+  /// Matched now.
+  std::size_t readers() const;
   eprosima::fastdds::dds::DataWriter& raw() { return *writer_; }
 
  private:

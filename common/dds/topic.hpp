@@ -22,6 +22,7 @@ struct TopicQos {
   bool exclusive_ownership = false;       // one writer at a time moves an instance
   std::chrono::milliseconds deadline{0};  // 0: none
   std::chrono::milliseconds lifespan{0};  // 0: for ever
+  std::string_view user_data{};           // what an endpoint says of itself; stays in memory
 };
 
 /// What a topic is about.

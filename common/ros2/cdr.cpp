@@ -81,6 +81,14 @@ std::vector<double> CdrReader::reals() {
   return good_ ? made : std::vector<double>();
 }
 
+std::vector<std::uint8_t> CdrReader::bytes() {
+  const std::uint32_t size = length(1);
+  if (!good_) return {};
+  const auto begin = bytes_.begin() + static_cast<std::ptrdiff_t>(at_);
+  at_ += size;
+  return {begin, begin + size};
+}
+
 std::vector<std::string> CdrReader::texts() {
   std::vector<std::string> made(length(sizeof(std::uint32_t)));
   for (std::string& value : made) value = text();
@@ -90,6 +98,13 @@ std::vector<std::string> CdrReader::texts() {
 std::int64_t CdrReader::stamp() {
   const auto whole = static_cast<std::int32_t>(count());
   return whole * second + count();
+}
+
+std::pair<Eigen::Vector3d, Eigen::Quaterniond> CdrReader::pose() {
+  std::array<double, 7> values{};
+  for (double& value : values) value = real();
+  const auto& [x, y, z, qx, qy, qz, qw] = values;
+  return {{x, y, z}, {qw, qx, qy, qz}};
 }
 
 }  // namespace prehend::ros2

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <array>
 #include <bit>
 #include <cstdint>
 #include <span>
@@ -25,6 +26,7 @@ class CdrWriter {
   void put(std::uint32_t value) { number(value); }
   void put(std::int32_t value) { number(static_cast<std::uint32_t>(value)); }
   void put(double value) { number(std::bit_cast<std::uint64_t>(value)); }
+  void put(std::uint8_t value) { bytes_.push_back(value); }
   void put(std::string_view text);
   void put(const std::string& text) { put(std::string_view(text)); }
   template <class T>
@@ -32,9 +34,14 @@ class CdrWriter {
     put(static_cast<std::uint32_t>(all.size()));
     for (const T& one : all) put(one);
   }
+  /// An array of fixed length.
+  template <std::size_t N>
+  void put(const std::array<double, N>& all) {
+    for (const double one : all) put(one);
+  }
   /// builtin_interfaces/Time, and Duration.
   void stamp(std::int64_t ns);
-  /// geometry_msgs/Transform.
+  /// geometry_msgs/Transform, and Pose.
   void put(const Pose& X);
   Bytes bytes() && { return std::move(bytes_); }
 
@@ -60,8 +67,11 @@ class CdrReader {
   double real();
   std::string text();
   std::vector<double> reals();
+  std::vector<std::uint8_t> bytes();
   std::vector<std::string> texts();
   std::int64_t stamp();  // ns
+  /// geometry_msgs/Pose: metres, and a quaternion that need not be one of a rotation.
+  std::pair<Eigen::Vector3d, Eigen::Quaterniond> pose();
 
   /// Items of a sequence, of at least so many bytes each; 0 where they cannot all be there.
   std::uint32_t length(std::size_t smallest);

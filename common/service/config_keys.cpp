@@ -41,7 +41,7 @@ const std::vector<ConfigKey>& config_keys() {
       {"glove.hand", Text("right"), "right, or left, which is mirrored into a right one"},
       {"glove.calibration", Text(""), "the user's file from prehend glove calibrate; empty: none"},
       {"glove.hand_scale", 1.0, "length of the user's hand, 1 = average adult"},
-      {"glove.port", Text(""), "serial port, or host:port where datagrams come"},
+      {"glove.port", Text(""), "serial port, host:port where datagrams come, or topic of ROS 2"},
       {"glove.senders", Names{},
        "addresses whose datagrams are heard; empty: those of this machine"},
       {"glove.token_file", Text(""),
@@ -70,7 +70,8 @@ const std::vector<ConfigKey>& config_keys() {
 
       {"recognition.source", Text(""),
        "where pictures come from, see `prehend camera sources`; empty: the first of these"},
-      {"recognition.path", Text(""), "device file, video file or stream, or folder of pictures"},
+      {"recognition.path", Text(""),
+       "device file, video file or stream, folder of pictures, or topic of ROS 2"},
       {"recognition.rate", 10.0, "Hz, at which pictures are taken"},
       {"recognition.model", Text("share:trained/objects.model"), "trained object models"},
       {"recognition.preview", Text(""),
@@ -129,7 +130,10 @@ const std::vector<ConfigKey>& config_keys() {
 
       {"ros.trajectories", Text("joint_trajectory"),
        "the topic of ROS 2 by whose trajectories prehend-ros-lead leads the hand"},
-      {"ros.network", Text("laptop"), "how nodes that lead are reached: laptop or lan"},
+      {"ros.wrist_poses", Text("wrist_pose"),
+       "topic of ROS 2 whose poses lead the base of the robot hand"},
+      {"ros.network", Text("laptop"),
+       "how nodes of ROS 2 that lead, or are hand or camera, are reached: laptop or lan"},
 
       {"gate.max_age", 0.2, "s: robots refuse commands that are older, or as far ahead"},
       {"gate.max_silence", 0.3, "s without a command, after which another writer may lead"},

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "common/ros2/joints.hpp"
+#include "common/ros2/poses.hpp"
 #include "services/robot/core/ros2_control_driver.hpp"
 #include "services/robot/core/ros2_control_emulator.hpp"
 #include "services/ros/core/trajectory_follower.hpp"
@@ -31,6 +32,11 @@ std::string trajectory() {
   return driver.step({}, from_ns(20'000'000));
 }
 
+std::string pose() {
+  const auto bytes = ros2::pose_stamped({.stamp_ns = 7, .frame = "table"});
+  return {bytes.begin(), bytes.end()};
+}
+
 /// Whatever is followed stays near the hand's ranges.
 void follow(const ros2::JointTrajectory& trajectory) {
   const Time now = from_ns(1'000'000'000);
@@ -50,7 +56,7 @@ void follow(const ros2::JointTrajectory& trajectory) {
 
 int main(int argc, char** argv) {
   fuzz::Fuzzer fuzzer;
-  fuzzer.seeds = {state(), trajectory()};
+  fuzzer.seeds = {state(), trajectory(), pose()};
   fuzzer.mutate = [](Random& r, std::string message) { return fuzz::mutate_bytes(r, message); };
   fuzzer.target = [](const std::string& input) {
     const std::span bytes(reinterpret_cast<const std::uint8_t*>(input.data()), input.size());
@@ -61,6 +67,8 @@ int main(int argc, char** argv) {
       for (const auto& point : told->points)
         fuzz::require(point.positions.size() == told->names.size(), "a point without joints");
     if (told) follow(*told);
+    const auto place = ros2::parse_pose_stamped(bytes);
+    if (place) fuzz::require(is_finite(place->X_FB), "a base that is nowhere");
     ros2_control::Driver driver(hand(), {});
     ros2_control::Emulator robot(hand(), {});
     driver.connected(from_ns(0));
@@ -70,7 +78,7 @@ int main(int argc, char** argv) {
     (void)robot.receive(input, Duration::zero());
     (void)robot.pass(std::chrono::milliseconds(50));
     fuzz::require(robot.measured().allFinite(), "the emulated hand is nowhere");
-    return joints.has_value() || told.has_value();
+    return joints.has_value() || told.has_value() || place.has_value();
   };
   return fuzz::run(fuzzer, argc, argv);
 }

@@ -3,9 +3,11 @@
 // publishes, and an object that it never saw is learned from its camera/image while it runs. What
 // stands before the camera is rendered, so its truth is known: 1 cm is the aim in the open at 1 m.
 #include <cmath>
+#include <cstdlib>
 #include <fstream>
 #include <iterator>
 
+#include "common/base/file_text.hpp"
 #include "common/dds/topics.hpp"
 #include "common/model/scene.hpp"
 #include "services/recognition/core/geometry/silhouette.hpp"
@@ -124,6 +126,41 @@ TEST_F(Cameras, PreviewShowsTheFramesOfWhatIsPublished) {
   ASSERT_TRUE(moved);
   shows(moved->box(), 0.9, 1);
   shows(there->box(), 0, 0.1);  // where it was there is none any more
+}
+
+// A camera that is a node of ROS 2, of another make than ours. Its lens is compared with lab.toml.
+TEST_F(Cameras, ANodeOfRosIsACamera) {
+  const test::DomainLease nodes;
+  ::setenv("ROS_DOMAIN_ID", std::to_string(nodes.domain()).c_str(), 1);
+  const std::string file = (folder_ / "table.jpg").string();
+  ASSERT_TRUE(recognition::save_jpeg(file, table("Cup", {0.05, 0.1, 0})));
+  auto recognition =
+      start("recognition", {"recognition.source=ros2", "recognition.path=/front/image/compressed"});
+  const auto camera = [&](const std::string& focal) {
+    return start_program("cyclone_ros_camera",
+                         {std::to_string(nodes.domain()), "front", file, "640", "480", focal});
+  };
+  const auto says_other_lens = [&] {
+    return read_file(recognition.log()).value_or("").find("its lens is another one") !=
+           std::string::npos;
+  };
+  {
+    auto node = camera("620");
+    EXPECT_TRUE(hear_at("Cup", 0.05, 0.1));
+    EXPECT_FALSE(says_other_lens()) << *read_file(recognition.log());
+    node.stop(seconds(10));
+  }
+  EXPECT_TRUE(hear_status([](const auto& s) {
+    return s.message().to_string().find("/front/image/compressed: no pictures come") == 0;
+  }));
+  EXPECT_EQ(recognition.stop(seconds(10)).code, 0);
+
+  recognition =
+      start("recognition", {"recognition.source=ros2", "recognition.path=/front/image/compressed"});
+  auto node = camera("700");
+  EXPECT_TRUE(eventually(30, says_other_lens));
+  EXPECT_NE(read_file(recognition.log())->find("camera.focal = [700.0, 700.0]"), std::string::npos);
+  ::unsetenv("ROS_DOMAIN_ID");
 }
 
 TEST_F(Cameras, ResolutionMayChangeButNotTheRatioOfSides) {

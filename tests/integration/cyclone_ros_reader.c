@@ -1,21 +1,11 @@
 // A node of ROS 2 as far as DDS sees it: Cyclone DDS, in no partition, with the QoS that such nodes
-// ask for. Prints what it hears first on each topic, until it has heard all of them, and where the
-// frames stand that are named.
+// ask for. Prints what it hears first on each topic, and what its writer announces of the type,
+// until it has heard all of them, and where the frames stand that are named.
 //
 //   cyclone_ros_reader DOMAIN FRAME...
-#define _DEFAULT_SOURCE  // setenv
-#include <dds/dds.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
+#include <stdbool.h>
 
-#include "messages.h"
-
-static dds_entity_t must(dds_entity_t result, const char* what) {
-  if (result >= 0) return result;
-  fprintf(stderr, "%s: %s\n", what, dds_strretcode(-result));
-  exit(3);
-}
+#include "cyclone_node.h"
 
 static dds_entity_t make_reader(dds_entity_t participant, const dds_topic_descriptor_t* type,
                                 const char* name, bool kept) {
@@ -36,7 +26,8 @@ static const void* take(dds_entity_t reader, void* place) {
   return dds_take(reader, samples, info, 1, 1) == 1 && info[0].valid_data ? samples[0] : NULL;
 }
 
-static void print_joints(const sensor_msgs_msg_dds__JointState_* state) {
+static void print_joints(const void* message) {
+  const sensor_msgs_msg_dds__JointState_* state = message;
   printf("joints %d %u %s", state->header_.stamp_.sec_, state->header_.stamp_.nanosec_,
          state->header_.frame_id_);
   for (uint32_t i = 0; i < state->name_._length; ++i)
@@ -44,6 +35,53 @@ static void print_joints(const sensor_msgs_msg_dds__JointState_* state) {
            i < state->velocity_._length ? state->velocity_._buffer[i] : -1,
            i < state->effort_._length ? state->effort_._buffer[i] : -1);
   puts("");
+}
+
+static void print_description(const void* message) {
+  const std_msgs_msg_dds__String_* text = message;
+  printf("description %zu\n", strlen(text->data_));
+}
+
+static void print_detections(const void* message) {
+  const vision_msgs_msg_dds__Detection3DArray_* all = message;
+  printf("detections %u", all->detections_._length);
+  for (uint32_t i = 0; i < all->detections_._length; ++i) {
+    const vision_msgs_msg_dds__Detection3D_* one = &all->detections_._buffer[i];
+    printf(" %s=%.9g/%.9g", one->results_._buffer[0].hypothesis_.class_id_,
+           one->bbox_.center_.position_.x_, one->bbox_.size_.z_);
+  }
+  puts("");
+}
+
+static void print_diagnostics(const void* message) {
+  const diagnostic_msgs_msg_dds__DiagnosticStatus_* one =
+      ((const diagnostic_msgs_msg_dds__DiagnosticArray_*)message)->status_._buffer;
+  printf("diagnostics %u %s: %s\n", one->level_, one->name_, one->message_);
+}
+
+static void print_picture(const void* message) {
+  const sensor_msgs_msg_dds__CompressedImage_* picture = message;
+  printf("picture %s %s %u\n", picture->header_.frame_id_, picture->format_,
+         picture->data_._length);
+}
+
+static void print_lens(const void* message) {
+  const sensor_msgs_msg_dds__CameraInfo_* lens = message;
+  printf("lens %u %u %.9g\n", lens->width_, lens->height_, lens->k_[0]);
+}
+
+// What the first writer of this topic says of its type.
+static void print_announced(dds_entity_t reader, const char* topic) {
+  dds_instance_handle_t writers[1];
+  if (dds_get_matched_publications(reader, writers, 1) < 1) return;
+  dds_builtintopic_endpoint_t* writer = dds_get_matched_publication_data(reader, writers[0]);
+  if (!writer) return;
+  void* said = NULL;
+  size_t size = 0;
+  if (dds_qget_userdata(writer->qos, &said, &size))
+    printf("announced %s %.*s\n", topic, (int)size, (const char*)said);
+  dds_free(said);
+  dds_builtintopic_free_endpoint(writer);
 }
 
 static void print_transforms(const tf2_msgs_msg_dds__TFMessage_* message, char** wanted) {
@@ -61,40 +99,70 @@ static void print_transforms(const tf2_msgs_msg_dds__TFMessage_* message, char**
   }
 }
 
+// What is heard once.
+static sensor_msgs_msg_dds__JointState_ state;
+static std_msgs_msg_dds__String_ text;
+static vision_msgs_msg_dds__Detection3DArray_ detections;
+static diagnostic_msgs_msg_dds__DiagnosticArray_ diagnostics;
+static sensor_msgs_msg_dds__CompressedImage_ picture;
+static sensor_msgs_msg_dds__CameraInfo_ lens;
+
+static struct Topic {
+  const char* name;
+  const dds_topic_descriptor_t* type;
+  bool kept;
+  void* place;
+  void (*print)(const void*);
+  dds_entity_t reader;
+  bool heard;
+} topics[] = {{"rt/joint_states", &sensor_msgs_msg_dds__JointState__desc, false, &state,
+               print_joints, 0, false},
+              {"rt/robot_description", &std_msgs_msg_dds__String__desc, true, &text,
+               print_description, 0, false},
+              {"rt/detections", &vision_msgs_msg_dds__Detection3DArray__desc, false, &detections,
+               print_detections, 0, false},
+              {"rt/diagnostics", &diagnostic_msgs_msg_dds__DiagnosticArray__desc, false,
+               &diagnostics, print_diagnostics, 0, false},
+              {"rt/camera/image/compressed", &sensor_msgs_msg_dds__CompressedImage__desc, false,
+               &picture, print_picture, 0, false},
+              {"rt/camera/camera_info", &sensor_msgs_msg_dds__CameraInfo__desc, false, &lens,
+               print_lens, 0, false}};
+enum { topics_count = sizeof topics / sizeof *topics };
+
+// Is there none left to hear?
+static bool listen(void) {
+  bool all = true;
+  for (struct Topic* topic = topics; topic < topics + topics_count; ++topic) {
+    if (take(topic->reader, topic->place) && !topic->heard) {
+      topic->heard = true;
+      topic->print(topic->place);
+      print_announced(topic->reader, topic->name);
+    }
+    all = all && topic->heard;
+  }
+  return all;
+}
+
 int main(int argc, char** argv) {
   if (argc < 3) return 2;
-  setenv(
-      "CYCLONEDDS_URI",
-      "<General><Interfaces><NetworkInterface name='lo' multicast='true'/></Interfaces></General>",
-      1);
-  const dds_entity_t node =
-      must(dds_create_participant((dds_domainid_t)atoi(argv[1]), NULL, NULL), "participant");
-  const dds_entity_t joints =
-      make_reader(node, &sensor_msgs_msg_dds__JointState__desc, "rt/joint_states", false);
-  const dds_entity_t description =
-      make_reader(node, &std_msgs_msg_dds__String__desc, "rt/robot_description", true);
+  const dds_entity_t node = join(argv[1]);
+  for (struct Topic* topic = topics; topic < topics + topics_count; ++topic)
+    topic->reader = make_reader(node, topic->type, topic->name, topic->kept);
   const dds_entity_t moving = make_reader(node, &tf2_msgs_msg_dds__TFMessage__desc, "rt/tf", false);
   const dds_entity_t fixed =
       make_reader(node, &tf2_msgs_msg_dds__TFMessage__desc, "rt/tf_static", true);
 
-  static sensor_msgs_msg_dds__JointState_ state;
-  static std_msgs_msg_dds__String_ text;
   static tf2_msgs_msg_dds__TFMessage_ transforms;
-  bool told = false, described = false;
+  bool all = false;
   char** wanted = argv + 2;
-  for (int i = 0; i < 3000 && !(told && described && !*wanted); ++i) {
-    if (take(joints, &state) && !told) {
-      told = true;
-      print_joints(&state);
-    }
-    if (take(description, &text) && !described) {
-      described = true;
-      printf("description %zu\n", strlen(text.data_));
-    }
+  for (int i = 0; i < 3000 && !(all && !*wanted); ++i) {
+    all = listen();
     if (take(moving, &transforms)) print_transforms(&transforms, wanted);
     if (take(fixed, &transforms)) print_transforms(&transforms, wanted);
     dds_sleepfor(DDS_MSECS(10));
   }
+  print_announced(moving, "rt/tf");
+  print_announced(fixed, "rt/tf_static");
   dds_delete(node);
-  return told && described && !*wanted ? 0 : 1;
+  return all && !*wanted ? 0 : 1;
 }

@@ -3,36 +3,12 @@
 // joints the trajectory is empty.
 //
 //   cyclone_ros_writer DOMAIN TOPIC SECONDS JOINT=POSITION...
-#define _DEFAULT_SOURCE  // setenv
-#include <dds/dds.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
-#include "messages.h"
+#include "cyclone_node.h"
 
 enum { max_joints = 32 };
 
-static dds_entity_t must(dds_entity_t result, const char* what) {
-  if (result >= 0) return result;
-  fprintf(stderr, "%s: %s\n", what, dds_strretcode(-result));
-  exit(3);
-}
-
-static void wait_for_reader(dds_entity_t writer) {
-  dds_publication_matched_status_t matched = {0};
-  while (matched.current_count == 0) {
-    dds_sleepfor(DDS_MSECS(10));
-    must(dds_get_publication_matched_status(writer, &matched), "status");
-  }
-}
-
 int main(int argc, char** argv) {
   if (argc < 4 || argc > 4 + max_joints) return 2;
-  setenv(
-      "CYCLONEDDS_URI",
-      "<General><Interfaces><NetworkInterface name='lo' multicast='true'/></Interfaces></General>",
-      1);
   char* names[max_joints];
   double positions[max_joints];
   uint32_t count = 0;
@@ -58,19 +34,9 @@ int main(int argc, char** argv) {
   trajectory.points_._buffer = &point;
   trajectory.points_._length = trajectory.points_._maximum = count > 0 ? 1 : 0;
 
-  const dds_entity_t node =
-      must(dds_create_participant((dds_domainid_t)atoi(argv[1]), NULL, NULL), "participant");
-  char name[256];
-  snprintf(name, sizeof name, "rt/%s", argv[2]);
-  const dds_entity_t topic = must(
-      dds_create_topic(node, &trajectory_msgs_msg_dds__JointTrajectory__desc, name, NULL, NULL),
-      "topic");
-  dds_qos_t* qos = dds_create_qos();
-  dds_qset_reliability(qos, DDS_RELIABILITY_RELIABLE, DDS_SECS(1));
-  dds_qset_history(qos, DDS_HISTORY_KEEP_LAST, 10);
-  const dds_entity_t writer = must(dds_create_writer(node, topic, qos, NULL), "writer");
-  dds_delete_qos(qos);
-  wait_for_reader(writer);
+  const dds_entity_t node = join(argv[1]);
+  const dds_entity_t writer =
+      make_writer(node, &trajectory_msgs_msg_dds__JointTrajectory__desc, argv[2], true);
   must(dds_write(writer, &trajectory), "write");
   must(dds_wait_for_acks(writer, DDS_SECS(10)), "acknowledgement");
   dds_delete(node);

@@ -21,7 +21,10 @@ class WithNode : public Base {
     std::replace(made.begin(), made.end(), '-', '_');
     return made;
   }
-  stage::Process lead() { return this->start("ros-lead", {"ros.trajectories=" + topic()}); }
+  std::string poses() const { return topic() + "_of_wrist"; }
+  stage::Process lead() {
+    return this->start("ros-lead", {"ros.trajectories=" + topic(), "ros.wrist_poses=" + poses()});
+  }
   /// What a node is to tell: the DoFs at these values after so many seconds.
   Strings trajectory(double seconds, const std::vector<double>& dof,
                      const std::string& misnamed = {}) const {
@@ -147,6 +150,46 @@ TEST_F(RosLead, ANodeLeadsTheHandThroughTheGate) {
   EXPECT_GT(finger(), at(0.05));
   EXPECT_TRUE(wait(20, [&] { return lead_.state() == v1::STATE_RUNNING; }));
   EXPECT_EQ(leader.stop(seconds(10)).code, 0);
+}
+
+// A pose of the wrist leads the base, as fast as the gate allows; the fingers stay where they are.
+TEST_F(RosLead, ANodeLeadsTheBaseByPoses) {
+  simulation_.emplace(start("simulation"));
+  auto leader = lead();
+  ASSERT_TRUE(wait(60, [&] { return heard_ > 0 && lead_.state() == v1::STATE_RUNNING; }))
+      << lead_.message().to_string();
+  const double closed = finger();
+  const Eigen::Vector3d goal = base() + Eigen::Vector3d(0.1, -0.1, 0.2);
+  const auto to = [&](const std::string& frame, int count, const Eigen::Vector3d& p) {
+    return Strings{std::to_string(nodes_),
+                   poses(),
+                   frame,
+                   std::to_string(count),
+                   std::to_string(p.x()),
+                   std::to_string(p.y()),
+                   std::to_string(p.z())};
+  };
+  const auto is_there = [&] { return (base() - goal).norm() < 2e-3; };
+
+  // In another frame: one line, and nothing moves.
+  ASSERT_EQ(run("cyclone_ros_pose", to("base_link", 1, goal), 60).exit_code, 0);
+  ASSERT_TRUE(wait(20, [&] { return counted("wrist pose refused") == 1; }));
+  EXPECT_TRUE(complains("is in the frame «base_link»")) << lead_.message().to_string();
+  EXPECT_EQ(gate_.leader().size(), 0U) << gate_.leader().to_string();
+
+  // One node streams, a second one is refused meanwhile.
+  auto first = start_program("cyclone_ros_pose", to("table", 500, goal));
+  ASSERT_TRUE(wait(60, [&] { return gate_.leader().to_string().starts_with("ros-lead@"); }));
+  auto second =
+      start_program("cyclone_ros_pose", to("table", 20, goal + Eigen::Vector3d(0.3, 0, 0)));
+  EXPECT_TRUE(wait(60, [&] { return first.exit() && is_there(); })) << base().transpose();
+  EXPECT_TRUE(wait(20, [&] { return counted("wrist pose refused") > 1; }));
+  EXPECT_TRUE(is_there()) << base().transpose();
+  EXPECT_NEAR(finger(), closed, 0.02);
+  // Held after the last one, until somebody ends it.
+  EXPECT_TRUE(gate_.leader().to_string().starts_with("ros-lead@"));
+  tell(trajectory(0, {}));
+  ASSERT_NO_FATAL_FAILURE(expect_rest(50));
 }
 
 // It takes the hand from nobody; what was refused then is not taken up later, either.

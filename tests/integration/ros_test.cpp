@@ -8,6 +8,7 @@
 #include "common/base/file_text.hpp"
 #include "common/convert/convert.hpp"
 #include "common/model/hand_model.hpp"
+#include "common/ros2/nodes/type_hash.hpp"
 #include "tests/integration/rig.hpp"
 
 namespace prehend::integration {
@@ -65,6 +66,52 @@ std::map<std::string, Frame> frames_in(const std::string& text) {
   return found;
 }
 
+v1::ObjectDetection a_cup() {
+  v1::ObjectDetection seen;
+  seen.track(3);
+  seen.stamp_ns(1'700'000'000'000'000'000);
+  seen.name("Cup");
+  seen.shape(v1::SHAPE_CYLINDER);
+  seen.size(convert::to_message(Eigen::Vector3d(0.04, 0.04, 0.1)));
+  seen.X_WO(convert::to_message(make_pose(Eigen::Vector3d(0.25, 0, 0.05))));
+  seen.probability(0.5);
+  return seen;
+}
+
+v1::GraspReport a_grasp() {
+  v1::GraspReport report;
+  report.hand("hand");
+  report.held(false);
+  report.reason("slipped");
+  return report;
+}
+
+v1::CameraImage a_picture() {
+  v1::CameraImage picture;
+  picture.camera("camera");
+  picture.encoding("jpeg");
+  picture.data({1, 2, 3, 4, 5});
+  return picture;
+}
+
+/// Each writer says of its type what nodes since Iron look for.
+void expect_announced(const std::string& heard) {
+  for (const auto& [topic, type] : std::map<std::string, std::string>{
+           {"joint_states", "sensor_msgs/JointState"},
+           {"robot_description", "std_msgs/String"},
+           {"tf", "tf2_msgs/TFMessage"},
+           {"tf_static", "tf2_msgs/TFMessage"},
+           {"detections", "vision_msgs/Detection3DArray"},
+           {"diagnostics", "diagnostic_msgs/DiagnosticArray"},
+           {"camera/image/compressed", "sensor_msgs/CompressedImage"},
+           {"camera/camera_info", "sensor_msgs/CameraInfo"}})
+    EXPECT_NE(
+        heard.find("announced rt/" + topic + " " + std::string(ros2::announced_hash(type)) + "\n"),
+        std::string::npos)
+        << topic << "\n"
+        << heard;
+}
+
 void expect_joints(const std::string& heard, const model::HandModel& model,
                    const v1::HandState& state) {
   std::istringstream first(heard.substr(heard.find("joints ")));
@@ -86,12 +133,16 @@ TEST_F(Ros, NodesHearTheHandWithoutABridge) {
   const auto model = model::HandModel::load(model::hand_directory("barrett")).value();
   auto states = writer(dds::robot_state);
   auto objects = writer(dds::object_state);
+  auto seen = writer(dds::object_detection);
+  auto grasps = writer(dds::grasp_report);
+  auto pictures = writer(dds::camera_image);
   const test::DomainLease other;  // than the lab's
   const int nodes = other.domain();
   auto bridge =
       start_with("prehend-ros", lab_arguments({}), {{"ROS_DOMAIN_ID", std::to_string(nodes)}});
   meet(states);
   meet(objects);
+  seen.write(a_cup());
   const std::string tip = model.links().back().name;
   auto node =
       start_with("cyclone_ros_reader",
@@ -104,6 +155,9 @@ TEST_F(Ros, NodesHearTheHandWithoutABridge) {
   ASSERT_TRUE(eventually(40, [&] {
     states.write(state);
     objects.write(object);
+    grasps.write(a_grasp());
+    pictures.write(a_picture());
+    seen.write(a_cup());
     return (end = node.exit()).has_value();
   }));
   const std::string heard = said("cyclone_ros_reader");
@@ -113,6 +167,12 @@ TEST_F(Ros, NodesHearTheHandWithoutABridge) {
   const auto urdf = read_file(model::hand_directory("barrett") / "hand.urdf");
   ASSERT_TRUE(urdf);
   EXPECT_NE(heard.find("description " + std::to_string(urdf->size()) + "\n"), std::string::npos);
+
+  for (const char* line :
+       {"detections 1 Cup=0.25/0.1\n", "diagnostics 1 prehend: grasp of hand: slipped\n",
+        "picture camera jpeg 5\n", "lens 640 480 620\n"})
+    EXPECT_NE(heard.find(line), std::string::npos) << line << heard;
+  expect_announced(heard);
 
   const auto frames = frames_in(heard);
   ASSERT_EQ(frames.size(), 4U) << heard;

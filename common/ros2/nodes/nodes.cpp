@@ -4,6 +4,8 @@
 #include <cstdlib>
 #include <string_view>
 
+#include "common/ros2/nodes/type_hash.hpp"
+
 namespace prehend::ros2 {
 namespace {
 
@@ -38,6 +40,7 @@ dds::RawTopic topic_of_nodes(const std::string& name, const std::string& type, b
                       {}};
   topic.qos.transient_local = kept;
   topic.qos.writer_depth = kept ? 1 : 10;
+  topic.qos.user_data = announced_hash(type);
   return topic;
 }
 

@@ -30,7 +30,8 @@ struct DeviceSink {
 /// Everything a device may need; each takes what concerns it.
 struct DeviceOptions {
   Pose X_WT = Pose::Identity();             // where the tracker stands on the table
-  std::string port;                         // a path, or host:port of datagrams
+  std::string port;                         // a path, host:port of datagrams, topic of ROS 2
+  std::string network = "laptop";           // where its nodes are: laptop or lan
   std::vector<std::string> senders;         // of datagrams, by address; empty: on this machine
   std::string token;                        // before each of them; empty: none
   bool secured = false;                     // the lab has keys
@@ -66,6 +67,7 @@ enum class Line {
   none,       // computed here
   serial,     // glove.port is the path of a serial port
   datagrams,  // glove.port is host:port where they come
+  nodes,      // glove.port is a topic of ROS 2
   topic,      // others publish them on glove/frame; the service must not publish them again
   file        // glove.file is played once
 };
@@ -73,6 +75,7 @@ enum class Line {
 inline constexpr auto line_names = named_values<Line>({{Line::none, "none"},
                                                        {Line::serial, "serial"},
                                                        {Line::datagrams, "udp"},
+                                                       {Line::nodes, "ros2"},
                                                        {Line::topic, "topic"},
                                                        {Line::file, "file"}});
 
@@ -99,7 +102,9 @@ struct DeviceKind {
   /// The keys of lab.toml that concern it, beside those of every glove.
   std::vector<std::string_view> keys{};
 
-  bool has_port() const { return line == Line::serial || line == Line::datagrams; }
+  bool has_port() const {
+    return line == Line::serial || line == Line::datagrams || line == Line::nodes;
+  }
 };
 
 /// The one table of devices; a new one is a row in registry.cpp. The first is what a lab has that

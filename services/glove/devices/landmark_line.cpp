@@ -15,7 +15,8 @@ namespace {
 using Json = nlohmann::ordered_json;
 using Eigen::Vector3d;
 
-constexpr double farthest = 5;  // m
+constexpr double farthest = 5;          // m
+constexpr std::size_t max_joints = 26;  // of OpenXR
 
 /// Where landmark i of 21 stands among WebXR's 25: each finger has its metacarpal before it.
 std::size_t webxr_index(std::size_t i) {
@@ -91,24 +92,37 @@ tl::expected<LandmarkLine, std::string_view> parse_landmarks(std::string_view te
     if (!(std::abs(*line.stamp) < 9e9)) return refuse("out of range");
   }
   if (!take_buttons(field("buttons"), line)) return refuse("unreadable");
-  if (points.size() != 21 && points.size() != 25 && points.size() != 26)
-    return refuse("wrong count");
-  for (std::size_t i = 0; i < line.points.size(); ++i) {
-    const Json& point = points[place_of(i, points.size())];
+  std::vector<Vector3d> joints(std::min<std::size_t>(points.size(), max_joints + 1));
+  for (std::size_t i = 0; i < joints.size(); ++i) {
+    const Json& point = points[i];
     if (!point.is_array() || point.size() != 3) return refuse("unreadable");
     for (std::size_t k = 0; k < 3; ++k) {
       // What is not finite has no number in JSON; programs write null.
       if (!point[k].is_number()) return refuse(point[k].is_null() ? "not finite" : "unreadable");
-      line.points[i][static_cast<Eigen::Index>(k)] = point[k].get<double>();
+      joints[i][static_cast<Eigen::Index>(k)] = point[k].get<double>();
     }
-    if (!line.points[i].allFinite()) return refuse("not finite");
   }
-  const auto is_far = [](const Vector3d& point) { return point.norm() > farthest; };
-  if (std::ranges::any_of(line.points, is_far)) {
-    const std::string_view why = why_no_hand(line.points, line.left);
+  const auto landmarks = landmarks_among(joints, line.left);
+  if (!landmarks) return tl::unexpected(landmarks.error());
+  line.points = *landmarks;
+  return line;
+}
+
+tl::expected<Landmarks, std::string_view> landmarks_among(const std::vector<Vector3d>& joints,
+                                                          bool left) {
+  const auto refuse = [](std::string_view reason) { return tl::unexpected(reason); };
+  if (joints.size() != 21 && joints.size() != 25 && joints.size() != max_joints)
+    return refuse("wrong count");
+  Landmarks made;
+  for (std::size_t i = 0; i < made.size(); ++i) {
+    made[i] = joints[place_of(i, joints.size())];
+    if (!made[i].allFinite()) return refuse("not finite");
+  }
+  if (std::ranges::any_of(made, [](const Vector3d& p) { return p.norm() > farthest; })) {
+    const std::string_view why = why_no_hand(made, left);
     return refuse(why.starts_with("in ") ? why : "out of range");
   }
-  return line;
+  return made;
 }
 
 std::vector<std::string_view> documents_in(std::string_view datagram) {

@@ -43,6 +43,11 @@ struct LandmarkLine {
 /// "not finite", "in millimetres", "in centimetres" or "out of range".
 tl::expected<LandmarkLine, std::string_view> parse_landmarks(std::string_view line);
 
+/// The 21 landmarks among 21, 25 or 26 joints (see above), m. Fails with the reason, as
+/// parse_landmarks().
+tl::expected<Landmarks, std::string_view> landmarks_among(
+    const std::vector<Eigen::Vector3d>& joints, bool left);
+
 /// The documents of a datagram, one after the other: a line each, or several in a line. What is
 /// none goes up to the end of its line.
 std::vector<std::string_view> documents_in(std::string_view datagram);

@@ -8,6 +8,7 @@
 #include "services/glove/devices/joint_glove.hpp"
 #include "services/glove/devices/landmarks.hpp"
 #include "services/glove/devices/nest_of_birds.hpp"
+#include "services/glove/devices/node_hand.hpp"
 #include "services/glove/devices/paced.hpp"
 #include "services/glove/files/hand_recording.hpp"
 
@@ -98,6 +99,12 @@ const std::vector<DeviceKind>& device_kinds() {
        .emulate = emulate_landmarks,
        .address = landmarks_address,
        .keys = {"glove.port", "glove.senders", "glove.token_file"}},
+      {.name = "ros2",
+       .help = "a bare hand that a node of ROS 2 tracks, as PoseArray",
+       .create = create_node_hand,
+       .line = Line::nodes,
+       .emulate = emulate_node_hand,
+       .keys = {"glove.port", "ros.network"}},
       {.name = "recording",
        .help = "a hand recording, Leap or 21 landmarks",
        .create = create_recording,
@@ -139,6 +146,8 @@ EmulationOptions emulation_of(const DeviceKind& kind, const DeviceOptions& optio
       if (!sender) return tl::unexpected(sender.error());
       return std::make_unique<DatagramSender>(std::move(*sender));
     };
+  } else if (kind.line == Line::nodes) {
+    made.plug_in = [options] { return plug_into_node_hand(options); };
   } else {
     made.baud = options.baud;
     made.plug_in = [link]() -> Expected<std::unique_ptr<serial::Plug>> {

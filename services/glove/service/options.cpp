@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <fstream>
 
+#include "common/service/nodes_network.hpp"
+
 namespace prehend::glove {
 namespace {
 
@@ -49,6 +51,12 @@ Expected<DeviceOptions> device_options(const service::Config& config) {
   options.X_WT = *X_WT;
   options.port = config.text("glove.port");
   options.senders = config.names("glove.senders");
+  if (const auto kind = find_device(config.text("glove.device"));
+      kind && kind->line == Line::nodes) {
+    auto network = service::network_of_nodes(config);
+    if (!network) return tl::unexpected(network.error());
+    options.network = std::move(*network);
+  }
   options.secured = !config.text("lab.keys").empty();
   if (const auto file = config.path("glove.token_file"); !file.empty()) {
     auto token = read_token(file);

@@ -43,6 +43,10 @@ const std::vector<CameraKind>& camera_kinds() {
        .help = "the pictures of a folder, over and over",
        .line = CameraLine::folder,
        .open = open_real<open_folder>},
+      {.name = "ros2",
+       .help = "a camera that is a node of ROS 2",
+       .line = CameraLine::nodes,
+       .open = open_real<open_nodes>},
       {.name = "topic",
        .help = "pictures that others publish on camera/image",
        .line = CameraLine::topic},
@@ -72,6 +76,7 @@ std::string camera_words(const std::vector<CameraLine>& lines) {
     if (std::find(lines.begin(), lines.end(), kind.line) == lines.end()) continue;
     text += (text.empty() ? "" : ", ") + std::string(kind.name);
     if (kind.line == CameraLine::device) text += "[:PATH]";
+    if (kind.line == CameraLine::nodes) text += "[:TOPIC]";
     if (kind.line == CameraLine::stream || kind.line == CameraLine::folder) text += ":PATH";
   }
   return text;

@@ -31,9 +31,10 @@ class Camera {
 
 struct CameraOptions {
   std::string source;  // a name of camera_kinds()
-  std::string path;    // device file or number, video file or address, folder
+  std::string path;    // device file or number, video file or address, folder, topic of ROS 2
   CameraModel model;   // wanted size; for a synthetic one: the calibration
   double rate = 10;    // Hz, asked of a device; of a file's pictures those between are left out
+  std::string network = "laptop";  // how nodes of ROS 2 are reached: laptop or lan
 };
 
 /// Where pictures come from.
@@ -42,6 +43,7 @@ enum class CameraLine {
   device,  // recognition.path is a device file or its number; empty: the first
   stream,  // recognition.path is a file or an address
   folder,  // recognition.path is a folder of pictures
+  nodes,   // recognition.path is a topic of ROS 2
   topic    // others publish them on camera/image; there is nothing to open
 };
 /// As `prehend camera sources` says it.
@@ -49,6 +51,7 @@ inline constexpr auto camera_line_names = named_values<CameraLine>({{CameraLine:
                                                                     {CameraLine::device, "device"},
                                                                     {CameraLine::stream, "stream"},
                                                                     {CameraLine::folder, "folder"},
+                                                                    {CameraLine::nodes, "ros2"},
                                                                     {CameraLine::topic, "topic"}});
 
 /// Everything that others may want to know of a kind of camera. Nothing outside this folder names
@@ -72,7 +75,8 @@ const std::vector<CameraKind>& camera_kinds();
 Expected<CameraKind> find_camera(std::string_view name);
 /// The one that takes pictures from camera/image.
 const CameraKind& topic_camera();
-/// «device[:PATH], video:PATH or folder:PATH»: those of the lines that a command accepts.
+/// «device[:PATH], video:PATH, folder:PATH or ros2[:TOPIC]»: those of the lines that a command
+/// accepts.
 std::string camera_words(const std::vector<CameraLine>& lines);
 
 /// What is before and after the colon of KIND[:PATH].

@@ -12,6 +12,7 @@
 #include "common/base/log_format.hpp"
 #include "common/convert/convert.hpp"
 #include "common/dds/topics.hpp"
+#include "common/service/nodes_network.hpp"
 #include "services/recognition/cameras/camera.hpp"
 #include "services/recognition/core/detection/detector.hpp"
 #include "services/recognition/core/detection/watcher.hpp"
@@ -324,6 +325,11 @@ Expected<std::unique_ptr<Camera>> open_configured(const service::Config& config,
                                                   double rate) {
   CameraOptions wanted{std::string(source.name), config.text("recognition.path"), parts.camera,
                        rate};
+  if (source.line == CameraLine::nodes) {
+    const auto network = service::network_of_nodes(config);
+    if (!network) return tl::unexpected(network.error());
+    wanted.network = *network;
+  }
   const bool is_file =
       source.line == CameraLine::stream && wanted.path.find("://") == std::string::npos;
   if (source.line == CameraLine::folder || is_file)

@@ -2,14 +2,12 @@
 
 #include <fmt/format.h>
 
-#include <condition_variable>
-#include <deque>
-#include <mutex>
 #include <optional>
 #include <utility>
 
 #include "common/base/clock.hpp"
 #include "common/ros2/nodes/nodes.hpp"
+#include "common/ros2/nodes/topic_queue.hpp"
 
 namespace prehend::robot {
 namespace {
@@ -36,20 +34,9 @@ dds::RawTopic trajectories(const std::string& controller) {
 struct Nodes::State {
   explicit State(dds::Participant joined) : participant(std::move(joined)) {}
 
-  void keep(dds::RawSample&& sample) {
-    if (sample.kind != dds::RawSample::Kind::data) return;
-    const std::scoped_lock lock(mutex);
-    if (heard.size() == kept) heard.pop_front();
-    heard.emplace_back(sample.payload.begin(), sample.payload.end());
-    come.notify_one();
-  }
-
   dds::Participant participant;
-  std::mutex mutex;  // guards heard
-  std::condition_variable come;
-  std::deque<std::string> heard;
   std::optional<dds::RawWriter> writer;
-  std::unique_ptr<dds::RawReader> reader;  // ends first: what it receives goes into heard
+  std::unique_ptr<ros2::TopicQueue> heard;
 };
 
 Nodes::Nodes(std::unique_ptr<State> state) : state_(std::move(state)) {}
@@ -66,21 +53,17 @@ Expected<std::unique_ptr<Nodes>> Nodes::join(const NodesOptions& options, End en
                                                         : joint_states(options.controller, false));
   if (!writer) return tl::unexpected(writer.error());
   state->writer.emplace(std::move(*writer));
-  auto reader = dds::RawReader::create(
+  auto heard = ros2::TopicQueue::create(
       state->participant,
-      drives ? joint_states(options.controller, true) : trajectories(options.controller),
-      [kept_in = state.get()](dds::RawSample&& sample) { kept_in->keep(std::move(sample)); });
-  if (!reader) return tl::unexpected(reader.error());
-  state->reader = std::move(*reader);
+      drives ? joint_states(options.controller, true) : trajectories(options.controller), kept);
+  if (!heard) return tl::unexpected(heard.error());
+  state->heard = std::move(*heard);
   return std::unique_ptr<Nodes>(new Nodes(std::move(state)));
 }
 
 std::string Nodes::read(Duration timeout) {
-  std::unique_lock lock(state_->mutex);
-  if (!state_->come.wait_for(lock, timeout, [this] { return !state_->heard.empty(); })) return {};
-  std::string message = std::move(state_->heard.front());
-  state_->heard.pop_front();
-  return message;
+  const auto message = state_->heard->next(timeout);
+  return message ? std::string(message->payload.begin(), message->payload.end()) : std::string();
 }
 
 Expected<void> Nodes::write(std::string_view message) {

@@ -24,6 +24,10 @@ class TrajectoryFollower {
   /// is more than 10 s away from now.
   Expected<void> take(const ros2::JointTrajectory& trajectory, const Eigen::VectorXd& here,
                       Time now);
+  /// Stays at these values of the DoFs, unless something is followed.
+  void hold(const Eigen::VectorXd& here, Time now) {
+    if (knots_.empty()) knots_ = {{now, hand_.clamp(here)}};
+  }
   /// Nothing is followed any more.
   void stop() { knots_.clear(); }
 

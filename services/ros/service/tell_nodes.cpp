@@ -20,8 +20,11 @@ int tell_nodes(const service::Config& config, const Teller::Options& options) {
   auto teller = Teller::create(config, options);
   if (!teller) return service::complain(teller.error());
   tool::note_interrupts();
-  std::cout << fmt::format("domain {} of ROS 2: /joint_states /robot_description /tf /tf_static\n",
-                           options.domain)
+  std::cout << fmt::format(
+                   "domain {} of ROS 2: /joint_states /robot_description /tf /tf_static "
+                   "/detections /diagnostics\n/camera/image/compressed "
+                   "/camera/camera_info\n",
+                   options.domain)
             << std::flush;
   service::Supervisor supervisor;
   while (!tool::interrupted()) {

@@ -1,5 +1,9 @@
 #include "services/ros/service/teller.hpp"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <tuple>
 #include <utility>
 
 #include "common/base/clock.hpp"
@@ -8,18 +12,38 @@
 #include "common/base/log_format.hpp"
 #include "common/convert/convert.hpp"
 #include "common/dds/topics.hpp"
+#include "common/model/shape.hpp"
 #include "common/ros2/joints.hpp"
 #include "common/ros2/nodes/nodes.hpp"
 #include "common/service/membership.hpp"
+#include "services/ros/core/diagnostics.hpp"
+#include "services/ros/core/wrist_goal.hpp"
 
 namespace prehend::ros {
 namespace {
 
-constexpr const char* table = "table";
-
 Expected<Pose> pose_of(const std::vector<double>& v) {
   if (v.size() != 7) return wrong_use("is no pose", "camera.X_WC", "seven numbers");
   return checked_pose({v[0], v[1], v[2]}, {v[3], v[4], v[5], v[6]});
+}
+
+ros2::Lens lens_of(const service::Config& config) {
+  const auto focal = config.numbers("camera.focal"), centre = config.numbers("camera.centre");
+  if (focal.size() != 2 || centre.size() != 2) return {};
+  return {.width = static_cast<std::uint32_t>(config.integer("camera.width")),
+          .height = static_cast<std::uint32_t>(config.integer("camera.height")),
+          .fx = focal[0],
+          .fy = focal[1],
+          .cx = centre[0],
+          .cy = centre[1],
+          .distortion = config.numbers("camera.distortion")};
+}
+
+Detection detection_of(const v1::ObjectDetection& seen, const Pose& X_WO) {
+  const model::Shape shape{convert::from_message(seen.shape()), convert::from_message(seen.size())};
+  return {seen.stamp_ns(),    seen.track(), seen.name().to_string(),
+          seen.probability(), X_WO,         2 * model::half_extents(shape),
+          seen.covariance()};
 }
 
 }  // namespace
@@ -35,68 +59,117 @@ Expected<std::unique_ptr<Teller>> Teller::create(const service::Config& config,
 
 Teller::~Teller() {
   // What still receives writes into news_.
-  hands_.reset();
-  objects_.reset();
+  for (Ear* ear : {&hands_, &objects_, &reports_, &detections_, &pictures_}) ear->reset();
 }
 
 Expected<void> Teller::join_nodes(const service::Config& config) {
   const auto X_WC = pose_of(config.numbers("camera.X_WC"));
   if (!X_WC) return tl::unexpected(X_WC.error());
+  camera_ = config.text("camera.name");
+  lens_ = lens_of(config);
   auto joined = ros2::join_nodes("prehend_ros", options_.domain, options_.network);
   if (!joined) return tl::unexpected(joined.error());
   nodes_.emplace(std::move(*joined));
   auto made = voices();
   if (!made) return tl::unexpected(made.error());
   voices_.emplace(std::move(*made));
-  write(voices_->tf_static,
-        tf_message({{to_ns(process_now()), table, config.text("camera.name"), *X_WC}}));
+  write(voices_->tf_static, tf_message({{to_ns(process_now()), table_frame, camera_, *X_WC}}));
   return {};
 }
 
 Expected<Teller::Voices> Teller::voices() {
-  const auto writer = [this](const char* name, const char* type, bool kept) {
-    return dds::RawWriter::create(*nodes_, ros2::topic_of_nodes(name, type, kept));
-  };
-  auto joints = writer("joint_states", "sensor_msgs/JointState", false);
-  if (!joints) return tl::unexpected(joints.error());
-  auto text = writer("robot_description", "std_msgs/String", true);
-  if (!text) return tl::unexpected(text.error());
-  auto moving = writer("tf", "tf2_msgs/TFMessage", false);
-  if (!moving) return tl::unexpected(moving.error());
-  auto fixed = writer("tf_static", "tf2_msgs/TFMessage", true);
-  if (!fixed) return tl::unexpected(fixed.error());
-  return Voices{std::move(*joints), std::move(*text), std::move(*moving), std::move(*fixed)};
+  std::vector<dds::RawWriter> made;
+  for (const auto& [name, type, kept] :
+       {std::tuple("joint_states", "sensor_msgs/JointState", false),
+        std::tuple("robot_description", "std_msgs/String", true),
+        std::tuple("tf", "tf2_msgs/TFMessage", false),
+        std::tuple("tf_static", "tf2_msgs/TFMessage", true),
+        std::tuple("detections", "vision_msgs/Detection3DArray", false),
+        std::tuple("diagnostics", "diagnostic_msgs/DiagnosticArray", false),
+        std::tuple("camera/image/compressed", "sensor_msgs/CompressedImage", false),
+        std::tuple("camera/camera_info", "sensor_msgs/CameraInfo", false)}) {
+    auto writer = dds::RawWriter::create(*nodes_, ros2::topic_of_nodes(name, type, kept));
+    if (!writer) return tl::unexpected(writer.error());
+    made.push_back(std::move(*writer));
+  }
+  return Voices{std::move(made[0]), std::move(made[1]), std::move(made[2]), std::move(made[3]),
+                std::move(made[4]), std::move(made[5]), std::move(made[6]), std::move(made[7])};
+}
+
+template <class Topic, class Keep>
+Expected<Teller::Ear> Teller::listen(const Topic& topic, Keep keep) {
+  return dds::RawReader::create(*lab_, dds::raw_topic(topic),
+                                [this, &topic, keep](dds::RawSample&& sample) {
+                                  typename Topic::Type message;
+                                  const bool data = sample.kind == dds::RawSample::Kind::data;
+                                  if (data && !dds::decode(topic, sample, message)) return;
+                                  const std::scoped_lock lock(mutex_);
+                                  keep(sample.instance, data ? &message : nullptr);
+                                  come_.notify_one();
+                                });
 }
 
 Expected<void> Teller::join_lab(const service::Config& config) {
   auto joined = dds::Participant::create(service::membership(config, "ros", "viewer"));
   if (!joined) return tl::unexpected(joined.error());
   lab_.emplace(std::move(*joined));
-  const auto read = [this](const auto& topic, auto keep) {
-    return dds::RawReader::create(
-        *lab_, dds::raw_topic(topic), [this, &topic, keep](dds::RawSample&& sample) {
-          typename std::decay_t<decltype(topic)>::Type message;
-          if (sample.kind != dds::RawSample::Kind::data || !dds::decode(topic, sample, message))
-            return;
-          const std::scoped_lock lock(mutex_);
-          keep(message);
-          come_.notify_one();
-        });
+  const auto keep = [this](Ear& ear, const auto& topic, auto with) -> Expected<void> {
+    auto made = listen(topic, with);
+    if (!made) return tl::unexpected(made.error());
+    ear = std::move(*made);
+    return {};
   };
-  auto hands = read(dds::robot_state, [this](const v1::HandState& state) {
-    news_.hands.insert_or_assign(state.hand().to_string(), state);
+  return keep(hands_, dds::robot_state,
+              [this](const dds::Guid&, const v1::HandState* state) {
+                if (state) news_.hands.insert_or_assign(state->hand().to_string(), *state);
+              })
+      .and_then([&] {
+        return keep(objects_, dds::object_state,
+                    [this](const dds::Guid&, const v1::ObjectState* state) {
+                      if (state) news_.objects.insert_or_assign(state->body().to_string(), *state);
+                    });
+      })
+      .and_then([&] {
+        return keep(reports_, dds::grasp_report,
+                    [this](const dds::Guid&, const v1::GraspReport* report) {
+                      if (report)
+                        news_.reports.insert_or_assign(report->hand().to_string(), *report);
+                    });
+      })
+      .and_then([&] {
+        return keep(detections_, dds::object_detection,
+                    [this](const dds::Guid& instance, const v1::ObjectDetection* detection) {
+                      see(instance, detection);
+                    });
+      });
+}
+
+void Teller::see(const dds::Guid& instance, const v1::ObjectDetection* detection) {
+  const auto X_WO = detection ? convert::from_message(detection->X_WO())
+                              : Expected<Pose>(tl::unexpected(Error{}));
+  if (X_WO)
+    seen_.insert_or_assign(instance, detection_of(*detection, *X_WO));
+  else
+    seen_.erase(instance);
+  news_.seen.emplace();
+  for (const auto& [key, one] : seen_) news_.seen->push_back(one);
+}
+
+void Teller::listen_to_pictures() {
+  const bool wanted = voices_->picture.readers() + voices_->lens.readers() > 0;
+  if (wanted == (pictures_ != nullptr)) return;
+  if (!wanted) return pictures_.reset();
+  auto ear = listen(dds::camera_image, [this](const dds::Guid&, const v1::CameraImage* picture) {
+    if (picture && picture->camera().to_string() == camera_) news_.picture = *picture;
   });
-  if (!hands) return tl::unexpected(hands.error());
-  hands_ = std::move(*hands);
-  auto objects = read(dds::object_state, [this](const v1::ObjectState& state) {
-    news_.objects.insert_or_assign(state.body().to_string(), state);
-  });
-  if (!objects) return tl::unexpected(objects.error());
-  objects_ = std::move(*objects);
-  return {};
+  if (ear)
+    pictures_ = std::move(*ear);
+  else
+    log::warning(ear.error());
 }
 
 void Teller::tell(Duration limit) {
+  listen_to_pictures();
   News news;
   {
     std::unique_lock lock(mutex_);
@@ -108,6 +181,13 @@ void Teller::tell(Duration limit) {
     if (name == options_.hand) tell(state);
   }
   for (const auto& [name, state] : news.objects) tell(state);
+  for (const auto& [name, report] : news.reports) tell(report);
+  if (news.picture) tell(*news.picture);
+  if (!news.seen) return;
+  std::int64_t newest = 0;
+  for (const Detection& one : *news.seen) newest = std::max(newest, one.stamp_ns);
+  write(voices_->detections,
+        detections_message(newest > 0 ? newest : to_ns(process_now()), table_frame, *news.seen));
 }
 
 const model::HandModel* Teller::introduce(const std::string& name) {
@@ -138,14 +218,43 @@ void Teller::tell(const v1::HandState& state) {
   if (state.velocity().size() == joints.names.size()) joints.velocities = state.velocity();
   if (state.torque().size() == joints.names.size()) joints.efforts = state.torque();
   write(voices_->joint_states, ros2::joint_state(joints));
-  write(voices_->tf, tf_message(transforms_of(*model, *X_WB, positions, table, state.stamp_ns())));
+  write(voices_->tf,
+        tf_message(transforms_of(*model, *X_WB, positions, table_frame, state.stamp_ns())));
 }
 
 void Teller::tell(const v1::ObjectState& state) {
   const auto X_WO = convert::from_message(state.X_WO());
   if (!X_WO) return;
   write(voices_->tf,
-        tf_message({{state.stamp_ns(), table, "object/" + state.body().to_string(), *X_WO}}));
+        tf_message({{state.stamp_ns(), table_frame, "object/" + state.body().to_string(), *X_WO}}));
+}
+
+void Teller::tell(const v1::GraspReport& report) {
+  const auto number = [](double value) { return fmt::format("{:.4g}", value); };
+  const std::string hand = report.hand().to_string();
+  write(voices_->diagnostics,
+        diagnostics_message(report.stamp_ns(),
+                            {.good = report.held(),
+                             .name = "prehend: grasp of " + hand,
+                             .message = report.held() ? "held" : report.reason().to_string(),
+                             .hardware = hand,
+                             .values = {{"grasp", std::to_string(report.sequence_number())},
+                                        {"object", report.object().to_string()},
+                                        {"believed object", report.believed_object().to_string()},
+                                        {"contacts", std::to_string(report.contacts().size())},
+                                        {"epsilon", number(report.epsilon())},
+                                        {"volume", number(report.volume())},
+                                        {"penetration, m", number(report.penetration())},
+                                        {"slip, m", number(report.slip())},
+                                        {"turn, rad", number(report.turn())}}}));
+}
+
+void Teller::tell(const v1::CameraImage& picture) {
+  write(voices_->picture, ros2::compressed_image({.stamp_ns = picture.stamp_ns(),
+                                                  .frame = camera_,
+                                                  .format = picture.encoding().to_string(),
+                                                  .data = picture.data()}));
+  write(voices_->lens, ros2::camera_info(picture.stamp_ns(), camera_, lens_));
 }
 
 void Teller::write(dds::RawWriter& writer, Bytes bytes) {

@@ -11,13 +11,16 @@
 #include "common/dds/participant.hpp"
 #include "common/dds/raw.hpp"
 #include "common/model/hand_model.hpp"
+#include "common/ros2/pictures.hpp"
 #include "common/service/config.hpp"
+#include "services/ros/core/detections.hpp"
 #include "services/ros/core/messages.hpp"
 
 namespace prehend::ros {
 
-/// Reads the hand and the objects of a lab, and tells nodes of ROS 2 in their own words. It is two
-/// participants: a viewer of the lab, and one without partition where nodes look for topics.
+/// Reads the hand, the objects, what the camera sees and how grasps were judged in a lab, and tells
+/// nodes of ROS 2 in their own words. It is two participants: a viewer of the lab, and one without
+/// partition where nodes look for topics.
 class Teller {
  public:
   struct Options {
@@ -39,18 +42,32 @@ class Teller {
   struct News {
     std::map<std::string, v1::HandState> hands;
     std::map<std::string, v1::ObjectState> objects;
-    bool empty() const { return hands.empty() && objects.empty(); }
+    std::map<std::string, v1::GraspReport> reports;  // by hand
+    std::optional<std::vector<Detection>> seen;      // if that has changed
+    std::optional<v1::CameraImage> picture;
+    bool empty() const {
+      return hands.empty() && objects.empty() && reports.empty() && !seen && !picture;
+    }
   };
   struct Voices {
-    dds::RawWriter joint_states, description, tf, tf_static;
+    dds::RawWriter joint_states, description, tf, tf_static, detections, diagnostics, picture, lens;
   };
+  using Ear = std::unique_ptr<dds::RawReader>;
 
   explicit Teller(Options options) : options_(std::move(options)) {}
   Expected<void> join_lab(const service::Config& config);
   Expected<void> join_nodes(const service::Config& config);
   Expected<Voices> voices();
+  /// keep: gets each message, or nothing when its instance has ended; called with mutex_ held.
+  template <class Topic, class Keep>
+  Expected<Ear> listen(const Topic& topic, Keep keep);
+  /// Pictures are large: they are read in the lab while a node reads them here.
+  void listen_to_pictures();
+  void see(const dds::Guid& instance, const v1::ObjectDetection* detection);
   void tell(const v1::HandState& state);
   void tell(const v1::ObjectState& state);
+  void tell(const v1::GraspReport& report);
+  void tell(const v1::CameraImage& picture);
   /// Nothing: it is not known.
   const model::HandModel* introduce(const std::string& model);
   void write(dds::RawWriter& writer, Bytes bytes);
@@ -59,12 +76,15 @@ class Teller {
   std::vector<std::string> told_;  // hands that lab.toml names
   std::string shown_;              // the model that nodes know
   std::optional<model::HandModel> model_;
-  std::mutex mutex_;  // guards news_
+  std::string camera_;  // its name, and that of its frame
+  ros2::Lens lens_;
+  std::mutex mutex_;  // guards news_ and seen_
   std::condition_variable come_;
   News news_;
+  std::map<dds::Guid, Detection> seen_;
   std::optional<dds::Participant> nodes_, lab_;
   std::optional<Voices> voices_;
-  std::unique_ptr<dds::RawReader> hands_, objects_;
+  Ear hands_, objects_, reports_, detections_, pictures_;
 };
 
 }  // namespace prehend::ros

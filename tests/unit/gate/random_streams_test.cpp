@@ -2,10 +2,6 @@
 // swaps, that send leaps, nonsense and commands for others, and fall silent. Whatever they do, what
 // leaves the gate keeps the limits, is young, comes once and in order, and has one leader at a
 // time. A sound stream, as mapping makes it, leaves as it came.
-//
-// Of what passes in any time T each joint and the base go at most speed · (T + 300 ms). With the
-// length of the way S and t = time, that is S(j) − S(i) − speed · (t(j) − t(i)) ≤ 0.3 s · speed for
-// all i < j, so the least S(i) − speed · t(i) so far suffices.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -15,36 +11,18 @@
 
 #include "common/base/random.hpp"
 #include "common/model/hand_effort.hpp"
+#include "tests/support/way.hpp"
 #include "tests/unit/gate/fixtures.hpp"
 
 namespace prehend::gate {
 namespace {
 
 using Eigen::Vector3d;
+using test::Way;
 
 struct Sent {
   Command command;
   Time arrives{};
-};
-
-/// The length of a way against a speed.
-class Way {
- public:
-  explicit Way(double speed) : speed_(speed) {}
-  void go(double length, double t) {
-    if (begun_)
-      lowest_ = std::min(lowest_, length_ - speed_ * t_);
-    else
-      lowest_ = -speed_ * t;
-    begun_ = true;
-    length_ += length;
-    t_ = t;
-    EXPECT_LE(length_ - speed_ * t - lowest_, 0.3 * speed_ * (1 + 1e-6) + 1e-6);
-  }
-
- private:
-  double speed_, length_ = 0, t_ = 0, lowest_ = 0;
-  bool begun_ = false;
 };
 
 std::vector<Sent> wild(Random& random, const model::HandModel& hand) {

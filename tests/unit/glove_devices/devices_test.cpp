@@ -13,6 +13,7 @@
 #include "common/base/clock.hpp"
 #include "common/service/config.hpp"
 #include "services/glove/devices/paced.hpp"
+#include "tests/support/domains/domain_lease.hpp"
 #include "tests/unit/glove_devices/listener.hpp"
 
 namespace prehend::glove {
@@ -57,9 +58,11 @@ class EveryDevice : public ::testing::TestWithParam<DeviceKind> {
   EveryDevice() {
     const auto file =
         "prehend_device_" + std::to_string(::getpid()) + "_" + std::string(GetParam().name);
-    options_.port = GetParam().line == Line::datagrams
-                        ? free_address()
+    options_.port = GetParam().line == Line::datagrams ? free_address()
+                    : GetParam().line == Line::nodes
+                        ? file
                         : (std::filesystem::temp_directory_path() / file).string();
+    ::setenv("ROS_DOMAIN_ID", std::to_string(nodes_.domain()).c_str(), 1);
     options_.rate = 50;
     options_.scene.X_WH = make_pose({0, 0, 0.25});
     options_.file = std::filesystem::temp_directory_path() / (file + ".csv");
@@ -106,6 +109,7 @@ class EveryDevice : public ::testing::TestWithParam<DeviceKind> {
     }
   }
 
+  const test::DomainLease nodes_;
   DeviceOptions options_;
   WavingHand source_;
 };

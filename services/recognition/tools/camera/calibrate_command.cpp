@@ -166,7 +166,8 @@ Expected<Seen> look(const Arguments& arguments, const CameraModel& camera) {
   const auto [name, path] = camera_source(arguments.source);
   const auto kind = find_camera(name);
   const auto line = kind ? kind->line : CameraLine::none;
-  if (line == CameraLine::device || (line == CameraLine::stream && !path.empty()))
+  if (line == CameraLine::device || line == CameraLine::nodes ||
+      (line == CameraLine::stream && !path.empty()))
     return from_camera(arguments, {name, path, camera, 10});
   return in_folder(arguments, line == CameraLine::folder ? path : arguments.source);
 }
@@ -287,7 +288,8 @@ void add_calibrate(tool::Program& program) {
   command
       ->add_option(
           "source", a->source,
-          "a folder of pictures, or " + camera_words({CameraLine::device, CameraLine::stream}) +
+          "a folder of pictures, or " +
+              camera_words({CameraLine::device, CameraLine::stream, CameraLine::nodes}) +
               "; the first picture (shot2 comes before shot10) shows the board lying on the table")
       ->required();
   command->add_option("--columns", a->board.columns, "inner corners in a row")

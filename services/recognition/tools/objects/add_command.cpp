@@ -76,8 +76,8 @@ Expected<Next> from_topic(const service::Config& config) {
 
 /// Those that can show how an object is turned about.
 std::string source_words() {
-  return camera_words(
-      {CameraLine::topic, CameraLine::device, CameraLine::stream, CameraLine::folder});
+  return camera_words({CameraLine::topic, CameraLine::device, CameraLine::stream,
+                       CameraLine::folder, CameraLine::nodes});
 }
 
 Expected<Next> from_camera(const service::Config& config, const std::string& source) {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <functional>
 #include <utility>
 
@@ -11,7 +12,9 @@
 #include "common/dds/topics.hpp"
 #include "common/ros2/joints.hpp"
 #include "common/ros2/nodes/nodes.hpp"
+#include "common/service/nodes_network.hpp"
 #include "common/service/status_publisher.hpp"
+#include "services/ros/core/wrist_goal.hpp"
 
 namespace prehend::ros {
 namespace {
@@ -24,17 +27,20 @@ std::string own_name() {
   return fmt::format("ros-lead@{}/{}", service::host_name(), ::getpid());
 }
 
+/// Whatever a node writes with has the same beginning.
+dds::GuidPrefix node_of(const dds::RawSample& sample) {
+  dds::GuidPrefix node{};
+  std::copy_n(sample.writer.begin(), node.size(), node.begin());
+  return node;
+}
+
 }  // namespace
 
 Expected<std::unique_ptr<Leader>> Leader::create(service::Shell& shell) {
   const service::Config& config = shell.config();
   if (shell.lockstep()) return wrong_use("is not for lockstep", "ros-lead", "nodes are live");
-  const std::string& network = config.text("ros.network");
-  if (network != "laptop" && network != "lan")
-    return wrong_use("is neither laptop nor lan", "ros.network");
-  if (network == "lan" && !config.path("lab.keys").empty())
-    return wrong_use("would let anybody on the network lead a hand that has keys", "ros.network",
-                     "laptop: nodes of this machine alone");
+  const auto network = service::network_of_nodes(config);
+  if (!network) return tl::unexpected(network.error());
   const std::string& kind = config.text("mapping.hand");
   if (kind.empty()) return wrong_use("is no hand", "mapping.hand", model::hand_hint());
   auto hand = model::HandModel::load(model::hand_directory(kind));
@@ -64,7 +70,9 @@ Leader::Leader(service::Shell& shell, model::HandModel hand)
 }
 
 Leader::~Leader() {
-  trajectories_.reset();  // what still receives calls us
+  // What still receives calls us.
+  trajectories_.reset();
+  wrist_poses_.reset();
 }
 
 Expected<void> Leader::join_nodes() {
@@ -73,16 +81,24 @@ Expected<void> Leader::join_nodes() {
   auto joined = ros2::join_nodes("prehend_ros_lead", *domain, shell_.config().text("ros.network"));
   if (!joined) return tl::unexpected(joined.error());
   nodes_.emplace(std::move(*joined));
-  const std::string& topic = shell_.config().text("ros.trajectories");
-  auto reader = dds::RawReader::create(
-      *nodes_, ros2::topic_of_nodes(topic, "trajectory_msgs/JointTrajectory"),
-      [this](dds::RawSample&& sample) {
-        if (sample.kind == dds::RawSample::Kind::data)
-          shell_.exclusively([&] { on_trajectory(sample.payload); });
-      });
+  const auto read = [this](const std::string& topic, const char* type,
+                           void (Leader::*take)(const dds::RawSample&)) {
+    return dds::RawReader::create(*nodes_, ros2::topic_of_nodes(topic, type),
+                                  [this, take](dds::RawSample&& sample) {
+                                    if (sample.kind == dds::RawSample::Kind::data)
+                                      shell_.exclusively([&] { (this->*take)(sample); });
+                                  });
+  };
+  const std::string& trajectories = shell_.config().text("ros.trajectories");
+  auto reader = read(trajectories, "trajectory_msgs/JointTrajectory", &Leader::on_trajectory);
   if (!reader) return tl::unexpected(reader.error());
   trajectories_ = std::move(*reader);
-  log::info("trajectories of nodes are taken on /{}, domain {} of ROS 2", topic, *domain);
+  const std::string& poses = shell_.config().text("ros.wrist_poses");
+  reader = read(poses, "geometry_msgs/PoseStamped", &Leader::on_wrist_pose);
+  if (!reader) return tl::unexpected(reader.error());
+  wrist_poses_ = std::move(*reader);
+  log::info("trajectories of nodes are taken on /{}, poses of the hand on /{}, domain {} of ROS 2",
+            trajectories, poses, *domain);
   return {};
 }
 
@@ -113,19 +129,42 @@ std::optional<Error> Leader::obstacle(Time now) const {
   return std::nullopt;
 }
 
-void Leader::on_trajectory(std::span<const std::uint8_t> bytes) {
+void Leader::on_trajectory(const dds::RawSample& sample) {
   const Time now = shell_.now();
   const bool leads = follower_.goal(now).has_value();
-  const auto taken = ros2::parse_joint_trajectory(bytes).and_then(
-      [&](const ros2::JointTrajectory& trajectory) -> Expected<void> {
-        if (!trajectory.points.empty())
-          if (auto error = obstacle(now)) return tl::unexpected(std::move(*error));
-        return follower_.take(trajectory, robot_ ? robot_->dof : Eigen::VectorXd(), now);
-      });
+  const auto taken =
+      ros2::parse_joint_trajectory(sample.payload)
+          .and_then([&](const ros2::JointTrajectory& trajectory) -> Expected<void> {
+            if (!trajectory.points.empty()) {  // anybody may end it
+              if (auto error = obstacle(now)) return tl::unexpected(*error);
+              const auto heard = nodes_heard_.hear(node_of(sample), now);
+              if (!heard) return heard;
+            }
+            return follower_.take(trajectory, robot_ ? robot_->dof : Eigen::VectorXd(), now);
+          });
   if (taken && !leads && robot_) X_WB_ = robot_->X_WB;
-  shell_.status().count("trajectories");
-  if (!taken) shell_.status().drop("trajectory refused");
-  missed_ = taken ? "" : "the last trajectory was refused: " + taken.error().message();
+  judged("trajectory", taken);
+}
+
+void Leader::on_wrist_pose(const dds::RawSample& sample) {
+  const Time now = shell_.now();
+  judged("wrist pose",
+         ros2::parse_pose_stamped(sample.payload)
+             .and_then([&](const ros2::StampedPose& pose) { return wrist_goal(pose, now); })
+             .and_then([&](const Pose& X_WB) -> Expected<void> {
+               if (auto error = obstacle(now)) return tl::unexpected(*error);
+               const auto heard = nodes_heard_.hear(node_of(sample), now);
+               if (!heard) return heard;
+               follower_.hold(robot_->dof, now);
+               X_WB_ = X_WB;
+               return {};
+             }));
+}
+
+void Leader::judged(const std::string& what, const Expected<void>& taken) {
+  shell_.status().count(what == "trajectory" ? "trajectories" : "wrist poses");
+  if (!taken) shell_.status().drop(what + " refused");
+  missed_ = taken ? "" : fmt::format("the last {} was refused: {}", what, taken.error().message());
 }
 
 void Leader::on_tick(Time now) {
@@ -134,7 +173,7 @@ void Leader::on_tick(Time now) {
     if (error) {
       follower_.stop();
       shell_.status().drop("trajectory ended");
-      missed_ = "the last trajectory was ended: " + error->message();
+      missed_ = "the lead of a node was ended: " + error->message();
     } else {
       command(*goal, now);
     }

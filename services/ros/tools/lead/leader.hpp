@@ -9,6 +9,7 @@
 #include "common/dds/raw.hpp"
 #include "common/model/hand_model.hpp"
 #include "common/service/shell.hpp"
+#include "services/ros/core/one_speaker.hpp"
 #include "services/ros/core/trajectory_follower.hpp"
 
 namespace prehend::ros {
@@ -34,7 +35,10 @@ class Leader {
   Leader(service::Shell& shell, model::HandModel hand);
   Expected<void> join_nodes();
   void on_state(const v1::HandState& message);
-  void on_trajectory(std::span<const std::uint8_t> bytes);
+  void on_trajectory(const dds::RawSample& sample);
+  void on_wrist_pose(const dds::RawSample& sample);
+  /// Counts a message of nodes, and what was wrong with it.
+  void judged(const std::string& what, const Expected<void>& taken);
   void on_tick(Time now);
   /// What keeps the hand from being led.
   std::optional<Error> obstacle(Time now) const;
@@ -48,12 +52,13 @@ class Leader {
   service::Shell::Output<v2::HandCommand> commands_;
   std::optional<Robot> robot_;
   std::optional<v1::GateState> gate_;
-  Pose X_WB_ = Pose::Identity();  // where the lead began
+  OneSpeaker<dds::GuidPrefix> nodes_heard_;
+  Pose X_WB_ = Pose::Identity();  // where the lead began, or a node wants the base
   std::uint64_t sequence_ = 0;
-  std::string missed_;                  // why the last trajectory was not followed to its end
+  std::string missed_;                  // why the last message was not followed to its end
   std::optional<std::string> trouble_;  // as was said
   std::optional<dds::Participant> nodes_;
-  std::unique_ptr<dds::RawReader> trajectories_;
+  std::unique_ptr<dds::RawReader> trajectories_, wrist_poses_;
 };
 
 }  // namespace prehend::ros
