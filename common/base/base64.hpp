@@ -1,9 +1,11 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace prehend {
 
@@ -25,6 +27,35 @@ inline std::string base64(std::span<const std::uint8_t> bytes) {
 }
 inline std::string base64(std::string_view bytes) {
   return base64(std::span(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()));
+}
+
+/// What such a text says; nothing where it is none. Line ends in it, as of MIME, are passed by.
+inline std::optional<std::vector<std::uint8_t>> from_base64(std::string_view text) {
+  std::vector<std::uint8_t> bytes;
+  bytes.reserve(text.size() / 4 * 3);
+  unsigned held = 0, bits = 0, padding = 0, digits = 0;
+  for (const char c : text) {
+    if (c == '\n' || c == '\r') continue;
+    ++digits;
+    if (c == '=') {
+      ++padding;
+      continue;
+    }
+    const int digit = c >= 'A' && c <= 'Z'   ? c - 'A'
+                      : c >= 'a' && c <= 'z' ? c - 'a' + 26
+                      : c >= '0' && c <= '9' ? c - '0' + 52
+                      : c == '+'             ? 62
+                      : c == '/'             ? 63
+                                             : -1;
+    if (digit < 0 || padding > 0) return std::nullopt;
+    held = (held << 6 | static_cast<unsigned>(digit)) & 0xffffff;
+    bits += 6;
+    if (bits < 8) continue;
+    bits -= 8;
+    bytes.push_back(static_cast<std::uint8_t>(held >> bits & 0xff));
+  }
+  if (digits % 4 != 0 || padding > 2) return std::nullopt;
+  return bytes;
 }
 
 }  // namespace prehend

@@ -7,6 +7,7 @@
 
 #include "common/base/log.hpp"
 #include "common/base/log_format.hpp"
+#include "common/base/printable.hpp"
 #include "common/base/terminal.hpp"
 
 namespace prehend {
@@ -25,7 +26,7 @@ void Progress::show(std::size_t done, std::size_t all) {
   if (terminal_) {
     if (done + 1 == shown_) return;
     shown_ = done + 1;
-    fmt::print(stderr, "\r{:<32} [{:<{}}] {:>4} of {}{}", what_,
+    fmt::print(stderr, "\r{:<32} [{:<{}}] {:>4} of {}{}", printable(what_),
                std::string(width * done / all, '#'), width, done, all, done >= all ? "\n" : "");
     return;
   }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <optional>
 
+#include "common/base/printable.hpp"
 #include "common/base/toml_document.hpp"
 
 namespace prehend::model {
@@ -20,6 +21,18 @@ std::optional<Eigen::Vector3d> three_numbers(const toml::node_view<const toml::n
     v[static_cast<Eigen::Index>(i)] = *number;
   }
   return v;
+}
+
+/// What is round has one radius, however often it is written.
+Expected<void> check_round(const Shape& shape) {
+  const Eigen::Vector3d& r = shape.size;
+  const bool sphere = shape.kind == ShapeKind::sphere, cylinder = shape.kind == ShapeKind::cylinder;
+  if ((!sphere && !cylinder) || (r.x() == r.y() && (cylinder || r.y() == r.z()))) return {};
+  return fail(
+      fmt::format("a {} has one radius, these are [{:g}, {:g}, {:g}]", to_string(shape.kind), r.x(),
+                  r.y(), r.z()),
+      {},
+      sphere ? "write it three times" : "size is radius, radius, height; what widens is a cone");
 }
 
 /// As large as the shape that bounds it, within rounding of what people write.
@@ -55,6 +68,10 @@ Expected<CatalogueObject> read_object(const toml::table& table,
   if (!size) return fail("size needs three numbers in metres");
   object.shape.size = *size;
   if (!is_valid(object.shape)) return fail("sizes must be positive");
+  constexpr double largest = 5, heaviest = 1000;  // m, kg
+  if (object.shape.size.maxCoeff() > largest)
+    return fail(fmt::format("its size is beyond {:g} m", largest), {}, "sizes are in metres");
+  if (auto ok = check_round(object.shape); !ok) return tl::unexpected(ok.error());
   if (table.contains("mesh")) {
     auto mesh = read_mesh(table, object.shape, beside);
     if (!mesh) return tl::unexpected(mesh.error());
@@ -62,6 +79,8 @@ Expected<CatalogueObject> read_object(const toml::table& table,
   }
   object.mass = table["mass"].value_or(0.0);
   if (!(object.mass > 0)) return fail("mass must be positive, in kg");
+  if (object.mass > heaviest)
+    return fail(fmt::format("its mass is beyond {:g} kg", heaviest), {}, "masses are in kg");
   object.material = table["material"].value_or("");
   if (object.material.empty()) return fail("needs a material");
 
@@ -70,7 +89,8 @@ Expected<CatalogueObject> read_object(const toml::table& table,
   if (const toml::array* colours = table["appearance"]["colours"].as_array())
     for (const toml::node& entry : *colours) {
       const auto colour = three_numbers(toml::node_view<const toml::node>(entry));
-      if (!colour) return fail("a colour needs three numbers, 0 to 1");
+      if (!colour || colour->minCoeff() < 0 || colour->maxCoeff() > 1)
+        return fail("a colour needs three numbers, 0 to 1");
       object.appearance.colours.push_back(*colour);
     }
   if (object.appearance.colours.empty()) object.appearance.colours.emplace_back(0.6, 0.6, 0.6);
@@ -89,14 +109,14 @@ Expected<Catalogue> Catalogue::load(const std::filesystem::path& file) {
   Catalogue catalogue;
   for (const toml::node& entry : *entries) {
     const toml::table* table = entry.as_table();
-    if (!table) return fail("object is no table", file.string());
+    if (!table) return fail("object is no table", file.string(), "write [[object]]");
     auto object = read_object(*table, file.parent_path());
+    const std::string where = fmt::format("{}: line {}", file.string(), table->source().begin.line);
     if (!object)
-      return fail(
-          "object " + std::to_string(catalogue.objects_.size() + 1) + ": " + object.error().what,
-          file.string());
+      return fail(fmt::format("object {}: {}", catalogue.objects_.size() + 1, object.error().what),
+                  where, object.error().hint);
     if (catalogue.find(object->name))
-      return fail("two objects named " + object->name, file.string());
+      return fail("two objects named " + printable(object->name), where, "rename one");
     catalogue.objects_.push_back(std::move(*object));
   }
   return catalogue;

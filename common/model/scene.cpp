@@ -7,6 +7,7 @@
 #include <numbers>
 #include <set>
 
+#include "common/base/printable.hpp"
 #include "common/base/random.hpp"
 #include "common/base/toml_document.hpp"
 
@@ -15,6 +16,12 @@ namespace {
 
 using Eigen::Vector3d;
 constexpr double pi = std::numbers::pi;
+
+/// What is wrong first, and in which line; without a text: nothing.
+struct Problem {
+  std::string text;
+  toml::source_index line = 0;  // 0: no line of its own
+};
 
 /// Reads the keys of one table and remembers which were asked for, so that a misspelt one is found.
 class TableReader {
@@ -69,7 +76,7 @@ class TableReader {
     else
       complain(key, pose.error().what);
   }
-  const std::string& problem() {
+  const Problem& problem() {
     for (const auto& [key, node] : table_)
       if (!known_.contains(std::string(key.str()))) complain(key.str(), "is not a key of a scene");
     return problem_;
@@ -89,11 +96,15 @@ class TableReader {
       complain(key, "must be a list of finite numbers");
   }
   void complain(std::string_view key, std::string_view what) {
-    if (problem_.empty()) problem_ = fmt::format("{}.{} {}", name_, key, what);
+    if (!problem_.text.empty()) return;
+    const toml::node* node = table_.get(key);
+    problem_ = {fmt::format("{}.{} {}", name_, key, what),
+                (node ? node->source() : table_.source()).begin.line};
   }
 
   const toml::table& table_;
-  std::string name_, problem_;
+  std::string name_;
+  Problem problem_;
   std::set<std::string> known_;
 };
 
@@ -171,24 +182,67 @@ std::string contradiction(const Scene& scene) {
   return {};
 }
 
-/// What cannot stand as it is said; empty: nothing. Objects are known by their names, and what is
-/// inside another flies apart in the first step of the world.
-std::string misplaced(const Scene& scene, const Catalogue& catalogue) {
+/// Does a point of the first, of a grid, lie deeper in the second than contact explains?
+bool reaches_into(const Shape& one, const Pose& X_W1, const Shape& other, const Pose& X_W2) {
+  constexpr int steps = 6;         // a side of the middle, along each axis
+  constexpr double touch = 0.002;  // m
+  const Pose X_21 = X_W2.inverse() * X_W1;
+  const Vector3d half = half_extents(one);
+  for (int x = -steps; x <= steps; ++x)
+    for (int y = -steps; y <= steps; ++y)
+      for (int z = -steps; z <= steps; ++z) {
+        const Vector3d p = Vector3d(x, y, z).cwiseProduct(half) / steps;
+        if (signed_distance(one, p) <= 1e-9 && signed_distance(other, X_21 * p) < -touch)
+          return true;
+      }
+  return false;
+}
+
+bool overlap(const Shape& one, const Pose& X_W1, const Shape& other, const Pose& X_W2) {
+  const double reach = half_extents(one).norm() + half_extents(other).norm();
+  if ((X_W1.translation() - X_W2.translation()).norm() > reach) return false;
+  return reaches_into(one, X_W1, other, X_W2) || reaches_into(other, X_W2, one, X_W1);
+}
+
+/// Why the object of this number cannot stand as it is said; empty: it can. Objects are known by
+/// their names, and what is inside another flies apart in the first step of the world.
+std::string misplaced(const Scene& scene, std::size_t i, const Catalogue& catalogue) {
   constexpr double farthest = 5, below = -0.01;  // m
-  for (std::size_t i = 0; i < scene.objects.size(); ++i) {
-    const PlacedObject& one = scene.objects[i];
-    const Vector3d p = one.X_WO.translation();
-    if (p.cwiseAbs().maxCoeff() > farthest || p.z() < below)
-      return fmt::format("object '{}' is at ({:g}, {:g}, {:g}) m: below the table or too far",
-                         one.name, p.x(), p.y(), p.z());
-    const double inside = half_extents(catalogue.find(one.name)->shape).minCoeff();
-    for (std::size_t k = 0; k < i; ++k) {
-      const PlacedObject& other = scene.objects[k];
-      if (other.name == one.name) return "two objects are named '" + one.name + "'";
-      const double apart = (p - other.X_WO.translation()).norm();
-      if (apart < inside + half_extents(catalogue.find(other.name)->shape).minCoeff())
-        return fmt::format("objects '{}' and '{}' are inside each other", other.name, one.name);
-    }
+  const PlacedObject& one = scene.objects[i];
+  const Vector3d p = one.X_WO.translation();
+  if (p.cwiseAbs().maxCoeff() > farthest || p.z() < below)
+    return fmt::format(
+        "object '{}' is at ({:g}, {:g}, {:g}) m: below the table, or more than {:g} m away",
+        one.name, p.x(), p.y(), p.z(), farthest);
+  const Shape& shape = catalogue.find(one.name)->shape;
+  for (std::size_t k = 0; k < i; ++k) {
+    const PlacedObject& other = scene.objects[k];
+    if (other.name == one.name) return "two objects are named '" + one.name + "'";
+    if (overlap(shape, one.X_WO, catalogue.find(other.name)->shape, other.X_WO))
+      return fmt::format("objects '{}' and '{}' are inside each other", other.name, one.name);
+  }
+  return {};
+}
+
+/// The objects of a scene, each where it can stand.
+Problem read_objects(const toml::table& root, const Catalogue& catalogue, Scene& scene) {
+  const toml::node* node = root.get("object");
+  if (!node) return {};
+  if (!node->is_array()) return {"object must be [[object]]", node->source().begin.line};
+  for (const toml::node& entry : *node->as_array()) {
+    const auto line = entry.source().begin.line;
+    const toml::table* table = entry.as_table();
+    if (!table) return {"object is no table", line};
+    PlacedObject object{"", Pose::Identity()};
+    TableReader reader(*table, "object");
+    reader.read("name", object.name);
+    reader.read("X_WO", object.X_WO);
+    if (!reader.problem().text.empty()) return reader.problem();
+    if (!catalogue.find(object.name))
+      return {"object '" + printable(object.name) + "' is not in the catalogue", line};
+    scene.objects.push_back(object);
+    if (auto why = misplaced(scene, scene.objects.size() - 1, catalogue); !why.empty())
+      return {std::move(why), line};
   }
   return {};
 }
@@ -249,42 +303,32 @@ Expected<Scene> load_scene(const std::filesystem::path& file, const Catalogue& c
   if (!document) return tl::unexpected(document.error());
   const toml::table& root = *document;
   Scene scene;
-  std::string problem;
+  Problem problem;
+  const auto note = [&](Problem found) {
+    if (problem.text.empty()) problem = std::move(found);
+  };
   const auto read_table = [&](std::string_view name, auto&& read) {
-    const toml::table* table = root[name].as_table();
-    if (!table) {
-      if (root[name] && problem.empty()) problem = fmt::format("{} must be a table", name);
-      return;
-    }
+    const toml::node* node = root.get(name);
+    if (!node) return;
+    const toml::table* table = node->as_table();
+    if (!table) return note({fmt::format("{} must be a table", name), node->source().begin.line});
     TableReader reader(*table, std::string(name));
     read(reader);
-    if (problem.empty()) problem = reader.problem();
+    note(reader.problem());
   };
   read_table("scene", [&](TableReader& reader) { read_scene(reader, scene); });
   read_table("light", [&](TableReader& reader) { read_light(reader, scene.light); });
   read_table("demonstrator",
              [&](TableReader& reader) { read_demonstrator(reader, scene.demonstrator); });
-  if (root["object"] && !root["object"].as_array()) problem = "object must be [[object]]";
-  if (const toml::array* entries = root["object"].as_array())
-    for (const toml::node& entry : *entries) {
-      const toml::table* table = entry.as_table();
-      if (!table) return fail("object is no table", file.string());
-      PlacedObject object{"", Pose::Identity()};
-      TableReader reader(*table, "object");
-      reader.read("name", object.name);
-      reader.read("X_WO", object.X_WO);
-      if (problem.empty()) problem = reader.problem();
-      if (!catalogue.find(object.name))
-        return fail("object '" + object.name + "' is not in the catalogue", file.string());
-      scene.objects.push_back(object);
-    }
+  note(read_objects(root, catalogue, scene));
   for (const auto& [key, node] : root)
-    if (key != "scene" && key != "light" && key != "demonstrator" && key != "object" &&
-        problem.empty())
-      problem = fmt::format("{} is not a table of a scene", key.str());
-  if (problem.empty()) problem = contradiction(scene);
-  if (problem.empty()) problem = misplaced(scene, catalogue);
-  if (!problem.empty()) return fail(problem, file.string(), "see common/model/scene.hpp");
+    if (key != "scene" && key != "light" && key != "demonstrator" && key != "object")
+      note({fmt::format("{} is not a table of a scene", key.str()), node.source().begin.line});
+  note({contradiction(scene)});
+  if (!problem.text.empty())
+    return fail(problem.text,
+                file.string() + (problem.line ? fmt::format(": line {}", problem.line) : ""),
+                "X_WO is x y z in metres, then w x y z; `prehend scene` writes a sound scene");
   scene.light.to_light_W.normalize();
   return scene;
 }

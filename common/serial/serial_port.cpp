@@ -83,6 +83,7 @@ Expected<void> SerialPort::open_real(const std::string& real, int baud, const st
 
 SerialPort::SerialPort(SerialPort&& other) noexcept
     : path_(std::move(other.path_)),
+      overheard_(std::move(other.overheard_)),
       handle_(std::exchange(other.handle_, -1)),
       port_(std::exchange(other.port_, nullptr)) {}
 
@@ -101,7 +102,11 @@ Expected<std::string> SerialPort::read(Duration timeout) {
   if ((events & POLLIN) != 0) {
     std::array<char, 4096> bytes;
     const ssize_t count = ::read(handle_, bytes.data(), bytes.size());
-    if (count > 0) return std::string(bytes.data(), static_cast<std::size_t>(count));
+    if (count > 0) {
+      std::string heard(bytes.data(), static_cast<std::size_t>(count));
+      overheard_.heard(heard);
+      return heard;
+    }
     if (count < 0 && (errno == EAGAIN || errno == EINTR)) return std::string();
   }
   // Ready, but without a byte: the other end hung up or the adapter was pulled out.
@@ -109,6 +114,7 @@ Expected<std::string> SerialPort::read(Duration timeout) {
 }
 
 Expected<void> SerialPort::write(std::string_view bytes) {
+  overheard_.said(bytes);
   while (!bytes.empty()) {
     short events = 0;
     ssize_t count = -1;

@@ -6,6 +6,7 @@
 
 #include "common/base/error.hpp"
 #include "common/base/time.hpp"
+#include "common/serial/overheard.hpp"
 
 struct sp_port;
 
@@ -29,12 +30,15 @@ class SerialPort {
   Expected<void> write(std::string_view bytes);
   /// Throws away what has come and was not read.
   void discard_input();
+  /// What was read and written since it was opened.
+  const Overheard& overheard() const { return overheard_; }
 
  private:
   explicit SerialPort(std::string path) : path_(std::move(path)) {}
   Expected<void> open_real(const std::string& real, int baud, const std::string& hint);
 
   std::string path_;
+  Overheard overheard_;
   int handle_ = -1;
   sp_port* port_ = nullptr;  // owns the handle; null: a pseudo-terminal, the handle is ours
 };

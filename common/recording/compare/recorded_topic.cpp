@@ -1,6 +1,7 @@
 #include "common/recording/compare/recorded_topic.hpp"
 
 #include "common/recording/types/idl.hpp"
+#include "common/recording/types/ros2idl.hpp"
 #include "common/recording/types/schema_text.hpp"
 
 namespace prehend::recording {
@@ -30,6 +31,14 @@ RecordedTypes::RecordedTypes(const recording::mcap::Reader& reader) : reader_(re
 }
 
 const recording::types::Structure* RecordedTypes::of(const recording::mcap::Channel& channel) {
+  return channel.message_encoding == "cdr" ? known(channel) : nullptr;
+}
+
+const recording::types::Structure* RecordedTypes::of_ros1(const recording::mcap::Channel& channel) {
+  return channel.message_encoding == "ros1" ? known(channel) : nullptr;
+}
+
+const recording::types::Structure* RecordedTypes::known(const recording::mcap::Channel& channel) {
   const auto known = known_.find(channel.id);
   if (known != known_.end()) return known->second;
   return known_[channel.id] = find(channel);
@@ -37,7 +46,8 @@ const recording::types::Structure* RecordedTypes::of(const recording::mcap::Chan
 
 const recording::types::Structure* RecordedTypes::find(const recording::mcap::Channel& channel) {
   const RecordedTopic topic = recorded_topic(channel, reader_.contents());
-  if (!topic.end.empty() || channel.message_encoding != "cdr") return nullptr;
+  if (!topic.end.empty()) return nullptr;
+  const bool ros1 = channel.message_encoding == "ros1";
   if (const auto idl = idl_.find(topic.type); idl != idl_.end()) {
     recording::types::Library& library = libraries_["idl " + topic.type];
     if (library.structures().empty())
@@ -49,8 +59,13 @@ const recording::types::Structure* RecordedTypes::find(const recording::mcap::Ch
   const recording::mcap::Schema& schema = found->second;
   recording::types::Library& library =
       libraries_[schema.encoding + " " + std::to_string(schema.id)];
-  if (schema.encoding == "ros2msg") {
+  if (ros1 ? schema.encoding == "ros1msg" : schema.encoding == "ros2msg") {
     const auto type = recording::types::parse_ros2msg(schema.name, schema.data, library);
+    return type ? *type : nullptr;
+  }
+  if (ros1) return nullptr;
+  if (schema.encoding == "ros2idl") {
+    const auto type = recording::types::parse_ros2idl(schema.name, schema.data, library);
     return type ? *type : nullptr;
   }
   if (schema.encoding == "omgidl") {

@@ -21,7 +21,7 @@ RecordedTopic recorded_topic(const recording::mcap::Channel& channel,
                              const recording::mcap::Contents& contents);
 
 /// The type trees of a recording's channels, made from what the recording itself says: the IDL that
-/// was kept beside, else a ros2msg or omgidl schema.
+/// was kept beside, else its schema.
 class RecordedTypes {
  public:
   /// The reader must outlive it.
@@ -30,8 +30,11 @@ class RecordedTypes {
   /// Nothing for ends of instances, for messages that are not CDR and for what is not described in
   /// a way that we read. Lives as long as this.
   const recording::types::Structure* of(const recording::mcap::Channel& channel);
+  /// The same of messages of ROS 1.
+  const recording::types::Structure* of_ros1(const recording::mcap::Channel& channel);
 
  private:
+  const recording::types::Structure* known(const recording::mcap::Channel& channel);
   const recording::types::Structure* find(const recording::mcap::Channel& channel);
 
   const recording::mcap::Reader& reader_;

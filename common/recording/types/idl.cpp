@@ -113,16 +113,19 @@ class Parser {
   }
   std::string scoped(const std::string& name) const { return scope_ + name; }
 
-  Expected<std::uint32_t> number() {
-    const Token token = tokens_.take();
+  std::optional<std::uint32_t> whole_number(const Token& token) const {
     if (const auto constant = constants_.find(token.text); constant != constants_.end())
       return constant->second;
     std::uint32_t value = 0;
     const char* end = token.text.data() + token.text.size();
     const auto [stop, problem] = std::from_chars(token.text.data(), end, value);
-    if (problem != std::errc() || stop != end)
-      return error("«" + token.text + "» is no whole number of 32 bits");
+    if (problem != std::errc() || stop != end) return std::nullopt;
     return value;
+  }
+  Expected<std::uint32_t> number() {
+    const Token token = tokens_.take();
+    if (const auto value = whole_number(token)) return *value;
+    return error("«" + token.text + "» is no whole number of 32 bits");
   }
 
   Expected<Annotations> annotations() {
@@ -229,9 +232,9 @@ class Parser {
     const auto called = name();
     if (!called) return tl::unexpected(called.error());
     if (auto done = expect("="); !done) return done;
-    const auto value = number();
-    if (!value) return tl::unexpected(value.error());
-    constants_[*called] = *value;
+    // A text, a fraction or a negative number bounds nothing.
+    if (const auto value = whole_number(tokens_.peek())) constants_[*called] = *value;
+    while (tokens_.peek().text != ";" && !tokens_.peek().text.empty()) tokens_.take();
     return {};
   }
 

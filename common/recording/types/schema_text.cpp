@@ -204,7 +204,10 @@ class Ros2Parser {
       if (!read(type_name.substr(bound + 2), type.string_bound)) return fail("an impossible bound");
       type_name.erase(bound);
     }
-    if (const auto kind = primitive(type_name)) {
+    if (const Structure* time = time_of_ros1(type_name)) {
+      type.kind = Kind::structure;
+      type.structure = time;
+    } else if (const auto kind = primitive(type_name)) {
       type.kind = *kind;
     } else {
       const auto nested = structure(qualified(type_name, inside));
@@ -225,6 +228,16 @@ class Ros2Parser {
   static bool read(std::string_view text, std::uint32_t& number) {
     const auto [stop, problem] = std::from_chars(text.data(), text.data() + text.size(), number);
     return problem == std::errc() && stop == text.data() + text.size();
+  }
+
+  /// Two words of ROS 1 that are no types of their own elsewhere; else nothing.
+  const Structure* time_of_ros1(const std::string& word) {
+    if (word != "time" && word != "duration") return nullptr;
+    if (const Structure* known = library_.find(word)) return known;
+    const Kind kind = word == "time" ? Kind::uint32 : Kind::int32;
+    const auto added = library_.add(
+        {.name = word, .fields = {{"secs", {.kind = kind}}, {"nsecs", {.kind = kind}}}});
+    return added ? *added : nullptr;
   }
 
   static std::optional<Kind> primitive(std::string_view word) {

@@ -13,7 +13,9 @@ namespace {
 
 class Decoder {
  public:
-  Decoder(std::span<const std::uint8_t> body, bool swap) : body_(body), swap_(swap) {}
+  /// packed: nothing is aligned, as in ROS 1.
+  Decoder(std::span<const std::uint8_t> body, bool swap, bool packed)
+      : body_(body), swap_(swap), packed_(packed) {}
 
   Expected<Value> structure(const Structure& type) {
     Value::Fields fields;
@@ -28,7 +30,7 @@ class Decoder {
       fields.push_back({field.name, std::move(*value)});
     }
     // As in ROS 2, a structure without fields is one byte.
-    if (type.fields.empty()) (void)take(1);
+    if (type.fields.empty() && !packed_) (void)take(1);
     if (!good_) return fail("the message ends too early");
     return Value{std::move(fields)};
   }
@@ -38,7 +40,7 @@ class Decoder {
     if (type.many == Type::Many::one) return one(type);
     const std::uint32_t count =
         type.many == Type::Many::array ? type.count : number<std::uint32_t>();
-    // Every element takes at least a byte.
+    // Every element takes at least a byte, but for structures of ROS 1 without fields.
     if (!good_ || count > body_.size() - at_) return fail("the message ends too early");
     if (type.kind == Kind::uint8) {
       const auto bytes = take(count);
@@ -118,7 +120,8 @@ class Decoder {
 
   template <class Number>
   Number number() {
-    at_ = std::min((at_ + sizeof(Number) - 1) / sizeof(Number) * sizeof(Number), body_.size());
+    if (!packed_)
+      at_ = std::min((at_ + sizeof(Number) - 1) / sizeof(Number) * sizeof(Number), body_.size());
     const auto bytes = take(sizeof(Number));
     std::array<std::uint8_t, sizeof(Number)> raw{};
     std::ranges::copy(bytes, raw.begin());
@@ -135,10 +138,20 @@ class Decoder {
   }
 
   std::span<const std::uint8_t> body_;
-  bool swap_;
+  bool swap_, packed_;
   std::size_t at_ = 0;
   bool good_ = true;
 };
+
+Expected<Value> decode_body(const Structure& type, std::span<const std::uint8_t> body, bool little,
+                            bool packed) {
+  const bool swap = little != (std::endian::native == std::endian::little);
+  auto value = Decoder(body, swap, packed).structure(type);
+  if (!value)
+    return fail(value.error().what,
+                type.name + (value.error().where.empty() ? "" : "." + value.error().where));
+  return value;
+}
 
 template <class... Cases>
 struct Overloaded : Cases... {
@@ -162,12 +175,11 @@ Expected<Value> decode(const Structure& type, std::span<const std::uint8_t> mess
   if (message[0] != 0 || message[1] > 1)
     return fail("an encapsulation other than plain CDR", type.name);
   const bool little = message[1] == 1;
-  auto value = Decoder(message.subspan(4), little != (std::endian::native == std::endian::little))
-                   .structure(type);
-  if (!value)
-    return fail(value.error().what,
-                type.name + (value.error().where.empty() ? "" : "." + value.error().where));
-  return value;
+  return decode_body(type, message.subspan(4), little, false);
+}
+
+Expected<Value> decode_ros1(const Structure& type, std::span<const std::uint8_t> message) {
+  return decode_body(type, message, true, true);
 }
 
 nlohmann::ordered_json to_json(const Value& value) {

@@ -45,6 +45,9 @@ struct NamedValue {
 /// end early and names the field; lengths are checked before memory is taken.
 Expected<Value> decode(const Structure& type, std::span<const std::uint8_t> message);
 
+/// The same of ROS 1: little endian, without encapsulation and without padding.
+Expected<Value> decode_ros1(const Structure& type, std::span<const std::uint8_t> message);
+
 /// Numbers as numbers, enumerators by name, bytes as base64; not-a-number and infinities are null.
 nlohmann::ordered_json to_json(const Value& value);
 

@@ -105,7 +105,8 @@ class JointGlove final : public Device {
     }
     const auto sensors = joint::answered('S', heard);
     if (!sensors)
-      return fail("the glove does not answer", path_, "check that it is on, and its baud rate");
+      return tl::unexpected(port.overheard().unanswered(
+          {"the glove does not answer", path_, "check that it is on, and its baud rate"}));
     if (joint_sensors_of(*sensors).empty())
       return fail(fmt::format("the glove says that it has {} sensors", *sensors), path_,
                   "18 and 22 are known");

@@ -167,10 +167,12 @@ class NestOfBirds final : public Device {
     if (stop.stop_requested()) return {};
     const auto after = running(port);
     if (!after) return tl::unexpected(after.error());
-    if (!*after)
-      return fail("the tracker does not answer, or not all of its sensors are there", path_,
-                  "check its power, its baud rate and glove.sites");
-    return {};
+    if (*after) return {};
+    const Error error{"the tracker does not answer, or not all of its sensors are there", path_,
+                      "check its power, its baud rate and glove.sites"};
+    // Bytes may be its own, which say that a sensor is missing.
+    const bool sound = port.overheard().speaker() == serial::Speaker::bytes;
+    return tl::unexpected(sound ? error : port.overheard().unanswered(error));
   }
 
   /// Asks it who it is, and says so when that is new.
@@ -181,7 +183,7 @@ class NestOfBirds final : public Device {
       auto answer = examine(port, asked[i]);
       if (!answer) return tl::unexpected(answer.error());
       if (answer->size() != bird::examined_length(asked[i]))
-        return fail("the tracker does not answer", path_, "check its power and its baud rate");
+        return tl::unexpected(silent(port, i > 0));
       answers[i] = *answer;
     }
     const auto byte = [](char c) { return static_cast<std::uint8_t>(c); };
@@ -198,6 +200,12 @@ class NestOfBirds final : public Device {
     if (const auto error = byte(answers[3][0]); error != 0 && error != 6)
       log::warning("{}: the tracker says: {}", path_, bird::error_in_words(error));
     return {};
+  }
+
+  /// knows: it has answered before, so what was heard was its own.
+  Error silent(const serial::SerialPort& port, bool knows) const {
+    Error error{"the tracker does not answer", path_, "check its power and its baud rate"};
+    return knows ? error : port.overheard().unanswered(std::move(error));
   }
 
   /// Reads until nothing comes any more.

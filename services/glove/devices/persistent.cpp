@@ -3,6 +3,8 @@
 #include <condition_variable>
 #include <mutex>
 
+#include "common/serial/overheard.hpp"
+
 namespace prehend::glove {
 
 void Persistent::start(Life life, std::function<void(std::string)> complain) {
@@ -12,7 +14,7 @@ void Persistent::start(Life life, std::function<void(std::string)> complain) {
           const auto done = life(stop);
           if (done) continue;
           std::string line = done.error().message();
-          if (line != said_) complain(line);
+          if (serial::without_quote(line) != serial::without_quote(said_)) complain(line);
           said_ = std::move(line);
           pause(stop, std::chrono::milliseconds(200));
         }

@@ -8,6 +8,7 @@
 #include "common/base/file_text.hpp"
 #include "common/base/log.hpp"
 #include "common/base/log_format.hpp"
+#include "common/base/to_terminal.hpp"
 #include "services/glove/devices/bird_capture.hpp"
 #include "services/glove/tools/commands.hpp"
 
@@ -45,17 +46,17 @@ Json to_json(const std::string& file, const bird::CapturedRecord& captured) {
 
 void print(const bird::CapturedRecord& captured) {
   const bird::Record& record = captured.record;
-  fmt::print("{:.6f}  sensor {}  {:19}", captured.time, record.address.value_or(0),
-             bird::info(record.format).name);
+  to_terminal("{:.6f}  sensor {}  {:19}", captured.time, record.address.value_or(0),
+              bird::info(record.format).name);
   if (record.position)
-    fmt::print("  position {:7.4f} {:7.4f} {:7.4f} m", record.position->x(), record.position->y(),
-               record.position->z());
+    to_terminal("  position {:7.4f} {:7.4f} {:7.4f} m", record.position->x(), record.position->y(),
+                record.position->z());
   if (const auto R = record.rotation()) {
     const Eigen::Quaterniond q(*R);
-    fmt::print("  rotation {:7.4f} {:7.4f} {:7.4f} {:7.4f}", q.w(), q.x(), q.y(), q.z());
+    to_terminal("  rotation {:7.4f} {:7.4f} {:7.4f} {:7.4f}", q.w(), q.x(), q.y(), q.z());
   }
-  if (record.button) fmt::print("  button {}", *record.button);
-  fmt::print("\n");
+  if (record.button) to_terminal("  button {}", *record.button);
+  to_terminal("\n");
 }
 
 /// 0 when there was a record to show, 1 when there was none, 3 when a file could not be read.

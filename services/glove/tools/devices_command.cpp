@@ -5,6 +5,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "common/base/to_terminal.hpp"
 #include "services/glove/devices/device.hpp"
 #include "services/glove/tools/commands.hpp"
 
@@ -31,8 +32,8 @@ int show(bool json) {
   for (const DeviceKind& kind : device_kinds()) {
     document["devices"].push_back(to_json(kind));
     if (!json)
-      fmt::print("{:<14} {:<7} {}{}\n", kind.name, line_names.name(kind.line), kind.help,
-                 kind.emulate ? "; can be emulated" : "");
+      to_terminal("{:<14} {:<7} {}{}\n", kind.name, line_names.name(kind.line), kind.help,
+                  kind.emulate ? "; can be emulated" : "");
   }
   if (json) std::cout << document.dump() << '\n';
   return 0;

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "common/base/log_format.hpp"
+#include "common/base/to_terminal.hpp"
 #include "services/glove/core/filter_report.hpp"
 #include "services/glove/files/hand_recording.hpp"
 #include "services/glove/tools/commands.hpp"
@@ -38,15 +39,15 @@ nlohmann::ordered_json to_json(const std::string& name, const FilterStats& f) {
 void print(const std::string& name, const FilterStats& f) {
   const std::string lag = f.fast > 0 ? fmt::format("{:.1f} ms", 1000 * f.lag) : "–";
   const std::string ratio = f.noise_in > 0 ? fmt::format("{:.2f}", f.noise_out / f.noise_in) : "–";
-  fmt::print("| {} | {} | {:.2f} mm | {:.2f} mm | {} | {} | {} | {:.1f} mm | {} | {:.2f} % |\n",
-             name, f.frames, 1000 * f.noise_in, 1000 * f.noise_out, ratio, lag, f.extremes,
-             1000 * f.moved, f.far, 100 * f.withheld);
+  to_terminal("| {} | {} | {:.2f} mm | {:.2f} mm | {} | {} | {} | {:.1f} mm | {} | {:.2f} % |\n",
+              name, f.frames, 1000 * f.noise_in, 1000 * f.noise_out, ratio, lag, f.extremes,
+              1000 * f.moved, f.far, 100 * f.withheld);
 }
 
 /// 0 when something was measured, 1 when no file is a recording.
 int report(const FilterReportArguments& arguments) {
   if (!arguments.json)
-    fmt::print(
+    to_terminal(
         "| recording | frames | noise in | error out | ratio | lag | extreme points | furthest "
         "moved | over 5 mm | withheld |\n|---|---|---|---|---|---|---|---|---|---|\n");
   FilterMeasurement all(arguments.noise);

@@ -59,7 +59,7 @@ Expected<Dataset> load_dataset(const std::filesystem::path& folder) {
   Progress progress("reading");
   for (const ClassFolder& c : *folders) {
     if (c.files.empty()) {
-      made.left_out.push_back({"has no picture", (folder / c.name).string(), "jpeg or png"});
+      made.left_out.push_back({"has no picture", (folder / c.name).string(), picture_kinds});
       continue;
     }
     made.classes.push_back({c.name, {}});

@@ -15,7 +15,6 @@ namespace prehend::recognition {
 namespace {
 
 constexpr std::size_t max_pixels = 40'000'000;
-constexpr const char* picture_kinds = "jpeg, png, bmp, tiff and webp are known";
 
 /// Pixels as they are stored, whatever an EXIF tag says of a turn: a lens is calibrated, a mask
 /// drawn and a place computed in the pixels that the sensor gave.

@@ -11,6 +11,9 @@
 
 namespace prehend::recognition {
 
+/// For messages.
+inline constexpr const char* picture_kinds = "jpeg, png, bmp, tiff and webp are known";
+
 /// Pictures as files and as bytes (jpeg, png, ...; grey, 16-bit and transparent ones become 8-bit
 /// RGB, of an animation the first picture counts). Pixels stay where they are stored; EXIF turns
 /// are ignored.

@@ -14,6 +14,9 @@ class SerialChannel final : public Channel {
   explicit SerialChannel(serial::SerialPort port) : port_(std::move(port)) {}
   Expected<std::string> read() override { return port_.read(Duration::zero()); }
   Expected<void> write(std::string_view said) override { return port_.write(said); }
+  Error unanswered(Error silence) const override {
+    return port_.overheard().unanswered(std::move(silence));
+  }
 
  private:
   serial::SerialPort port_;

@@ -17,6 +17,8 @@ class Channel {
   /// What has come next: some bytes, or one message; empty: nothing. Fails when the way is gone.
   virtual Expected<std::string> read() = 0;
   virtual Expected<void> write(std::string_view said) = 0;
+  /// The error of a robot that does not answer as it does, with what was heard instead.
+  virtual Error unanswered(Error silence) const { return silence; }
 };
 
 /// Opens it; asked again after it failed.

@@ -7,7 +7,8 @@ namespace prehend::robot {
 namespace {
 
 constexpr Duration retry = std::chrono::milliseconds(200);
-constexpr int max_pieces = 64;  // that are read at once
+constexpr Duration hearing = std::chrono::milliseconds(300);  // a line of text, at any baud rate
+constexpr int max_pieces = 64;                                // that are read at once
 
 }  // namespace
 
@@ -25,18 +26,27 @@ void Line::exchange(Time now) {
     auto opened = open_();
     if (!opened) return driver_.disconnected(opened.error().message());
     channel_ = std::move(*opened);
+    first_heard_.reset();
     driver_.connected(now);
   }
+  hears_ = first_heard_ && now - *first_heard_ > hearing;
   // Messages come one by one; who sends more than can be read is heard at the next call.
   for (int n = 0; n < max_pieces; ++n) {
     const auto heard = channel_->read();
     if (!heard) return lose(heard.error(), now);
     if (n > 0 && heard->empty()) return;
+    if (!heard->empty() && !first_heard_) first_heard_ = now;
     const std::string said = driver_.step(*heard, now);
     if (!said.empty())
       if (const auto sent = channel_->write(said); !sent) return lose(sent.error(), now);
     if (heard->empty()) return;
   }
+}
+
+Error Line::trouble(const std::string& where, const std::string& hint) const {
+  Error silence{driver_.trouble(), where, hint};
+  if (driver_.phase() != Phase::offline || !channel_ || !hears_) return silence;
+  return channel_->unanswered(std::move(silence));
 }
 
 void Line::lose(const Error& error, Time now) {

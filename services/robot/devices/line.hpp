@@ -2,6 +2,8 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
+#include <string>
 
 #include "services/robot/core/driver.hpp"
 #include "services/robot/devices/channel.hpp"
@@ -19,6 +21,9 @@ class Line {
   Line& operator=(const Line&) = delete;
 
   void exchange(Time now);
+  /// What is wrong: of a robot that is offline, also what was heard instead of it. `hint` is for a
+  /// silent one.
+  Error trouble(const std::string& where = {}, const std::string& hint = {}) const;
 
  private:
   void lose(const Error& error, Time now);
@@ -27,6 +32,8 @@ class Line {
   Opener open_;
   std::unique_ptr<Channel> channel_;  // none: it is tried again
   Time next_try_{};
+  std::optional<Time> first_heard_;  // since it was opened
+  bool hears_ = false;               // long enough to be quoted
 };
 
 /// Exchanges until the driver says so, or the time is over: for tools, which have nothing else to

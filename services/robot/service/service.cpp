@@ -6,6 +6,7 @@
 
 #include "common/base/log.hpp"
 #include "common/dds/topics.hpp"
+#include "common/serial/overheard.hpp"
 #include "services/robot/service/messages.hpp"
 
 namespace prehend::robot {
@@ -108,9 +109,10 @@ void Service::on_tick(Time now) {
 void Service::watch(Time now) {
   const Phase phase = driver_.phase();
   if (phase == Phase::configured && homes_ && gate_->may_move(now)) driver_.home();
-  if (phase == phase_ && driver_.trouble() == trouble_) return;
+  std::string trouble = line_.trouble().message();
+  if (phase == phase_ && serial::without_quote(trouble) == serial::without_quote(trouble_)) return;
   const bool was_ready = std::exchange(phase_, phase) == Phase::ready;
-  trouble_ = driver_.trouble();
+  trouble_ = std::move(trouble);
   const std::string says = advice(phase, trouble_);
   if (phase == Phase::ready) {
     log::info("{} is ready", driver_.identity());

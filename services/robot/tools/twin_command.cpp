@@ -10,6 +10,7 @@
 #include <thread>
 
 #include "common/base/clock.hpp"
+#include "common/base/to_terminal.hpp"
 #include "common/convert/convert.hpp"
 #include "common/dds/participant.hpp"
 #include "common/dds/topics.hpp"
@@ -130,8 +131,8 @@ class SideBySide {
     for (const std::size_t d : parting_->compare(one, other, now)) {
       if (arguments_.json) continue;
       const auto i = static_cast<Eigen::Index>(d);
-      fmt::print("{:7.1f} s  {} parts: robot {:.3f}, twin {:.3f}\n", since_begin(now),
-                 hand_->dofs()[d].name, one[i], other[i]);
+      to_terminal("{:7.1f} s  {} parts: robot {:.3f}, twin {:.3f}\n", since_begin(now),
+                  hand_->dofs()[d].name, one[i], other[i]);
       std::fflush(stdout);
     }
     return {};
@@ -165,7 +166,7 @@ int tell(const SideBySide& both, const TwinArguments& arguments) {
     if (dof.parted) entry["parted_s"] = both.since_begin(*dof.parted);
     document["dofs"].push_back(entry);
     if (!arguments.json)
-      fmt::print(
+      to_terminal(
           "{:<12} at most {:.3f} apart{}\n", name, dof.worst,
           dof.parted ? fmt::format("; parted at {:.1f} s", both.since_begin(*dof.parted)) : "");
   }

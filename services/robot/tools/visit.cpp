@@ -77,9 +77,10 @@ int visit(const VisitArguments& arguments, bool homes) {
   end_orderly_when_interrupted();
   Line line(driver, robot->open);
   if (!exchange_until(line, to_answer, [&] { return tool::interrupted() || has_answered(driver); }))
-    return tool::complain({driver.trouble(), robot->port,
-                           "is it switched on, is robot.baud right, and no service on that port?"},
-                          exit_broken);
+    return tool::complain(
+        line.trouble(robot->port,
+                     "is it switched on, is robot.baud right, and no service on that port?"),
+        exit_broken);
   if (!homes || tool::interrupted() || driver.phase() == Phase::faulted)
     return tell(*robot, arguments.json,
                 !homes && !tool::interrupted() && driver.phase() != Phase::faulted);

@@ -91,13 +91,20 @@ TEST(Scene, BadFilesSayWhatIsWrong) {
       {"[[object]]\nname = \"Cup\"\nX_WO = [0,0,0,0,0,0,0]\n", "zero norm"},
       {"[[object]]\nname = \"Cup\"\nX_WO = [0,0,nan,1,0,0,0]\n", "finite"},
       {"[[object]]\nname = \"Cup\"\nX_WO = [0,0,-5,1,0,0,0]\n", "below the table"},
-      {"[[object]]\nname = \"Cup\"\nX_WO = [1e300,0,0.05,1,0,0,0]\n", "too far"},
+      {"[[object]]\nname = \"Cup\"\nX_WO = [1e300,0,0.05,1,0,0,0]\n", "more than 5 m away"},
       {"[[object]]\nname = \"Cup\"\nX_WO = [0,0,0.05,1,0,0,0]\n"
        "[[object]]\nname = \"Cup\"\nX_WO = [1,0,0.05,1,0,0,0]\n",
        "two objects are named 'Cup'"},
       {"[[object]]\nname = \"Cup\"\nX_WO = [0,0,0.05,1,0,0,0]\n"
        "[[object]]\nname = \"Talc\"\nX_WO = [0.01,0,0.05,1,0,0,0]\n",
+       "line 4: objects 'Cup' and 'Talc' are inside each other"},
+      // Neither middle is in the other.
+      {"[[object]]\nname = \"Vitamins\"\nX_WO = [0,0,0.08,1,0,0,0]\n"
+       "[[object]]\nname = \"Talc\"\nX_WO = [0.02,0,0.18,1,0,0,0]\n",
        "inside each other"},
+      {"[scene]\nname = 3\n", "line 2: scene.name has the wrong type"},
+      {"\n[[object]]\nname = \"\\u001b[2J\"\nX_WO = [0,0,0,1,0,0,0]\n",
+       "line 2: object '\\x1b[2J'"},
       {"[demonstrator]\ntarget = \"Cup\"\n", "stands nowhere"},
       {"[demonstrator]\nhand_scale = 9\n", "hand_scale"},
       {"[demonstrator]\nreach = [0.1, 0.1]\n", "reach needs four numbers"},
@@ -111,6 +118,40 @@ TEST(Scene, BadFilesSayWhatIsWrong) {
     EXPECT_NE(scene.error().message().find(expected), std::string::npos) << scene.error().message();
   }
   EXPECT_FALSE(load_scene("/nowhere/scene.toml", objects));
+}
+
+TEST(Scene, WhatStandsBesideOrOnAnotherIsNotInsideIt) {
+  const std::string cube = "[[object]]\nname = \"Wood cube\"\nX_WO = [0,0,0.0215,1,0,0,0]\n";
+  for (const char* cup : {"0.0545,0,0.0465", "0,0,0.0895"}) {
+    const auto scene = load_scene(
+        write(cube + "[[object]]\nname = \"Cup\"\nX_WO = [" + cup + ",1,0,0,0]\n"), catalogue());
+    EXPECT_TRUE(scene) << scene.error().message();
+  }
+}
+
+TEST(Catalogue, BadObjectsAreNamedWithTheirLine) {
+  const auto object = [](const std::string& shape, const std::string& size,
+                         const std::string& more = "mass = 0.1\n") {
+    return "[[object]]\nname = \"A\"\nshape = \"" + shape + "\"\nsize = " + size +
+           "\nmaterial = \"wood\"\n" + more;
+  };
+  const std::string sound = object("cylinder", "[0.03, 0.03, 0.1]");
+  EXPECT_TRUE(Catalogue::load(write(sound)));
+  EXPECT_TRUE(Catalogue::load(write(object("cone", "[0.03, 0.05, 0.1]"))));
+  for (const auto& [text, expected] : {
+           std::pair(object("cylinder", "[0.03, 0.05, 0.1]"),
+                     "line 1: object 1: a cylinder has one radius"),
+           std::pair(object("sphere", "[0.03, 0.03, 0.1]"), "a sphere has one radius"),
+           std::pair("\n" + object("box", "[30, 50, 100]"), "line 2: object 1: its size is beyond"),
+           std::pair(object("box", "[1, 1, 1]", "mass = 1e300\n"), "its mass is beyond"),
+           std::pair(object("box", "[1, 1, 1]", "mass = 1\nappearance = {colours = [[9, 9, 9]]}\n"),
+                     "a colour needs"),
+           std::pair(sound + sound, "line 7: two objects named A"),
+       }) {
+    const auto read = Catalogue::load(write(text));
+    ASSERT_FALSE(read) << text;
+    EXPECT_NE(read.error().message().find(expected), std::string::npos) << read.error().message();
+  }
 }
 
 }  // namespace

@@ -51,21 +51,27 @@ std::vector<std::string> subcommands_in(const std::string& help) {
   return found;
 }
 
-void find_options(const std::string& command, std::vector<Option>& found) {
+/// Calls `see` with every command below this one, and its help.
+template <class See>
+void visit(const std::string& command, const See& see) {
   const Answer help = run(command + " --help");
   if (help.exit != 0) return;  // a program of another kind: it takes no options
-  static const std::regex option("\n +(?:-[a-z],)?(--[a-z][a-z0-9-]*)[^ ]* (FLOAT|INT|UINT)");
-  for (std::sregex_iterator at(help.text.begin(), help.text.end(), option), end; at != end; ++at)
-    found.push_back({command, (*at)[1], (*at)[2] != "FLOAT"});
-  for (const std::string& below : subcommands_in(help.text))
-    find_options(command + " " + below, found);
+  see(command, help.text);
+  for (const std::string& below : subcommands_in(help.text)) visit(command + " " + below, see);
 }
 
-std::vector<Option> all_options() {
-  std::vector<Option> found;
+void find_options(const std::string& command, const std::string& help, std::vector<Option>& found) {
+  static const std::regex option("\n +(?:-[a-z],)?(--[a-z][a-z0-9-]*)[^ ]* (FLOAT|INT|UINT)");
+  for (std::sregex_iterator at(help.begin(), help.end(), option), end; at != end; ++at)
+    found.push_back({command, (*at)[1], (*at)[2] != "FLOAT"});
+}
+
+/// The same of all commands there are.
+template <class See>
+void visit_all(const See& see) {
   for (const auto& entry : std::filesystem::directory_iterator(test::in_programs(""))) {
     const std::string name = entry.path().filename();
-    if (name.starts_with("prehend-")) find_options(entry.path(), found);
+    if (name.starts_with("prehend-")) visit(entry.path().string(), see);
   }
   // The command line's own commands.
   const std::string prehend = test::in_programs("prehend");
@@ -73,8 +79,29 @@ std::vector<Option> all_options() {
   const Answer help = run(prehend + " --help");
   for (std::sregex_iterator at(help.text.begin(), help.text.end(), line), end; at != end; ++at)
     if (!std::filesystem::exists(test::in_programs("prehend-" + (*at)[1].str())))
-      find_options(prehend + " " + (*at)[1].str(), found);
+      visit(prehend + " " + (*at)[1].str(), see);
+}
+
+std::vector<Option> all_options() {
+  std::vector<Option> found;
+  visit_all([&](const std::string& command, const std::string& help) {
+    find_options(command, help, found);
+  });
   return found;
+}
+
+// Guards objects of a lab of one's own, which only the shipped catalogue was asked for.
+TEST(Options, WhoTakesAnObjectByItsNameTakesTheLabsCatalogue) {
+  int commands = 0;
+  static const std::regex object("\n +--objects? TEXT");
+  visit_all([&](const std::string& command, const std::string& help) {
+    if (!std::regex_search(help, object) || command.ends_with("prehend-benchmark")) return;
+    ++commands;
+    EXPECT_TRUE(help.find("--catalogue ") != std::string::npos ||
+                help.find("--config ") != std::string::npos)
+        << command;
+  });
+  EXPECT_GE(commands, 6);
 }
 
 // Every program goes through one place that notices it: what was printed and found no room is an

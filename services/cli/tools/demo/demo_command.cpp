@@ -10,6 +10,7 @@
 #include <string_view>
 
 #include "common/base/log_format.hpp"
+#include "common/base/printable.hpp"
 #include "common/base/terminal.hpp"
 #include "services/cli/tools/demo/demonstration.hpp"
 #include "services/cli/tools/demo/series.hpp"
@@ -34,9 +35,9 @@ class Screen {
     last_ = text;
     shown_ = now;
     if (terminal_)
-      fmt::print(stderr, "\r\033[K{}", text.substr(0, 100));
+      fmt::print(stderr, "\r\033[K{}", printable(text.substr(0, 100)));
     else
-      fmt::print(stderr, "{}\n", text);
+      fmt::print(stderr, "{}\n", printable(text));
     std::fflush(stderr);
   }
   void clear() {
@@ -141,7 +142,8 @@ int demo_command(const std::vector<std::string>& arguments) {
   }
   const auto show = [&](const Outcome& outcome) {
     screen.clear();
-    std::cout << (json ? to_json(outcome) + "\n" : to_table(outcome)) << std::flush;
+    std::cout << (json ? to_json(outcome) + "\n" : printable(to_table(outcome), "\n"))
+              << std::flush;
   };
   if (demo.watch) demo.on_outcome = show;
   const auto outcome = demonstrate(demo, progress);

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
+#include "common/base/to_terminal.hpp"
 #include "common/convert/names.hpp"
 #include "services/cli/tools/demo/demonstration.hpp"
 
@@ -58,8 +59,8 @@ int run_series(const DemoOptions& demo, const SeriesOptions& options,
                const stage::Progress& progress) {
   Tally normal, direct;
   if (!options.json)
-    fmt::print("{:>5}  {:<12} {:<12} {:>7}  {:<12} {:>8}  {:>7}  {}\n", "seed", "target",
-               "recognised", "mm off", "mode", "contacts", "ε", "result");
+    to_terminal("{:>5}  {:<12} {:<12} {:>7}  {:<12} {:>8}  {:>7}  {}\n", "seed", "target",
+                "recognised", "mm off", "mode", "contacts", "ε", "result");
   for (std::uint64_t seed = options.first; seed <= options.last; ++seed)
     for (const bool compare : {false, true}) {
       if (compare && !options.compare_direct) continue;
@@ -84,7 +85,7 @@ int run_series(const DemoOptions& demo, const SeriesOptions& options,
     std::cout << document.dump() << std::endl;
   } else {
     const auto line = [](std::string_view name, Tally& tally) {
-      fmt::print(
+      to_terminal(
           "{}: right object {} of {}, held {} of {}, intelligent {}, median error {:.1f} mm\n",
           name, tally.right, tally.count, tally.held, tally.count, tally.intelligent,
           tally.median_error() * 1000);

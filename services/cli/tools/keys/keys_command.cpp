@@ -9,6 +9,7 @@
 
 #include "common/base/file_text.hpp"
 #include "common/base/log.hpp"
+#include "common/base/printable.hpp"
 #include "common/dds/security.hpp"
 #include "common/service/arguments.hpp"
 #include "services/cli/tools/keys/keystore.hpp"
@@ -73,7 +74,7 @@ int show(const Keystore& store, bool json) {
   std::cout
       << (json ? nlohmann::ordered_json{{"store", store.folder().string()}, {"keys", list}}.dump() +
                      "\n"
-               : table);
+               : printable(table, "\n"));
   return usable ? exit_done : exit_no;
 }
 

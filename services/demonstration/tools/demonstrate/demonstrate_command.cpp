@@ -12,6 +12,7 @@
 #include <optional>
 
 #include "common/base/log.hpp"
+#include "common/base/printable.hpp"
 #include "common/dds/topics.hpp"
 #include "common/service/arguments.hpp"
 #include "common/service/shell.hpp"
@@ -147,7 +148,7 @@ int demonstrate(const Arguments& arguments) {
                      .dump(-1, ' ', false, nlohmann::json::error_handler_t::replace)
               << "\n";
   else if (session.done())
-    std::cout << session.message() << "\n";
+    std::cout << printable(session.message()) << "\n";
   else
     service::complain(Error{session.message(), {}, {}, exit_no});
   return session.done() ? exit_done : exit_no;

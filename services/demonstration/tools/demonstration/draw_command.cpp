@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "common/base/file_text.hpp"
+#include "common/base/to_terminal.hpp"
 #include "services/demonstration/core/showing/people.hpp"
 #include "services/demonstration/files/takes_file.hpp"
 #include "services/demonstration/tools/demonstration/commands.hpp"
@@ -39,8 +40,8 @@ int draw(const DrawArguments& arguments) {
                                         {"takes", takes->size()}}
               << "\n";
   else
-    fmt::print("{}: {} takes of {} people who do not exist\n", file.string(), takes->size(),
-               arguments.options.people);
+    to_terminal("{}: {} takes of {} people who do not exist\n", file.string(), takes->size(),
+                arguments.options.people);
   return exit_done;
 }
 

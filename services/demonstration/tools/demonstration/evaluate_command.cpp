@@ -12,6 +12,7 @@
 #include "common/base/log.hpp"
 #include "common/base/log_format.hpp"
 #include "common/base/progress.hpp"
+#include "common/base/to_terminal.hpp"
 #include "services/demonstration/files/recogniser_file.hpp"
 #include "services/demonstration/tools/demonstration/commands.hpp"
 #include "services/demonstration/tools/demonstration/takes_argument.hpp"
@@ -121,50 +122,50 @@ Json document_of(const std::vector<TaskResult>& results, const Takes& takes,
 void print_methods(const TaskResult& result, const std::string& families) {
   const auto family = families_of(result.classes, families);
   const std::size_t count = result.methods.begin()->second.size();
-  fmt::print("\ntask {}: {} takes, {}\n", result.task, count, fmt::join(result.classes, ", "));
-  fmt::print(
+  to_terminal("\ntask {}: {} takes, {}\n", result.task, count, fmt::join(result.classes, ", "));
+  to_terminal(
       "| method | right | Brier | right of surest 90 % | 80 % | 50 % | after 25 % | 50 % | "
       "75 % | between people |{}\n",
       family.empty() ? "" : " family |");
-  fmt::print("|---|---|---|---|---|---|---|---|---|---|{}\n", family.empty() ? "" : "---|");
+  to_terminal("|---|---|---|---|---|---|---|---|---|---|{}\n", family.empty() ? "" : "---|");
   for (const Method method : methods) {
     const auto found = result.methods.find(method);
     if (found == result.methods.end()) continue;
     const auto& grasps = found->second;
-    fmt::print("| {} | {:.1f} % | {:.3f} |", to_string(method), 100 * accuracy(grasps),
-               brier(grasps));
+    to_terminal("| {} | {:.1f} % | {:.3f} |", to_string(method), 100 * accuracy(grasps),
+                brier(grasps));
     for (std::size_t i = 1; i < coverages.size(); ++i)
-      fmt::print(" {:.1f} % |", 100 * accuracy_at(grasps, coverages[i]));
+      to_terminal(" {:.1f} % |", 100 * accuracy_at(grasps, coverages[i]));
     for (std::size_t i = 0; i + 1 < shares.size(); ++i)
-      fmt::print(" {:.1f} % |", 100 * accuracy_after(grasps, shares[i]));
-    fmt::print(" ±{:.1f} % |", 100 * deviation_between_people(grasps));
-    if (!family.empty()) fmt::print(" {:.1f} % |", 100 * family_accuracy(grasps, family));
-    fmt::print("\n");
+      to_terminal(" {:.1f} % |", 100 * accuracy_after(grasps, shares[i]));
+    to_terminal(" ±{:.1f} % |", 100 * deviation_between_people(grasps));
+    if (!family.empty()) to_terminal(" {:.1f} % |", 100 * family_accuracy(grasps, family));
+    to_terminal("\n");
   }
 }
 
 void print_objects(const TaskResult& result) {
-  fmt::print("\n| object known | right | Brier | errors fewer |\n|---|---|---|---|\n");
+  to_terminal("\n| object known | right | Brier | errors fewer |\n|---|---|---|---|\n");
   for (const Method method : methods) {
     const auto told = result.with_object.find(method);
     if (told == result.with_object.end()) continue;
-    fmt::print("| {} | {:.1f} % | {:.3f} | {:.0f} % |\n", to_string(method),
-               100 * accuracy(told->second), brier(told->second),
-               100 * fewer(result.methods.at(method), told->second));
+    to_terminal("| {} | {:.1f} % | {:.3f} | {:.0f} % |\n", to_string(method),
+                100 * accuracy(told->second), brier(told->second),
+                100 * fewer(result.methods.at(method), told->second));
   }
 }
 
 void print_hybrid(const TaskResult& result) {
   const auto found = result.methods.find(Method::hybrid);
   if (found == result.methods.end()) return;
-  fmt::print("\nhybrid\n| is \\ taken for | {} |\n|---|", fmt::join(result.classes, " | "));
-  for (std::size_t i = 0; i < result.classes.size(); ++i) fmt::print("---|");
+  to_terminal("\nhybrid\n| is \\ taken for | {} |\n|---|", fmt::join(result.classes, " | "));
+  for (std::size_t i = 0; i < result.classes.size(); ++i) to_terminal("---|");
   const auto counts = confusion(found->second, result.classes.size());
   for (std::size_t row = 0; row < counts.size(); ++row)
-    fmt::print("\n| {} | {} |", result.classes[row], fmt::join(counts[row], " | "));
-  fmt::print("\n\n| said | held | takes |\n|---|---|---|\n");
+    to_terminal("\n| {} | {} |", result.classes[row], fmt::join(counts[row], " | "));
+  to_terminal("\n\n| said | held | takes |\n|---|---|---|\n");
   for (const Bin& bin : reliability(found->second))
-    if (bin.count > 0) fmt::print("| {:.2f} | {:.2f} | {} |\n", bin.said, bin.held, bin.count);
+    if (bin.count > 0) to_terminal("| {:.2f} | {:.2f} | {} |\n", bin.said, bin.held, bin.count);
 }
 
 /// People of one who are also in the other.

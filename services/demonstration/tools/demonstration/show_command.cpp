@@ -8,7 +8,8 @@
 #include <nlohmann/json.hpp>
 
 #include "common/base/file_text.hpp"
-#include "common/base/paths.hpp"
+#include "common/base/to_terminal.hpp"
+#include "common/service/catalogue_argument.hpp"
 #include "common/tasks/files/task_file.hpp"
 #include "services/demonstration/tools/demonstration/commands.hpp"
 #include "services/demonstration/tools/trials/trial.hpp"
@@ -17,6 +18,7 @@ namespace prehend::demonstration {
 namespace {
 
 struct ShowArguments {
+  service::CatalogueArgument catalogue;
   std::string folder, hand = model::lab_hand();
   int steps = 1;
   std::uint64_t seed = 1;
@@ -26,8 +28,9 @@ struct ShowArguments {
 int show(const ShowArguments& arguments) {
   const auto hand = model::HandModel::load(model::hand_directory(arguments.hand));
   if (!hand) return tool::complain(hand.error());
-  const auto catalogue =
-      model::Catalogue::load(share_directory() / "models" / "objects" / "catalogue.toml");
+  const auto file = arguments.catalogue.path();
+  if (!file) return tool::complain(file.error());
+  const auto catalogue = model::Catalogue::load(*file);
   if (!catalogue) return tool::complain(catalogue.error());
   std::error_code code;
   std::filesystem::create_directories(arguments.folder, code);
@@ -47,8 +50,8 @@ int show(const ShowArguments& arguments) {
                                         {"understood", shown->understood}}
               << "\n";
   else
-    fmt::print("{} and {}: {}\n", task.string(), scene.string(),
-               shown->understood ? "as it was shown" : "other steps were understood");
+    to_terminal("{} and {}: {}\n", task.string(), scene.string(),
+                shown->understood ? "as it was shown" : "other steps were understood");
   return exit_done;
 }
 
@@ -64,6 +67,7 @@ void add_show(tool::Program& program) {
   command->add_option("folder", arguments->folder, "where they are written")->required();
   command->add_option("--hand", arguments->hand, "the robot hand that shall do it again")
       ->capture_default_str();
+  arguments->catalogue.add_to(*command);
   command->add_option("--steps", arguments->steps, "of the task")
       ->check(CLI::Range(1, 6))
       ->capture_default_str();

@@ -12,6 +12,7 @@
 #include "common/base/log.hpp"
 #include "common/base/log_format.hpp"
 #include "common/base/progress.hpp"
+#include "common/base/to_terminal.hpp"
 #include "services/demonstration/files/recogniser_file.hpp"
 #include "services/demonstration/tools/demonstration/commands.hpp"
 #include "services/demonstration/tools/demonstration/takes_argument.hpp"
@@ -88,9 +89,9 @@ int train(const TrainArguments& arguments) {
   }
   for (const TaskRecogniser& one : *made)
     if (one.recogniser.method() == methods.front())
-      fmt::print("task {}: {} from {} takes of {} people\n", one.task,
-                 fmt::join(one.recogniser.classes(), ", "), one.takes, one.people);
-  fmt::print("{:.1f} s: {}\n", took.count(), arguments.model);
+      to_terminal("task {}: {} from {} takes of {} people\n", one.task,
+                  fmt::join(one.recogniser.classes(), ", "), one.takes, one.people);
+  to_terminal("{:.1f} s: {}\n", took.count(), arguments.model);
   return exit_done;
 }
 

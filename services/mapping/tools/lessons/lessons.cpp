@@ -272,7 +272,7 @@ Expected<std::unique_ptr<Lessons>> Lessons::create(service::Shell& shell) {
   if (users < 0 || users > 1000) return wrong_use("is none of 0 to 1000", "teacher.users");
   const ModelPlaces places = model_places(kind);
   TrainingRun run;
-  run.catalogue = share_directory() / "models" / "objects" / "catalogue.toml";
+  run.catalogue = config.path("lab.catalogue");
   run.grasps = places.grasps;
   run.closures.made_for = places.made_for;
   run.people.users = static_cast<int>(users);

@@ -12,6 +12,7 @@
 #include "common/base/paths.hpp"
 #include "common/base/progress.hpp"
 #include "common/base/workers.hpp"
+#include "common/service/catalogue_argument.hpp"
 #include "common/tool/program.hpp"
 #include "services/mapping/files/mapping_model_file.hpp"
 #include "services/mapping/files/model_places.hpp"
@@ -60,7 +61,8 @@ nlohmann::json describe(const MappingModel& model, const MappingNetwork& network
 }
 
 struct Arguments {
-  std::string hand = model::lab_hand(), scheme, catalogue, grasps, out, set_file;
+  service::CatalogueArgument catalogue;
+  std::string hand = model::lab_hand(), scheme, grasps, out, set_file;
   std::string made_for;  // see ModelPlaces
   std::vector<std::string> taught;
   SetOptions people;
@@ -112,7 +114,7 @@ void add_files(CLI::App& app, Arguments& arguments) {
       "--scheme", arguments.scheme,
       "posture pairs: a name in schemes/ or a file; default: the hand's, else derived from "
       "how it moves");
-  app.add_option("--catalogue", arguments.catalogue, "objects to grasp; default: the lab's");
+  arguments.catalogue.add_to(app);
   app.add_option(
       "--grasps", arguments.grasps,
       "the robot's grasps: read, or made if missing; default: beside the model, HAND.grasps");
@@ -125,8 +127,6 @@ void add_files(CLI::App& app, Arguments& arguments) {
 }
 
 void fill_in_defaults(Arguments& arguments) {
-  if (arguments.catalogue.empty())
-    arguments.catalogue = share_directory() / "models" / "objects" / "catalogue.toml";
   const ModelPlaces places = model_places(arguments.hand);
   if (arguments.grasps.empty()) {
     arguments.grasps = places.grasps;
@@ -161,7 +161,9 @@ Expected<nlohmann::json> train(const Arguments& arguments) {
                           ? load_or_derive(model_places(arguments.hand).scheme, *hand)
                           : Scheme::load(scheme_path(arguments.scheme), *hand);
   if (!scheme) return tl::unexpected(scheme.error());
-  const TrainingRun run{.catalogue = arguments.catalogue,
+  const auto catalogue = arguments.catalogue.path();
+  if (!catalogue) return tl::unexpected(catalogue.error());
+  const TrainingRun run{.catalogue = *catalogue,
                         .grasps = arguments.grasps,
                         .close_again = arguments.close_again,
                         .closures = {.made_for = arguments.made_for},

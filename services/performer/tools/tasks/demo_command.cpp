@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "common/base/paths.hpp"
+#include "common/base/to_terminal.hpp"
 #include "common/model/catalogue.hpp"
 #include "common/tasks/files/task_file.hpp"
 #include "services/performer/tools/play/task_play.hpp"
@@ -77,26 +78,27 @@ Json document_of(const TaskPlayOutcome& outcome, const TaskPlayOptions& options)
 }
 
 void print(const TaskPlayOutcome& outcome) {
-  if (!outcome.phases.empty()) fmt::print("seen\n");
+  if (!outcome.phases.empty()) to_terminal("seen\n");
   for (const auto& phase : outcome.phases)
-    fmt::print("  {:5.2f} to {:5.2f} s  {:9} {}\n", phase.begin, phase.end, phase.name,
-               phase.object);
-  fmt::print("understood as {}\n", outcome.task.name);
+    to_terminal("  {:5.2f} to {:5.2f} s  {:9} {}\n", phase.begin, phase.end, phase.name,
+                phase.object);
+  to_terminal("understood as {}\n", outcome.task.name);
   for (const tasks::Step& step : outcome.task.steps) {
     const Eigen::Vector3d p = step.X_RO.translation();
-    fmt::print("  {}: {}, to {:.1f}, {:.1f} cm of the {}, {:.0f} cm over what is lower{}\n",
-               step.object, step.grasp.empty() ? "any grasp" : step.grasp, 100 * p.x(), 100 * p.y(),
-               step.reference, 100 * step.via_height, step.upright ? ", upright" : "");
+    to_terminal("  {}: {}, to {:.1f}, {:.1f} cm of the {}, {:.0f} cm over what is lower{}\n",
+                step.object, step.grasp.empty() ? "any grasp" : step.grasp, 100 * p.x(),
+                100 * p.y(), step.reference, 100 * step.via_height,
+                step.upright ? ", upright" : "");
   }
   if (outcome.place_error)
-    fmt::print("  the place is {:.1f} mm from where the person put it\n",
-               1000 * *outcome.place_error);
-  fmt::print("done again by {}{}, from elsewhere: {}\n", outcome.hand,
-             outcome.arm ? " on " + outcome.arm->name() : "",
-             outcome.done ? "as it was shown" : "no: " + outcome.reason);
+    to_terminal("  the place is {:.1f} mm from where the person put it\n",
+                1000 * *outcome.place_error);
+  to_terminal("done again by {}{}, from elsewhere: {}\n", outcome.hand,
+              outcome.arm ? " on " + outcome.arm->name() : "",
+              outcome.done ? "as it was shown" : "no: " + outcome.reason);
   for (const auto& step : outcome.steps)
-    fmt::print("  {:16} {:8} {:5.1f} mm {:5.1f}° off\n", step.object,
-               step.done ? "done" : "not done", 1000 * step.error, step.turn * 57.29578);
+    to_terminal("  {:16} {:8} {:5.1f} mm {:5.1f}° off\n", step.object,
+                step.done ? "done" : "not done", 1000 * step.error, step.turn * 57.29578);
 }
 
 int demo(const TaskPlayOptions& options, bool json) {

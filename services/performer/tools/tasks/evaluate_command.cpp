@@ -7,12 +7,13 @@
 #include <nlohmann/json.hpp>
 
 #include "common/arm/mounting.hpp"
-#include "common/base/paths.hpp"
+#include "common/base/to_terminal.hpp"
 #include "common/grasping/catalogue_bodies.hpp"
 #include "common/model/arm_choice.hpp"
 #include "common/model/catalogue.hpp"
 #include "common/model/scene.hpp"
 #include "common/service/arguments.hpp"
+#include "common/service/catalogue_argument.hpp"
 #include "common/stage/process.hpp"
 #include "common/stage/temporary_folder.hpp"
 #include "common/tasks/files/task_file.hpp"
@@ -26,6 +27,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 struct EvaluateArguments {
+  service::CatalogueArgument catalogue;
   std::string hand = model::lab_hand(), arm;
   int tasks = 20, max_steps = 4;
   std::uint64_t seed = 1;
@@ -75,6 +77,9 @@ Tried try_one(const EvaluateArguments& arguments, const model::HandModel& hand,
   std::vector<std::string> words{"show",    folder->path().string(), "--hand", arguments.hand,
                                  "--steps", std::to_string(steps),   "--seed", std::to_string(seed),
                                  "--json"};
+  for (const auto& [option, value] : {std::pair("--catalogue", &arguments.catalogue.file),
+                                      std::pair("--config", &arguments.catalogue.config)})
+    if (!value->empty()) words.insert(words.end(), {option, *value});
   if (robot) words.push_back("--by-arm");
   const auto said = stage::printed_by("prehend-demonstration-tool", words, std::chrono::minutes(1));
   if (!said) return refuse(said.error().message());
@@ -94,8 +99,9 @@ Tried try_one(const EvaluateArguments& arguments, const model::HandModel& hand,
 int evaluate(const EvaluateArguments& arguments) {
   const auto hand = model::HandModel::load(model::hand_directory(arguments.hand));
   if (!hand) return tool::complain(hand.error());
-  const auto catalogue =
-      model::Catalogue::load(share_directory() / "models" / "objects" / "catalogue.toml");
+  const auto catalogue_file = arguments.catalogue.path();
+  if (!catalogue_file) return tool::complain(catalogue_file.error());
+  const auto catalogue = model::Catalogue::load(*catalogue_file);
   if (!catalogue) return tool::complain(catalogue.error());
   const auto bodies = grasping::CatalogueBodies::create(*catalogue);
   if (!bodies) return tool::complain(bodies.error());
@@ -128,12 +134,12 @@ int evaluate(const EvaluateArguments& arguments) {
     planned += trial.planned;
     document["tasks"].push_back(entry_of(tried, seed));
     if (arguments.json) continue;
-    fmt::print("{:4} {} steps, {} planned: {:10} {:5.1f} mm {:5.1f}°  {}\n", seed, tried.steps,
-               trial.planned,
-               trial.done        ? "done"
-               : trial.rehearsed ? "not done"
-                                 : "not tried",
-               1000 * trial.max_error, trial.max_turn * 57.29578, trial.reason);
+    to_terminal("{:4} {} steps, {} planned: {:10} {:5.1f} mm {:5.1f}°  {}\n", seed, tried.steps,
+                trial.planned,
+                trial.done        ? "done"
+                : trial.rehearsed ? "not done"
+                                  : "not tried",
+                1000 * trial.max_error, trial.max_turn * 57.29578, trial.reason);
     std::fflush(stdout);
   }
   document["understood"] = understood;
@@ -144,8 +150,9 @@ int evaluate(const EvaluateArguments& arguments) {
   if (arguments.json)
     std::cout << document.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) << "\n";
   else
-    fmt::print("{} tasks: {} understood, {} rehearsed, {} done; of {} steps {} by planned grasps\n",
-               arguments.tasks, understood, rehearsed, done, steps, planned);
+    to_terminal(
+        "{} tasks: {} understood, {} rehearsed, {} done; of {} steps {} by planned grasps\n",
+        arguments.tasks, understood, rehearsed, done, steps, planned);
   return exit_done;
 }
 
@@ -160,6 +167,7 @@ void add_evaluate(tool::Program& program) {
   command->add_option("--hand", arguments->hand, "the robot hand")->capture_default_str();
   command->add_option("--arm", arguments->arm,
                       "the arm that carries it, a name or folder: puma560; else it flies");
+  arguments->catalogue.add_to(*command);
   command->add_option("--tasks", arguments->tasks, "how many")
       ->check(CLI::Range(1, 10000))
       ->capture_default_str();

@@ -10,6 +10,7 @@
 #include "common/base/log.hpp"
 #include "common/base/log_format.hpp"
 #include "common/base/paths.hpp"
+#include "common/base/to_terminal.hpp"
 #include "common/tasks/files/task_file.hpp"
 #include "services/performer/tools/tasks/commands.hpp"
 
@@ -54,8 +55,8 @@ int list(const ListArguments& arguments) {
       continue;
     }
     if (!arguments.json)
-      fmt::print("{:24} {:3} steps, {} demonstrations  {}\n", task->name, task->steps.size(),
-                 task->demonstrations, file.string());
+      to_terminal("{:24} {:3} steps, {} demonstrations  {}\n", task->name, task->steps.size(),
+                  task->demonstrations, file.string());
     document["tasks"].push_back({{"name", task->name},
                                  {"file", file.string()},
                                  {"steps", task->steps.size()},
@@ -76,7 +77,7 @@ int check_files(const CheckArguments& arguments) {
       entry["reason"] = task.error().what;
       log::error(task.error());
     } else if (!arguments.json) {
-      fmt::print("{}: {} in {} steps\n", file, task->name, task->steps.size());
+      to_terminal("{}: {} in {} steps\n", file, task->name, task->steps.size());
     }
     document["files"].push_back(std::move(entry));
   }

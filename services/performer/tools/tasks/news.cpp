@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include "common/base/printable.hpp"
 #include "common/base/terminal.hpp"
 
 namespace prehend::performer {
@@ -12,9 +13,9 @@ void show_news(const std::string& line) {
   if (line == last) return;
   last = line;
   if (has_cursor(STDERR_FILENO))
-    fmt::print(stderr, "\r\033[K{}", line.substr(0, 100));
+    fmt::print(stderr, "\r\033[K{}", printable(line.substr(0, 100)));
   else
-    fmt::print(stderr, "{}\n", line);
+    fmt::print(stderr, "{}\n", printable(line));
 }
 
 void end_news() {

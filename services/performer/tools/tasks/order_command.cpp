@@ -7,6 +7,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "common/base/to_terminal.hpp"
 #include "common/dds/topics.hpp"
 #include "common/service/arguments.hpp"
 #include "common/service/shell.hpp"
@@ -61,7 +62,7 @@ int order(const OrderArguments& arguments) {
                      .dump(-1, ' ', false, nlohmann::json::error_handler_t::replace)
               << "\n";
   else
-    fmt::print("{}\n", message);
+    to_terminal("{}\n", message);
   return answer->done() ? exit_done : exit_no;
 }
 

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "common/base/log_format.hpp"
+#include "common/base/to_terminal.hpp"
 #include "common/service/arguments.hpp"
 #include "common/tasks/files/task_file.hpp"
 #include "services/performer/service/service.hpp"
@@ -43,9 +44,9 @@ Json document_of(const tasks::TaskModel& task, const Performed& performed) {
 void print(const Performed& performed) {
   for (std::size_t i = 0; i < performed.verdicts.size(); ++i) {
     const Verdict& verdict = performed.verdicts[i];
-    fmt::print("{:2} {:16} {:8} {:7} {:5.1f} mm {:5.1f}°  {}\n", i + 1, verdict.object,
-               verdict.done ? "done" : "not done", verdict.planned ? "planned" : "own",
-               1000 * verdict.error, verdict.turn * 57.29578, verdict.reason);
+    to_terminal("{:2} {:16} {:8} {:7} {:5.1f} mm {:5.1f}°  {}\n", i + 1, verdict.object,
+                verdict.done ? "done" : "not done", verdict.planned ? "planned" : "own",
+                1000 * verdict.error, verdict.turn * 57.29578, verdict.reason);
   }
 }
 

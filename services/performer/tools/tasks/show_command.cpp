@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "common/base/file_text.hpp"
+#include "common/base/to_terminal.hpp"
 #include "common/tasks/files/task_file.hpp"
 #include "services/performer/tools/tasks/commands.hpp"
 
@@ -31,7 +32,7 @@ int show(const Arguments& arguments) {
   const auto task = tasks::load_task(arguments.file);
   if (!task) return tool::complain(task.error());
   if (!arguments.json) {
-    fmt::print("{}", to_toml(*task));
+    to_terminal("{}", to_toml(*task));
     return exit_done;
   }
   Json document{

@@ -10,6 +10,7 @@
 
 #include "common/base/file_text.hpp"
 #include "common/base/paths.hpp"
+#include "common/base/to_terminal.hpp"
 #include "services/planner/tools/arm/commands.hpp"
 #include "services/planner/tools/arm_import/make_arm.hpp"
 #include "services/planner/tools/hand_import/robot_file.hpp"
@@ -74,9 +75,9 @@ int run_add(const AddArguments& arguments) {
                                           {"changes", arm->changes}};
     std::cout << document.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) << "\n";
   } else {
-    for (const std::string& change : arm->changes) fmt::print("{}\n", change);
-    fmt::print("the arm is in {}; correct arm.toml there where it guessed wrong\n",
-               folder->string());
+    for (const std::string& change : arm->changes) to_terminal("{}\n", change);
+    to_terminal("the arm is in {}; correct arm.toml there where it guessed wrong\n",
+                folder->string());
   }
   return exit_done;
 }

@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "common/arm/inverse.hpp"
+#include "common/base/to_terminal.hpp"
 #include "common/model/arm_choice.hpp"
 #include "services/planner/tools/arm/commands.hpp"
 #include "services/planner/tools/arm_import/make_arm.hpp"
@@ -81,12 +82,12 @@ int run_check(const CheckArguments& arguments) {
     std::cout << document.dump(2, ' ', false, Json::error_handler_t::replace) << "\n";
   } else {
     for (const UrdfFinding& finding : findings) print(finding);
-    fmt::print("{}: {}, {} finding{}\n", arguments.what, usable ? "usable" : "not usable",
-               findings.size(), findings.size() == 1 ? "" : "s");
+    to_terminal("{}: {}, {} finding{}\n", arguments.what, usable ? "usable" : "not usable",
+                findings.size(), findings.size() == 1 ? "" : "s");
     if (usable)
-      fmt::print("{} joints, reaches {:.2f} m from its shoulder, inverse kinematics {}\n",
-                 document["joints"].size(), document["reach_m"].get<double>(),
-                 document["closed_form"].get<bool>() ? "in closed form" : "by search");
+      to_terminal("{} joints, reaches {:.2f} m from its shoulder, inverse kinematics {}\n",
+                  document["joints"].size(), document["reach_m"].get<double>(),
+                  document["closed_form"].get<bool>() ? "in closed form" : "by search");
   }
   return usable ? exit_done : exit_no;
 }

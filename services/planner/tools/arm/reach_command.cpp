@@ -11,6 +11,7 @@
 #include "common/arm/mounting.hpp"
 #include "common/arm/reach.hpp"
 #include "common/base/gnuplot.hpp"
+#include "common/base/to_terminal.hpp"
 #include "common/model/arm_choice.hpp"
 #include "services/planner/tools/arm/commands.hpp"
 
@@ -63,16 +64,16 @@ Json document_of(const ReachArguments& arguments, const std::vector<arm::ReachRo
 }
 
 void print(const std::vector<arm::ReachRow>& rows) {
-  fmt::print(
+  to_terminal(
       "shoulder above   places reached, % (without a touch, % within limits only)\n"
       "the table, m     from above         slanted            level\n");
   for (const arm::ReachRow& row : rows) {
-    fmt::print("{:<17.2f}", row.height);
+    to_terminal("{:<17.2f}", row.height);
     for (const arm::Share& share : row.shares)
-      fmt::print("{:3.0f} ({:3.0f})          ", 100 * share.free, 100 * share.limits);
-    fmt::print("\n");
+      to_terminal("{:3.0f} ({:3.0f})          ", 100 * share.free, 100 * share.limits);
+    to_terminal("\n");
   }
-  fmt::print("best with the shoulder at {:.2f} m\n", arm::best(rows).height);
+  to_terminal("best with the shoulder at {:.2f} m\n", arm::best(rows).height);
 }
 
 Expected<void> draw(const std::vector<arm::ReachRow>& rows, const std::string& png) {

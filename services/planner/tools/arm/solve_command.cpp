@@ -9,6 +9,7 @@
 
 #include "common/arm/inverse.hpp"
 #include "common/base/finite_number.hpp"
+#include "common/base/to_terminal.hpp"
 #include "common/model/arm_choice.hpp"
 #include "services/planner/tools/arm/commands.hpp"
 
@@ -56,12 +57,12 @@ void print(const model::ArmModel& arm, const std::vector<arm::Joints>& postures)
   for (const arm::Joints& q : postures) {
     std::string line;
     for (const double angle : q) line += fmt::format("{:9.2f}", angle * 180 / std::numbers::pi);
-    fmt::print("{}  {}\n", line,
-               arm::is_within_limits(arm, q)
-                   ? fmt::format("{} by whole turns", arm::turns_within_limits(arm, q).size())
-                   : "outside the limits");
+    to_terminal("{}  {}\n", line,
+                arm::is_within_limits(arm, q)
+                    ? fmt::format("{} by whole turns", arm::turns_within_limits(arm, q).size())
+                    : "outside the limits");
   }
-  fmt::print("{} solution{}, degrees\n", postures.size(), postures.size() == 1 ? "" : "s");
+  to_terminal("{} solution{}, degrees\n", postures.size(), postures.size() == 1 ? "" : "s");
 }
 
 int run_solve(const SolveArguments& arguments) {

@@ -7,6 +7,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "common/base/to_terminal.hpp"
 #include "common/base/workers.hpp"
 #include "common/grasping/table_grasps.hpp"
 #include "services/planner/tools/grasp/planning_commands.hpp"
@@ -19,6 +20,7 @@ using grasping::SureGrasp;
 using Clock = std::chrono::steady_clock;
 
 struct CandidatesArguments {
+  service::CatalogueArgument catalogue;
   std::string hand;
   std::vector<std::string> objects;  // none: all of the catalogue
   grasping::SearchOptions options;
@@ -79,27 +81,21 @@ nlohmann::ordered_json document_of(const Searched& searched) {
 void print_searched(const Searched& searched) {
   const std::string first =
       searched.first < 0 ? "none" : fmt::format("first after {:.1f} s", searched.first);
-  fmt::print("{}: {} of {} approaches, {} attempts, {}, {:.1f} s\n", searched.object,
-             searched.grasps.size(), searched.approaches, searched.attempts, first,
-             searched.seconds);
+  to_terminal("{}: {} of {} approaches, {} attempts, {}, {:.1f} s\n", searched.object,
+              searched.grasps.size(), searched.approaches, searched.attempts, first,
+              searched.seconds);
   for (const SureGrasp& grasp : searched.grasps)
-    fmt::print("  from {:5}  room {:3.0f} %  epsilon {:.3f}  attempt {}\n",
-               grasping::is_from_above(grasp.X_OG) ? "above" : "aside", 100 * grasp.room,
-               grasp.grasp.epsilon, grasp.tried);
-  for (const auto& [reason, count] : searched.refused) fmt::print("{:5}  {}\n", count, reason);
+    to_terminal("  from {:5}  room {:3.0f} %  epsilon {:.3f}  attempt {}\n",
+                grasping::is_from_above(grasp.X_OG) ? "above" : "aside", 100 * grasp.room,
+                grasp.grasp.epsilon, grasp.tried);
+  for (const auto& [reason, count] : searched.refused) to_terminal("{:5}  {}\n", count, reason);
 }
 
 int candidates(const CandidatesArguments& arguments) {
   const auto hand = find_hand(arguments.hand);
   if (!hand) return tool::complain(hand.error(), exit_wrong_use);
-  auto bodies = catalogue_bodies();
+  const auto bodies = catalogue_bodies(arguments.catalogue, arguments.objects);
   if (!bodies) return tool::complain(bodies.error(), exit_wrong_use);
-  if (!arguments.objects.empty()) bodies->clear();
-  for (const std::string& name : arguments.objects) {
-    const auto body = find_body(name);
-    if (!body) return tool::complain(body.error(), exit_wrong_use);
-    bodies->push_back(*body);
-  }
   bool found = false;
   for (const grasping::Body& body : *bodies) {
     const auto made = searched(*hand, body, arguments);
@@ -125,6 +121,7 @@ void add_candidates(tool::Program& program) {
       ->required();
   command->add_option("--object", arguments->objects,
                       "name of an object of the catalogue, again for more; else all");
+  arguments->catalogue.add_to(*command);
   command->add_option("--attempts", arguments->options.attempts, "from each side, at most")
       ->capture_default_str()
       ->check(CLI::Range(1, 1000));

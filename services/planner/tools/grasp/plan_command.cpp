@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "common/base/log_format.hpp"
+#include "common/base/to_terminal.hpp"
 #include "common/grasping/blocking.hpp"
 #include "services/planner/tools/grasp/planning_commands.hpp"
 #include "services/planner/tools/planning/export.hpp"
@@ -18,6 +19,7 @@ namespace prehend::planner {
 namespace {
 
 struct PlanArguments {
+  service::CatalogueArgument catalogue;
   std::string hand, object, output;
   grasping::PlanOptions options;
   unsigned threads = 0;
@@ -33,21 +35,21 @@ std::string blocking_of(const model::HandModel& hand, const grasping::PlannedGra
 void print(const model::HandModel& hand, const grasping::Plan& plan) {
   for (std::size_t i = 0; i < plan.grasps.size(); ++i) {
     const grasping::PlannedGrasp& grasp = plan.grasps[i];
-    fmt::print("{:3}  epsilon {:.4f}  {:2} contacts  {}\n", i, grasp.quality.epsilon,
-               grasp.contacts.size(), describe(grasp.hold));
+    to_terminal("{:3}  epsilon {:.4f}  {:2} contacts  {}\n", i, grasp.quality.epsilon,
+                grasp.contacts.size(), describe(grasp.hold));
     if (const std::string blocking = blocking_of(hand, grasp); !blocking.empty())
-      fmt::print("     {}\n", blocking);
+      to_terminal("     {}\n", blocking);
   }
-  fmt::print("{} of {} candidates closed with force closure\n", plan.closed,
-             plan.options.candidates);
-  for (const auto& [reason, count] : plan.refused) fmt::print("{:5}  {}\n", count, reason);
-  if (!plan.reason.empty()) fmt::print("no grasp: {}\n", plan.reason);
+  to_terminal("{} of {} candidates closed with force closure\n", plan.closed,
+              plan.options.candidates);
+  for (const auto& [reason, count] : plan.refused) to_terminal("{:5}  {}\n", count, reason);
+  if (!plan.reason.empty()) to_terminal("no grasp: {}\n", plan.reason);
 }
 
 int plan(const PlanArguments& arguments) {
   const auto hand = find_hand(arguments.hand);
   if (!hand) return tool::complain(hand.error(), exit_wrong_use);
-  const auto object = find_body(arguments.object);
+  const auto object = find_body(arguments.catalogue, arguments.object);
   if (!object) return tool::complain(object.error(), exit_wrong_use);
   const auto before = std::chrono::steady_clock::now();
   const auto planned = plan_with_progress(*hand, *object, arguments.options, arguments.threads);
@@ -70,7 +72,7 @@ int plan(const PlanArguments& arguments) {
     std::cout << document.dump(2) << "\n";
   } else {
     print(*hand, *planned);
-    fmt::print("{:.1f} s\n", seconds);
+    to_terminal("{:.1f} s\n", seconds);
   }
   return planned->held() ? 0 : 1;
 }
@@ -88,6 +90,7 @@ void add_plan(tool::Program& program) {
       ->required();
   command->add_option("--object", arguments->object, "name of an object of the catalogue")
       ->required();
+  arguments->catalogue.add_to(*command);
   command->add_option("--candidates", arguments->options.candidates, "how many are sampled")
       ->capture_default_str()
       ->check(CLI::Range(1, 1'000'000));

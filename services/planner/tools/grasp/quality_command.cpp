@@ -11,6 +11,7 @@
 
 #include "common/analysis/wrench_space.hpp"
 #include "common/base/log.hpp"
+#include "common/base/to_terminal.hpp"
 #include "services/planner/tools/grasp/commands.hpp"
 #include "services/planner/tools/grasp/contact_measures.hpp"
 #include "services/planner/tools/grasp/quality_file.hpp"
@@ -48,22 +49,22 @@ Expected<Measured> measure(const Eigen::MatrixXd& wrenches, bool fast) {
 }
 
 void print(const Measured& measured, const Json& more) {
-  fmt::print("epsilon        {:.6f}\n", measured.epsilon);
-  if (measured.volume) fmt::print("volume         {:.6g}\n", *measured.volume);
-  fmt::print("force closure  {}\n", measured.force_closure ? "yes" : "no");
+  to_terminal("epsilon        {:.6f}\n", measured.epsilon);
+  if (measured.volume) to_terminal("volume         {:.6g}\n", *measured.volume);
+  to_terminal("force closure  {}\n", measured.force_closure ? "yes" : "no");
   if (measured.force_closure) {
     const Eigen::VectorXd& w = measured.weakest_direction;
-    fmt::print("hardest load   {:.3f} {:.3f} {:.3f} | {:.3f} {:.3f} {:.3f}\n", w[0], w[1], w[2],
-               w[3], w[4], w[5]);
+    to_terminal("hardest load   {:.3f} {:.3f} {:.3f} | {:.3f} {:.3f} {:.3f}\n", w[0], w[1], w[2],
+                w[3], w[4], w[5]);
   }
   for (const auto& [key, value] : more.items())
-    if (value.is_number()) fmt::print("{:24} {:.6g}\n", key, value.get<double>());
+    if (value.is_number()) to_terminal("{:24} {:.6g}\n", key, value.get<double>());
   const auto say = [&](const char* key, const char* number) {
     if (!more.contains(key)) return;
     if (more[key].is_null()) {
-      fmt::print("the load slips, however hard the grip\n");
+      to_terminal("the load slips, however hard the grip\n");
     } else {
-      fmt::print("{:24} {:.6g}\n", number, more[key][number].get<double>());
+      to_terminal("{:24} {:.6g}\n", number, more[key][number].get<double>());
     }
   };
   say("grip", "largest_normal_force_n");
@@ -101,7 +102,7 @@ int quality(const QualityArguments& arguments) {
                 {"weakest_direction", std::vector<double>(weakest.begin(), weakest.end())},
                 {"milliseconds", milliseconds}};
   document.update(more);
-  fmt::print("{}\n", document.dump(2));
+  to_terminal("{}\n", document.dump(2));
   return 0;
 }
 

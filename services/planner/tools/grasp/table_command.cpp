@@ -13,6 +13,7 @@
 
 #include "common/base/log.hpp"
 #include "common/base/log_format.hpp"
+#include "common/base/to_terminal.hpp"
 #include "services/planner/tools/grasp/planning_commands.hpp"
 #include "services/planner/tools/planning/grasp_file.hpp"
 #include "services/planner/tools/planning/planning_task.hpp"
@@ -23,6 +24,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 struct TableArguments {
+  service::CatalogueArgument catalogue;
   std::vector<std::string> hands, objects;
   std::string save;
   grasping::PlanOptions options;
@@ -73,15 +75,15 @@ std::string cell(const grasping::Plan& plan, std::vector<std::string>& notes) {
 void print(const std::vector<model::HandModel>& hands, const std::vector<Row>& rows) {
   std::vector<std::string> names, notes;
   for (const model::HandModel& hand : hands) names.push_back(hand.name());
-  fmt::print("| object | {} |\n|---|{}\n", fmt::join(names, " | "),
-             fmt::join(std::vector<std::string>(hands.size(), "---|"), ""));
+  to_terminal("| object | {} |\n|---|{}\n", fmt::join(names, " | "),
+              fmt::join(std::vector<std::string>(hands.size(), "---|"), ""));
   for (const Row& row : rows) {
     std::vector<std::string> cells;
     for (const grasping::Plan& plan : row.plans) cells.push_back(cell(plan, notes));
-    fmt::print("| {} | {} |\n", row.object.name, fmt::join(cells, " | "));
+    to_terminal("| {} | {} |\n", row.object.name, fmt::join(cells, " | "));
   }
-  fmt::print("\n");
-  for (std::size_t i = 0; i < notes.size(); ++i) fmt::print("{}. {}\n", i + 1, notes[i]);
+  to_terminal("\n");
+  for (std::size_t i = 0; i < notes.size(); ++i) to_terminal("{}. {}\n", i + 1, notes[i]);
 }
 
 /// Most pairs need few candidates: one of which none held is planned again with four times as many.
@@ -117,20 +119,11 @@ int table(const TableArguments& arguments) {
     if (!hand) return tool::complain(hand.error(), exit_wrong_use);
     hands.push_back(std::move(*hand));
   }
-  std::vector<grasping::Body> objects;
-  if (arguments.objects.empty()) {
-    auto all = catalogue_bodies();
-    if (!all) return tool::complain(all.error(), exit_wrong_use);
-    objects = std::move(*all);
-  }
-  for (const std::string& name : arguments.objects) {
-    auto object = find_body(name);
-    if (!object) return tool::complain(object.error(), exit_wrong_use);
-    objects.push_back(std::move(*object));
-  }
+  const auto objects = catalogue_bodies(arguments.catalogue, arguments.objects);
+  if (!objects) return tool::complain(objects.error(), exit_wrong_use);
   const auto before = std::chrono::steady_clock::now();
   std::vector<Row> rows;
-  for (const grasping::Body& object : objects) {
+  for (const grasping::Body& object : *objects) {
     Row row{object, {}};
     for (const model::HandModel& hand : hands) {
       const auto file = std::filesystem::path(arguments.save) /
@@ -179,6 +172,7 @@ void add_table(tool::Program& program) {
       "did. Exit code 0: done, 2: wrong use, 3: cannot be written.");
   command->add_option("--hands", arguments->hands, "names or folders; else all of the lab");
   command->add_option("--objects", arguments->objects, "names; else the whole catalogue");
+  arguments->catalogue.add_to(*command);
   command->add_option("--candidates", arguments->options.candidates, "of each pair")
       ->capture_default_str()
       ->check(CLI::Range(1, 1'000'000));

@@ -9,6 +9,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "common/base/to_terminal.hpp"
 #include "common/model/task_kinds.hpp"
 #include "services/planner/tools/grasp/planning_commands.hpp"
 #include "services/planner/tools/grasp/quality_file.hpp"
@@ -26,6 +27,7 @@ using Json = nlohmann::ordered_json;
 constexpr int picture_width = 320, picture_height = 240;  // px
 
 struct TaxonomyArguments {
+  service::CatalogueArgument catalogue;
   std::string object, task, pictures;
   std::vector<std::string> needed;
   bool json = false;
@@ -85,7 +87,7 @@ Expected<std::vector<double>> fits(const TaxonomyArguments& arguments,
   }
   std::vector<double> made = taxonomy.fit_to_task(needed);
   if (arguments.object.empty()) return made;
-  const auto body = find_body(arguments.object);
+  const auto body = find_body(arguments.catalogue, arguments.object);
   if (!body) return tl::unexpected(body.error());
   const auto of_object = taxonomy.fit_to_object(body->shape);
   for (std::size_t i = 0; i < made.size(); ++i) made[i] *= of_object[i];
@@ -123,9 +125,9 @@ int show(const TaxonomyArguments& arguments) {
       !arguments.object.empty() || !arguments.needed.empty() || !arguments.task.empty();
   Json document{{"classes", Json::array()}};
   if (!arguments.json)
-    fmt::print("{:18} {:>4} {:9} {:9} {:5} {:7} {:8} {:6} {:15} {:9} {}{}\n", "class", "Feix",
-               "kind", "form", "by", "fingers", "thumb", "from", "blocks", "width mm", "robot",
-               asked ? "  fit" : "");
+    to_terminal("{:18} {:>4} {:9} {:9} {:5} {:7} {:8} {:6} {:15} {:9} {}{}\n", "class", "Feix",
+                "kind", "form", "by", "fingers", "thumb", "from", "blocks", "width mm", "robot",
+                asked ? "  fit" : "");
   for (std::size_t i = 0; i < fit->size(); ++i) {
     const model::GraspClass& one = taxonomy->classes()[i];
     if (arguments.json) {
@@ -133,13 +135,13 @@ int show(const TaxonomyArguments& arguments) {
       if (asked) document["classes"].back()["fit"] = (*fit)[i];
       continue;
     }
-    fmt::print("{:18} {:4} {:9} {:9} {:5} {:7} {:8} {:6} {:15} {:9} {}{}\n", one.name, one.feix,
-               model::grasp_kinds.name(one.kind), model::grasp_forms.name(one.form),
-               model::oppositions.name(one.opposition), one.opposed.size(),
-               model::thumb_places.name(one.thumb), model::approaches.name(one.approach),
-               fmt::format("{}", fmt::join(words(one.blocks, model::object_parts), ", ")),
-               fmt::format("{:.0f}-{:.0f}", 1000 * one.min_width, 1000 * one.max_width), one.robot,
-               asked ? fmt::format("  {:.2f}", (*fit)[i]) : "");
+    to_terminal("{:18} {:4} {:9} {:9} {:5} {:7} {:8} {:6} {:15} {:9} {}{}\n", one.name, one.feix,
+                model::grasp_kinds.name(one.kind), model::grasp_forms.name(one.form),
+                model::oppositions.name(one.opposition), one.opposed.size(),
+                model::thumb_places.name(one.thumb), model::approaches.name(one.approach),
+                fmt::format("{}", fmt::join(words(one.blocks, model::object_parts), ", ")),
+                fmt::format("{:.0f}-{:.0f}", 1000 * one.min_width, 1000 * one.max_width), one.robot,
+                asked ? fmt::format("  {:.2f}", (*fit)[i]) : "");
   }
   if (arguments.json) std::cout << document.dump(2) << "\n";
   return exit_done;
@@ -206,9 +208,9 @@ int classify(const ClassifyArguments& arguments) {
     const GraspLooks& one = (*looks)[i];
     document["grasps"].push_back(to_json(one, *taxonomy, hand));
     if (!arguments.json)
-      fmt::print("{:3}  {:18} {} {}, {} fingers{}, {:.0f} mm\n", i, one.name,
-                 model::grasp_kinds.name(one.kind), model::grasp_forms.name(one.form), one.fingers,
-                 one.enclosed ? " and more than their tips" : "", 1000 * one.width);
+      to_terminal("{:3}  {:18} {} {}, {} fingers{}, {:.0f} mm\n", i, one.name,
+                  model::grasp_kinds.name(one.kind), model::grasp_forms.name(one.form), one.fingers,
+                  one.enclosed ? " and more than their tips" : "", 1000 * one.width);
   }
   if (arguments.json) std::cout << document.dump(2) << "\n";
   return looks->empty() ? exit_no : exit_done;
@@ -221,6 +223,7 @@ void add_taxonomy(tool::Program& program) {
   CLI::App* command = program.app().add_subcommand(
       "taxonomy", "Cutkosky's sixteen kinds of grasps, and which of ours imitates each.");
   command->add_option("--object", arguments->object, "says how well each kind fits this object");
+  arguments->catalogue.add_to(*command);
   command
       ->add_option("--keep-free", arguments->needed,
                    "what the task needs: opening, handle, blade; kinds that lie on it do not fit")

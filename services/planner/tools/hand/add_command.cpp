@@ -9,6 +9,7 @@
 #include <memory>
 
 #include "common/base/log.hpp"
+#include "common/base/to_terminal.hpp"
 #include "common/grasping/candidates.hpp"
 #include "services/planner/tools/hand/commands.hpp"
 #include "services/planner/tools/hand/fit.hpp"
@@ -23,6 +24,7 @@ namespace prehend::planner {
 namespace {
 
 struct AddArguments {
+  service::CatalogueArgument catalogue;
   std::string file, name, output, palm;
   std::vector<std::string> fingers;  // FINGER=LINK
   int candidates = 60;
@@ -100,30 +102,30 @@ std::string called(const std::string& name, const std::string& folder) {
 }
 
 void print(const nlohmann::ordered_json& document) {
-  for (const auto& change : document["changes"]) fmt::print("{}\n", change.get<std::string>());
-  fmt::print("\n{:<24} {:>7}\n", "DoF", "closing");
+  for (const auto& change : document["changes"]) to_terminal("{}\n", change.get<std::string>());
+  to_terminal("\n{:<24} {:>7}\n", "DoF", "closing");
   for (const auto& dof : document["dofs"])
-    fmt::print("{:<24} {:>7}\n", dof["name"].get<std::string>(), dof["closing"].get<int>());
-  fmt::print("\n{} fingertips, {:.0f} to {:.0f} mm apart; takes objects up to {:.0f} mm\n",
-             document["fingertips"].size(), 1e3 * document["fingertip_span_m"][0].get<double>(),
-             1e3 * document["fingertip_span_m"][1].get<double>(),
-             1e3 * document["opening_m"].get<double>());
+    to_terminal("{:<24} {:>7}\n", dof["name"].get<std::string>(), dof["closing"].get<int>());
+  to_terminal("\n{} fingertips, {:.0f} to {:.0f} mm apart; takes objects up to {:.0f} mm\n",
+              document["fingertips"].size(), 1e3 * document["fingertip_span_m"][0].get<double>(),
+              1e3 * document["fingertip_span_m"][1].get<double>(),
+              1e3 * document["opening_m"].get<double>());
   for (const auto& pair : document["self_collision"])
-    fmt::print("self-collision at rest: {} {}\n", pair["element"].get<std::string>(),
-               pair["what"].get<std::string>());
-  if (document["self_collision"].empty()) fmt::print("no self-collision at rest\n");
+    to_terminal("self-collision at rest: {} {}\n", pair["element"].get<std::string>(),
+                pair["what"].get<std::string>());
+  if (document["self_collision"].empty()) to_terminal("no self-collision at rest\n");
   for (const auto& trial : document["trial_grasps"])
-    fmt::print("{:<12} ({:.0f} mm) {}\n", trial["object"].get<std::string>(),
-               1e3 * trial["width_m"].get<double>(),
-               trial["held"].get<bool>()
-                   ? fmt::format("held, epsilon {:.3f}", trial["epsilon"].get<double>())
-                   : "not held: " + trial["reason"].get<std::string>());
+    to_terminal("{:<12} ({:.0f} mm) {}\n", trial["object"].get<std::string>(),
+                1e3 * trial["width_m"].get<double>(),
+                trial["held"].get<bool>()
+                    ? fmt::format("held, epsilon {:.3f}", trial["epsilon"].get<double>())
+                    : "not held: " + trial["reason"].get<std::string>());
   const auto folder = document["folder"].get<std::string>();
-  fmt::print(
+  to_terminal(
       "\nthe hand is in {0}; correct hand.toml there where {0}/hand.html shows a wrong guess\n",
       folder);
   const std::string hand = called(document["name"].get<std::string>(), folder);
-  fmt::print("then: prehend demo --hand {}\n", hand);
+  to_terminal("then: prehend demo --hand {}\n", hand);
 }
 
 /// FINGER=LINK: the finger with this link follows that of a person.
@@ -182,7 +184,7 @@ int run_add(AddArguments arguments) {
   }
   if (const auto led = check_fingers(hand->model, arguments.fingers); !led)
     return tool::complain(led.error(), exit_wrong_use);
-  const auto bodies = planner::catalogue_bodies();
+  const auto bodies = planner::catalogue_bodies(arguments.catalogue);
   if (!bodies) return tool::complain(bodies.error(), exit_broken);
   if (const auto written = write_folder(*hand, arguments.output); !written)
     return tool::complain(written.error(), exit_broken);
@@ -219,6 +221,7 @@ void add_add(tool::Program& program) {
   command->add_option("--candidates", arguments->candidates, "grasps that are tried an object")
       ->capture_default_str()
       ->check(CLI::Range(1, 100000));
+  arguments->catalogue.add_to(*command);
   command->add_flag("--json", arguments->json, "one JSON document on standard output");
   add_file_options(*command, arguments->options);
   program.on(*command, [arguments] { return run_add(*arguments); });

@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "common/base/log.hpp"
+#include "common/base/to_terminal.hpp"
 #include "services/planner/tools/hand/commands.hpp"
 #include "services/planner/tools/hand_import/finding_report.hpp"
 #include "services/planner/tools/hand_import/make_hand.hpp"
@@ -50,8 +51,8 @@ int run_check(const CheckArguments& arguments) {
     std::cout << document.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) << "\n";
   } else {
     for (const UrdfFinding& finding : findings) print(finding);
-    fmt::print("{}: {}, {} finding{}\n", file, usable ? "usable" : "not usable", findings.size(),
-               findings.size() == 1 ? "" : "s");
+    to_terminal("{}: {}, {} finding{}\n", file, usable ? "usable" : "not usable", findings.size(),
+                findings.size() == 1 ? "" : "s");
   }
   return usable ? 0 : 1;
 }

@@ -1,6 +1,6 @@
 #include "services/planner/tools/hand_import/finding_report.hpp"
 
-#include <fmt/format.h>
+#include "common/base/to_terminal.hpp"
 
 namespace prehend::planner {
 
@@ -22,8 +22,9 @@ nlohmann::ordered_json to_json(const UrdfFinding& finding) {
 
 void print(const UrdfFinding& finding) {
   const std::string place = finding.line > 0 ? fmt::format("line {}, ", finding.line) : "";
-  fmt::print("{}: {}{}: {} [{}]\n  {}\n", finding.severity == Severity::error ? "error" : "warning",
-             place, finding.element, finding.what, finding.code, finding.repair);
+  to_terminal("{}: {}{}: {} [{}]\n  {}\n",
+              finding.severity == Severity::error ? "error" : "warning", place, finding.element,
+              finding.what, finding.code, finding.repair);
 }
 
 }  // namespace prehend::planner

@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "common/base/paths.hpp"
+#include "common/base/printable.hpp"
 #include "common/base/progress.hpp"
 #include "common/base/workers.hpp"
 #include "common/grasping/catalogue_bodies.hpp"
@@ -23,27 +23,32 @@ Expected<model::HandModel> find_hand(const std::string& name) {
   return model::HandModel::load(folder);
 }
 
-Expected<std::vector<Body>> catalogue_bodies() {
-  const auto catalogue =
-      model::Catalogue::load(share_directory() / "models" / "objects" / "catalogue.toml");
-  if (!catalogue) return tl::unexpected(catalogue.error());
-  const auto made = grasping::CatalogueBodies::create(*catalogue);
+Expected<std::vector<Body>> catalogue_bodies(const service::CatalogueArgument& catalogue,
+                                             const std::vector<std::string>& names) {
+  const auto file = catalogue.path();
+  if (!file) return tl::unexpected(file.error());
+  const auto read = model::Catalogue::load(*file);
+  if (!read) return tl::unexpected(read.error());
+  const auto made = grasping::CatalogueBodies::create(*read);
   if (!made) return tl::unexpected(made.error());
+  std::vector<std::string> all;
+  for (const model::CatalogueObject& object : read->objects()) all.push_back(object.name);
   std::vector<Body> bodies;
-  for (const model::CatalogueObject& object : catalogue->objects())
-    bodies.push_back(*made->find(object.name));
+  for (const std::string& name : names.empty() ? all : names) {
+    const Body* body = made->find(name);
+    if (!body)
+      return fail("there is no such object", printable(name),
+                  fmt::format("{} has {}", file->string(),
+                              printable(fmt::format("{}", fmt::join(all, ", ")))));
+    bodies.push_back(*body);
+  }
   return bodies;
 }
 
-Expected<Body> find_body(const std::string& name) {
-  const auto bodies = catalogue_bodies();
-  if (!bodies) return tl::unexpected(bodies.error());
-  std::vector<std::string> names;
-  for (const Body& body : *bodies) {
-    if (body.name == name) return body;
-    names.push_back(body.name);
-  }
-  return fail("there is no such object", name, fmt::format("one of {}", fmt::join(names, ", ")));
+Expected<Body> find_body(const service::CatalogueArgument& catalogue, const std::string& name) {
+  return catalogue_bodies(catalogue, {name}).map([](const std::vector<Body>& bodies) {
+    return bodies.front();
+  });
 }
 
 Expected<grasping::Plan> plan_with_progress(const model::HandModel& hand, const Body& object,

@@ -7,15 +7,19 @@
 #include "common/base/error.hpp"
 #include "common/grasping/planner.hpp"
 #include "common/model/hand_model.hpp"
+#include "common/service/catalogue_argument.hpp"
 
 namespace prehend::planner {
 
 /// A hand of the lab by name, or of the folder of that path. The error lists those that there are.
 Expected<model::HandModel> find_hand(const std::string& name);
 
-/// The catalogue's objects as bodies, all or one by name. The error lists those that there are.
-Expected<std::vector<grasping::Body>> catalogue_bodies();
-Expected<grasping::Body> find_body(const std::string& name);
+/// The objects of these names, or without any all of the catalogue, as bodies. The error lists
+/// those that there are.
+Expected<std::vector<grasping::Body>> catalogue_bodies(const service::CatalogueArgument& catalogue,
+                                                       const std::vector<std::string>& names = {});
+Expected<grasping::Body> find_body(const service::CatalogueArgument& catalogue,
+                                   const std::string& name);
 
 /// plan_grasps() in so many threads (0: one a core), with progress on standard error.
 Expected<grasping::Plan> plan_with_progress(const model::HandModel& hand,

@@ -5,6 +5,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "common/base/to_terminal.hpp"
 #include "services/recognition/cameras/camera.hpp"
 #include "services/recognition/tools/camera/commands.hpp"
 
@@ -20,7 +21,7 @@ int show_sources(bool json) {
                                    {"line", camera_line_names.name(kind.line)},
                                    {"from_scene", kind.synthetic}});
     if (!json)
-      fmt::print("{:<10} {:<7} {}\n", kind.name, camera_line_names.name(kind.line), kind.help);
+      to_terminal("{:<10} {:<7} {}\n", kind.name, camera_line_names.name(kind.line), kind.help);
   }
   if (json) std::cout << document.dump() << '\n';
   return exit_done;

@@ -13,6 +13,7 @@
 #include <thread>
 
 #include "common/base/log.hpp"
+#include "common/base/to_terminal.hpp"
 #include "common/dds/participant.hpp"
 #include "common/dds/topics.hpp"
 #include "common/model/bounding_shape.hpp"
@@ -288,7 +289,7 @@ int add(AddArguments& arguments) {
                                         {"seconds", seconds}}
               << "\n";
   else
-    fmt::print(
+    to_terminal(
         "{} learned from {} views in {:.0f} s; {} knows {} objects. Start recognition anew.\n",
         arguments.name, views->views.size(), seconds, model_file.string(), grown->classes.size());
   return exit_done;

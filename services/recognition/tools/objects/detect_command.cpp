@@ -9,6 +9,7 @@
 #include "common/base/log.hpp"
 #include "common/base/log_format.hpp"
 #include "common/base/paths.hpp"
+#include "common/base/to_terminal.hpp"
 #include "common/service/config.hpp"
 #include "services/recognition/core/detection/detector.hpp"
 #include "services/recognition/core/learning/answer.hpp"
@@ -134,11 +135,11 @@ int detect(const DetectArguments& arguments) {
                 << "\n";
       continue;
     }
-    fmt::print("{}: {}\n", image, to_string(verdict_of(detector, *picture, found)));
+    to_terminal("{}: {}\n", image, to_string(verdict_of(detector, *picture, found)));
     for (const Sighting& sighting : found) {
-      fmt::print("  {:24} {:5.1f} %", sighting.name, 100 * sighting.probability);
-      if (sighting.at) fmt::print("  at {:.3f} {:.3f} m", sighting.at->x, sighting.at->y);
-      fmt::print("\n");
+      to_terminal("  {:24} {:5.1f} %", sighting.name, 100 * sighting.probability);
+      if (sighting.at) to_terminal("  at {:.3f} {:.3f} m", sighting.at->x, sighting.at->y);
+      to_terminal("\n");
     }
   }
   if (unreadable) return 3;

@@ -12,6 +12,7 @@
 #include "common/base/log.hpp"
 #include "common/base/log_format.hpp"
 #include "common/base/progress.hpp"
+#include "common/base/to_terminal.hpp"
 #include "common/statistics/intervals.hpp"
 #include "services/recognition/core/learning/answer.hpp"
 #include "services/recognition/core/learning/folds.hpp"
@@ -160,14 +161,14 @@ Json summary(const std::vector<Judged>& pictures, double accept_at) {
 
 void print_matrix(const Evaluation& trial, const std::vector<Judged>& pictures) {
   const auto counts = confusion(pictures, trial.classes.size());
-  fmt::print("\n{:36}", "is \\ taken for");
-  for (std::size_t i = 0; i < trial.classes.size(); ++i) fmt::print("{:4}", i + 1);
-  fmt::print("\n");
+  to_terminal("\n{:36}", "is \\ taken for");
+  for (std::size_t i = 0; i < trial.classes.size(); ++i) to_terminal("{:4}", i + 1);
+  to_terminal("\n");
   for (std::size_t row = 0; row < trial.classes.size(); ++row) {
-    fmt::print("{:3} {:32}", row + 1, trial.classes[row]);
+    to_terminal("{:3} {:32}", row + 1, trial.classes[row]);
     for (const int count : counts[row])
-      fmt::print("{:>4}", count == 0 ? "." : std::to_string(count));
-    fmt::print("\n");
+      to_terminal("{:>4}", count == 0 ? "." : std::to_string(count));
+    to_terminal("\n");
   }
 }
 
@@ -180,26 +181,26 @@ void print_result(const Evaluation& trial, const std::vector<Judged>& pictures) 
           ++count;
           right += p.right();
         }
-      fmt::print("{:32} {:4} of {:4}  {}\n", trial.dataset.classes[c].name, right, count,
-                 percent(right, count));
+      to_terminal("{:32} {:4} of {:4}  {}\n", trial.dataset.classes[c].name, right, count,
+                  percent(right, count));
     }
     print_matrix(trial, pictures);
     const std::size_t right = right_of(pictures);
     const Accepted given = accept(pictures, trial.arguments.accept);
-    fmt::print("\nright {} of {}\n", percent(right, given.known), given.known);
-    fmt::print("at probability {:.2f}: accepted {}, of these wrong {}\n", trial.arguments.accept,
-               percent(given.known_accepted, given.known),
-               percent(given.wrong_accepted, given.known_accepted));
+    to_terminal("\nright {} of {}\n", percent(right, given.known), given.known);
+    to_terminal("at probability {:.2f}: accepted {}, of these wrong {}\n", trial.arguments.accept,
+                percent(given.known_accepted, given.known),
+                percent(given.wrong_accepted, given.known_accepted));
     const double threshold = threshold_for(pictures, 0.95);
     const Accepted at95 = accept(pictures, threshold);
-    fmt::print("at probability {:.2f}: accepted {}, of these wrong {}\n", threshold,
-               percent(at95.known_accepted, at95.known),
-               percent(at95.wrong_accepted, at95.known_accepted));
+    to_terminal("at probability {:.2f}: accepted {}, of these wrong {}\n", threshold,
+                percent(at95.known_accepted, at95.known),
+                percent(at95.wrong_accepted, at95.known_accepted));
     if (at95.strangers > 0)
-      fmt::print("strangers rejected: {} there, {} at {:.2f}, of {}\n",
-                 percent(at95.strangers_rejected, at95.strangers),
-                 percent(given.strangers_rejected, given.strangers), trial.arguments.accept,
-                 given.strangers);
+      to_terminal("strangers rejected: {} there, {} at {:.2f}, of {}\n",
+                  percent(at95.strangers_rejected, at95.strangers),
+                  percent(given.strangers_rejected, given.strangers), trial.arguments.accept,
+                  given.strangers);
     return;
   }
   for (const TrainingClass& c : trial.dataset.classes) {
@@ -215,15 +216,15 @@ void print_result(const Evaluation& trial, const std::vector<Judged>& pictures) 
       if (through) ++taken[static_cast<std::size_t>(p.best)];
     }
     const auto most = std::max_element(taken.begin(), taken.end());
-    fmt::print("{:32} rejected {}{}\n", c.name, percent(rejected, count),
-               *most == 0
-                   ? ""
-                   : fmt::format("; most often taken for {}",
-                                 trial.classes[static_cast<std::size_t>(most - taken.begin())]));
+    to_terminal("{:32} rejected {}{}\n", c.name, percent(rejected, count),
+                *most == 0
+                    ? ""
+                    : fmt::format("; most often taken for {}",
+                                  trial.classes[static_cast<std::size_t>(most - taken.begin())]));
   }
   const Accepted given = accept(pictures, trial.arguments.accept);
-  fmt::print("look-alikes rejected at {:.2f}: {} of {}\n", trial.arguments.accept,
-             percent(given.strangers_rejected, given.strangers), given.strangers);
+  to_terminal("look-alikes rejected at {:.2f}: {} of {}\n", trial.arguments.accept,
+              percent(given.strangers_rejected, given.strangers), given.strangers);
 }
 
 /// How often each verdict was given on a dataset's pictures.
@@ -236,9 +237,9 @@ std::map<PhotoVerdict, std::size_t> verdicts(const Evaluation& trial, const Data
 }
 
 void print_verdicts(const char* what, const std::map<PhotoVerdict, std::size_t>& given) {
-  fmt::print("{}:", what);
-  for (const auto& [verdict, count] : given) fmt::print(" {} {}", to_string(verdict), count);
-  fmt::print("\n");
+  to_terminal("{}:", what);
+  for (const auto& [verdict, count] : given) to_terminal(" {} {}", to_string(verdict), count);
+  to_terminal("\n");
 }
 
 Json to_json(const std::map<PhotoVerdict, std::size_t>& given) {
@@ -254,7 +255,7 @@ int compare(const Evaluation& trial, const DescriptorOptions& options) {
   }
   Json document = Json::object();
   if (!trial.arguments.json)
-    fmt::print(
+    to_terminal(
         "| method | right | error among the surest 95 % | strangers rejected there | Brier |\n"
         "|---|---|---|---|---|\n");
   for (const Method method : {Method::learned, Method::nearest_view, Method::false_alarm,
@@ -264,11 +265,11 @@ int compare(const Evaluation& trial, const DescriptorOptions& options) {
     document[std::string(to_string(method))] = summary(*pictures, trial.arguments.accept);
     if (trial.arguments.json) continue;
     const Accepted at95 = accept(*pictures, threshold_for(*pictures, 0.95));
-    fmt::print("| {} | {} | {} | {} | {:.3f} |\n", to_string(method),
-               percent(right_of(*pictures), at95.known),
-               percent(at95.wrong_accepted, at95.known_accepted),
-               at95.strangers == 0 ? "–" : percent(at95.strangers_rejected, at95.strangers),
-               brier(*pictures));
+    to_terminal("| {} | {} | {} | {} | {:.3f} |\n", to_string(method),
+                percent(right_of(*pictures), at95.known),
+                percent(at95.wrong_accepted, at95.known_accepted),
+                at95.strangers == 0 ? "–" : percent(at95.strangers_rejected, at95.strangers),
+                brier(*pictures));
     std::fflush(stdout);
   }
   if (trial.arguments.json) std::cout << document << "\n";

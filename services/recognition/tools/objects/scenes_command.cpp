@@ -9,6 +9,7 @@
 
 #include "common/base/log.hpp"
 #include "common/base/progress.hpp"
+#include "common/base/to_terminal.hpp"
 #include "common/service/arguments.hpp"
 #include "services/recognition/core/detection/verdict.hpp"
 #include "services/recognition/core/learning/logistic.hpp"
@@ -58,17 +59,17 @@ Json to_json(const TrialSummary& s) {
 }
 
 void print(const std::vector<TrialSummary>& rows) {
-  fmt::print(
+  to_terminal(
       "| scenes | | detected | error median, mm | 95 % | worst | turn median, ° | "
       "error²/σ² (2) | turn²/σ² (1) | in 95 % ellipse | frames with false alarm |\n"
       "|---|---|---|---|---|---|---|---|---|---|---|\n");
   for (const TrialSummary& s : rows) {
     if (s.trial == Trial::empty || s.trial == Trial::strangers) {
-      fmt::print("| {} | {} | | | | | | | | | {} |\n", to_string(s.trial), s.scenes,
-                 s.frames_with_false_alarm);
+      to_terminal("| {} | {} | | | | | | | | | {} |\n", to_string(s.trial), s.scenes,
+                  s.frames_with_false_alarm);
       continue;
     }
-    fmt::print(
+    to_terminal(
         "| {} | {} | {:.1f} % | {:.1f} | {:.1f} | {:.1f} | {:.1f} | {:.1f} | {:.1f} | {:.0f} % "
         "| {} |\n",
         to_string(s.trial), s.scenes, 100.0 * s.detected / std::max(1, s.scenes),
@@ -82,28 +83,29 @@ void print_misses(const std::vector<TrialSummary>& rows) {
   constexpr std::array causes{Miss::search, Miss::no_outline, Miss::named, Miss::colours,
                               Miss::outline};
   if (std::all_of(rows.begin(), rows.end(), [](const auto& s) { return s.misses.empty(); })) return;
-  fmt::print("\n| missed |");
-  for (const Miss cause : causes) fmt::print(" {} |", to_string(cause));
-  fmt::print("\n|---|---|---|---|---|---|\n");
+  to_terminal("\n| missed |");
+  for (const Miss cause : causes) to_terminal(" {} |", to_string(cause));
+  to_terminal("\n|---|---|---|---|---|---|\n");
   for (const TrialSummary& s : rows) {
     if (s.misses.empty()) continue;
-    fmt::print("| {} |", to_string(s.trial));
+    to_terminal("| {} |", to_string(s.trial));
     for (const Miss cause : causes) {
       const auto count = s.misses.find(cause);
-      fmt::print(" {} |", count == s.misses.end() ? 0 : count->second);
+      to_terminal(" {} |", count == s.misses.end() ? 0 : count->second);
     }
-    fmt::print("\n");
+    to_terminal("\n");
   }
 }
 
 void print_roc(const std::vector<TrialResult>& results) {
-  fmt::print(
+  to_terminal(
       "\n| least probability | targets detected | frames of {} with a false alarm |\n"
       "|---|---|---|\n",
       results.size());
   for (const double threshold : roc_thresholds) {
     const RocPoint at = roc_at(threshold, results);
-    fmt::print("| {:.2f} | {:.1f} % | {:.2f} % |\n", threshold, 100 * at.detected, 100 * at.alarms);
+    to_terminal("| {:.2f} | {:.1f} % | {:.2f} % |\n", threshold, 100 * at.detected,
+                100 * at.alarms);
   }
 }
 
@@ -190,7 +192,7 @@ Json at_distances(const Arguments& arguments, const CameraModel& lab_camera, dou
                   Trials& trials) {
   Json rows = Json::array();
   if (!arguments.json)
-    fmt::print(
+    to_terminal(
         "\n| distance, m | detected | error median, mm | 95 % | turn median, ° | error²/σ² "
         "(2) |\n|---|---|---|---|---|---|\n");
   for (const double d : {0.6, 0.8, 1.0, 1.2, 1.5, 2.0}) {
@@ -205,9 +207,9 @@ Json at_distances(const Arguments& arguments, const CameraModel& lab_camera, dou
     row["distance_m"] = d;
     rows.push_back(row);
     if (!arguments.json)
-      fmt::print("| {:.1f} | {:.0f} % | {:.1f} | {:.1f} | {:.1f} | {:.1f} |\n", d,
-                 100.0 * s.detected / std::max(1, s.scenes), 1000 * s.error_median,
-                 1000 * s.error_95, degrees(s.turn_median), s.normalised);
+      to_terminal("| {:.1f} | {:.0f} % | {:.1f} | {:.1f} | {:.1f} | {:.1f} |\n", d,
+                  100.0 * s.detected / std::max(1, s.scenes), 1000 * s.error_median,
+                  1000 * s.error_95, degrees(s.turn_median), s.normalised);
   }
   return rows;
 }
@@ -242,7 +244,7 @@ int run(const Arguments& arguments) {
   if (arguments.fit) {
     const SignRow weights = fit_verdict(results, report);
     if (!arguments.json)
-      fmt::print(
+      to_terminal(
           "verdict fitted to {} objects and {} things measured as one:\n"
           "  const SignRow weights{{{:.1f}}};\n\n",
           report["fit"]["objects"].get<double>(), report["fit"]["others"].get<double>(),

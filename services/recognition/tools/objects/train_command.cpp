@@ -11,6 +11,8 @@
 #include "common/base/log_format.hpp"
 #include "common/base/paths.hpp"
 #include "common/base/progress.hpp"
+#include "common/base/to_terminal.hpp"
+#include "common/service/catalogue_argument.hpp"
 #include "services/recognition/core/rendering/strangers.hpp"
 #include "services/recognition/core/rendering/training_views.hpp"
 #include "services/recognition/files/dataset.hpp"
@@ -23,7 +25,8 @@ namespace prehend::recognition {
 namespace {
 
 struct RenderArguments {
-  std::string folder, catalogue;
+  service::CatalogueArgument catalogue;
+  std::string folder;
   std::uint64_t seed = 1;
   int views = 36, others = 0;
   bool json = false;
@@ -36,10 +39,9 @@ struct TrainArguments {
 };
 
 int render(const RenderArguments& arguments) {
-  const auto file = arguments.catalogue.empty()
-                        ? share_directory() / "models" / "objects" / "catalogue.toml"
-                        : std::filesystem::path(arguments.catalogue);
-  const auto catalogue = model::Catalogue::load(file);
+  const auto file = arguments.catalogue.path();
+  if (!file) return broken(file.error());
+  const auto catalogue = model::Catalogue::load(*file);
   if (!catalogue) return broken(catalogue.error());
   // Other things than the trials' strangers (trial_scenes.hpp), or they would be known.
   const auto objects = arguments.others > 0 ? strangers(arguments.others, 9000 + arguments.seed)
@@ -67,7 +69,7 @@ int render(const RenderArguments& arguments) {
   if (arguments.json)
     std::cout << nlohmann::ordered_json{{"classes", objects.size()}, {"views", written}} << "\n";
   else
-    fmt::print("{} views of {} objects in {}\n", written, objects.size(), arguments.folder);
+    to_terminal("{} views of {} objects in {}\n", written, objects.size(), arguments.folder);
   return 0;
 }
 
@@ -112,8 +114,8 @@ int train_models(const TrainArguments& arguments) {
                                         {"seconds", seconds}}
               << "\n";
   else
-    fmt::print("{} classes from {} views in {:.1f} s: {}\n", models->classes.size(), views, seconds,
-               arguments.model);
+    to_terminal("{} classes from {} views in {:.1f} s: {}\n", models->classes.size(), views,
+                seconds, arguments.model);
   return 0;
 }
 
@@ -126,7 +128,7 @@ void add_render(tool::Program& program) {
   command->add_option("folder", arguments->folder, "where to")->required();
   command->add_option("--seed", arguments->seed, "draws light, place and background");
   command->add_option("--views", arguments->views, "views an object")->check(CLI::Range(1, 10000));
-  command->add_option("--catalogue", arguments->catalogue, "objects to draw");
+  arguments->catalogue.add_to(*command);
   command
       ->add_option("--others", arguments->others,
                    "draws so many things that are none of them instead")

@@ -5,6 +5,8 @@
 #include <functional>
 #include <optional>
 
+#include "services/recorder/core/dataset/pose_columns.hpp"
+
 namespace prehend::recorder::dataset {
 namespace {
 
@@ -15,38 +17,6 @@ Columns with_prefix(const std::string& prefix, const Columns& columns) {
   for (const std::string& column : columns) all.push_back(prefix + column);
   return all;
 }
-
-Columns pose_columns(Turns turns) {
-  if (turns == Turns::quaternion) return {"x", "y", "z", "qw", "qx", "qy", "qz"};
-  return {"x", "y", "z", "r11", "r21", "r31", "r12", "r22", "r32"};
-}
-
-/// Writes poses one after the other: of the two quaternions of an orientation the one that is
-/// nearer to the one before, and at first the one with w >= 0.
-class PoseWriter {
- public:
-  explicit PoseWriter(Turns turns) : turns_(turns) {}
-
-  Eigen::VectorXd numbers(const Pose& X) {
-    Eigen::VectorXd all(turns_ == Turns::quaternion ? 7 : 9);
-    all.head<3>() = X.translation();
-    if (turns_ == Turns::columns) {
-      all.segment<3>(3) = X.linear().col(0);
-      all.segment<3>(6) = X.linear().col(1);
-      return all;
-    }
-    const Eigen::Quaterniond q(X.linear());
-    Eigen::Vector4d turn(q.w(), q.x(), q.y(), q.z());
-    if (turn.dot(last_) < 0) turn = -turn;
-    last_ = turn;
-    all.tail<4>() = turn;
-    return all;
-  }
-
- private:
-  Turns turns_;
-  Eigen::Vector4d last_{1, 0, 0, 0};
-};
 
 /// Rows of one episode, feature by feature.
 class RowMaker {

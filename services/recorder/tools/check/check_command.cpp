@@ -5,6 +5,7 @@
 #include <iostream>
 
 #include "common/base/log.hpp"
+#include "common/base/printable.hpp"
 #include "common/recording/types/idl.hpp"
 #include "common/stage/temporary_folder.hpp"
 #include "services/recorder/tools/check/check.hpp"
@@ -54,7 +55,8 @@ int check_command(const std::vector<std::string>& texts) {
   });
   progress.clear();
   if (!checked) return service::complain(checked.error(), exit_broken);
-  std::cout << (json ? to_json(checked->report) + "\n" : to_text(*checked)) << std::flush;
+  std::cout << (json ? to_json(checked->report) + "\n" : printable(to_text(*checked), "\n"))
+            << std::flush;
   if (!junit.empty()) {
     std::ofstream stream(junit);
     stream << to_junit(options.file.string(), *checked);

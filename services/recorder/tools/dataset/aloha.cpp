@@ -92,6 +92,7 @@ Expected<void> write_episode(const Dataset& dataset, const RecordedEpisode& reco
   file->attribute("/", "recording", recorded.file.filename().string());
   file->attribute("/", "begin_ns", static_cast<std::int64_t>(to_ns(rows.begin)));
   file->attribute("/", "rate", Eigen::VectorXd::Constant(1, dataset.rate));
+  if (!recorded.split.empty()) file->attribute("/", "split", recorded.split);
   if (recorded.episode.success) file->attribute("/", "success", *recorded.episode.success);
   return file->close();
 }

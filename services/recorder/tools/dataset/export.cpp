@@ -4,6 +4,7 @@
 
 #include "common/base/log.hpp"
 #include "common/base/progress.hpp"
+#include "common/base/to_terminal.hpp"
 #include "common/tool/program.hpp"
 #include "services/recorder/tools/dataset/gather.hpp"
 #include "services/recorder/tools/dataset/layouts.hpp"
@@ -66,12 +67,12 @@ void tell(const Gathered& gathered, const DatasetOptions& options) {
     if (each.episode.success) ++(*each.episode.success ? held : dropped);
   }
   const std::size_t all = gathered.dataset.episodes.size();
-  fmt::print("{}: {} episode{} ({} succeeded, {} failed, {} not judged), {} rows at {} Hz\n",
-             options.output, all, all == 1 ? "" : "s", held, dropped, all - held - dropped, rows,
-             options.rate);
+  to_terminal("{}: {} episode{} ({} succeeded, {} failed, {} not judged), {} rows at {} Hz\n",
+              options.output, all, all == 1 ? "" : "s", held, dropped, all - held - dropped, rows,
+              options.rate);
   if (!gathered.left_out.empty())
-    fmt::print("left out, since not every episode has it: {}\n",
-               fmt::join(gathered.left_out, ", "));
+    to_terminal("left out, since not every episode has it: {}\n",
+                fmt::join(gathered.left_out, ", "));
 }
 
 }  // namespace

@@ -5,8 +5,11 @@
 #include "common/base/log.hpp"
 #include "common/base/printable.hpp"
 #include "common/base/progress.hpp"
+#include "services/recorder/core/dataset/split.hpp"
+#include "services/recorder/tools/dataset/columns_file.hpp"
 #include "services/recorder/tools/dataset/message.hpp"
 #include "services/recorder/tools/dataset/read_log.hpp"
+#include "services/recorder/tools/dataset/read_mapped.hpp"
 
 namespace prehend::recorder::dataset {
 namespace {
@@ -20,6 +23,7 @@ class Gatherer {
     const auto files = recordings_of(options_.sources);
     if (!files) return tl::unexpected(files.error());
     gathered_.dataset.rate = options_.rate;
+    if (auto asked = read_options(); !asked) return tl::unexpected(asked.error());
     Progress progress("reading recordings");
     for (std::size_t i = 0; i < files->size(); ++i) {
       if (auto read = add((*files)[i]); !read) {
@@ -40,6 +44,7 @@ class Gatherer {
     std::erase_if(dataset.cameras, [&](const auto& camera) {
       return !rows.front()->pictures.contains(camera.first);
     });
+    if (auto done = split(); !done) return tl::unexpected(done.error());
     dataset.sized = size && *size;
     if (dataset.sized)
       for (auto& [name, camera] : dataset.cameras) camera = {(*size)->first, (*size)->second};
@@ -47,37 +52,98 @@ class Gatherer {
   }
 
  private:
+  Expected<void> read_options() {
+    auto given = given_times(options_);
+    if (!given) return tl::unexpected(given.error());
+    given_ = std::move(*given);
+    if (options_.columns.empty()) return {};
+    auto columns = load_columns(options_.columns);
+    if (!columns) return tl::unexpected(columns.error());
+    columns_ = std::move(*columns);
+    gathered_.dataset.hand = columns_->robot.empty() ? "unknown" : columns_->robot;
+    return {};
+  }
+
+  RowOptions row_options() const {
+    return {.rate = options_.rate,
+            .turns = options_.turns == "columns" ? Turns::columns : Turns::quaternion,
+            .hand = hand_ ? &*hand_ : nullptr};
+  }
+
   Expected<void> add(const std::filesystem::path& file) {
+    if (columns_) return add_mapped(file);
     auto read = read_log(file, options_.hand);
     if (!read) return tl::unexpected(read.error());
     for (Error& error : read->damage) gathered_.passed_by.push_back(std::move(error));
-    RecordingLog& log = read->log;
+    const RecordingLog& log = read->log;
     if (auto same = same_hand(log.model, file); !same) return same;
-    std::vector<Episode> episodes = find_episodes(log);
+    std::vector<Episode> episodes =
+        given_.empty() ? find_episodes(log) : given_episodes(given_, read->start, "lead the hand");
+    for (Episode& episode : episodes)
+      if (!episode.object.empty()) episode.object = as_name(episode.object);
+    return keep_all(
+        file, std::move(episodes),
+        [&](const Episode& episode) { return make_rows(log, episode, row_options()); },
+        [&](RecordedEpisode& kept) {
+          kept.simulated = log.simulated;
+          keep_cameras(log.cameras, kept);
+        });
+  }
+
+  Expected<void> add_mapped(const std::filesystem::path& file) {
+    auto read = read_mapped(file, *columns_);
+    if (!read) return tl::unexpected(read.error());
+    for (Error& error : read->damage) gathered_.passed_by.push_back(std::move(error));
+    const MappedLog& log = read->log;
+    if (auto same = same_columns(log, file); !same) return same;
+    const EpisodeRule rule{given_, seconds(columns_->gap),
+                           columns_->task.empty() ? file.stem().string() : columns_->task};
+    return keep_all(
+        file, find_episodes(log, rule, read->start),
+        [&](const Episode& episode) { return make_rows(log, episode, row_options()); },
+        [&](RecordedEpisode& kept) {
+          keep_cameras(log.cameras, kept);
+          for (const PicturesOf& pictures : columns_->pictures)
+            kept.picture_sources[pictures.name] = {pictures.topic, pictures.field};
+        });
+  }
+
+  /// Vectors of other columns cannot stand in one set.
+  Expected<void> same_columns(const MappedLog& log, const std::filesystem::path& file) {
+    std::vector<std::string> all;
+    for (const Track& track : log.tracks)
+      if (track.role != Role::observation)
+        all.insert(all.end(), track.columns.begin(), track.columns.end());
+    if (mapped_columns_.empty()) mapped_columns_ = all;
+    if (mapped_columns_ == all) return {};
+    return wrong_use("its states or actions have other elements than those before", file.string(),
+                     "name those that all have: only = [...] in " + options_.columns);
+  }
+
+  /// Rows of each episode; those that have none are passed by.
+  template <class Make, class Complete>
+  Expected<void> keep_all(const std::filesystem::path& file, std::vector<Episode> episodes,
+                          const Make& make, const Complete& complete) {
     std::size_t made = 0;
     for (Episode& episode : episodes) {
-      if (!episode.object.empty()) episode.object = as_name(episode.object);
-      auto rows =
-          make_rows(log, episode,
-                    {.rate = options_.rate,
-                     .turns = options_.turns == "columns" ? Turns::columns : Turns::quaternion,
-                     .hand = hand_ ? &*hand_ : nullptr});
+      auto rows = make(episode);
       if (!options_.task.empty()) episode.task = options_.task;
       if (!rows) {
-        gathered_.passed_by.push_back({rows.error().what, file.string(), "", exit_no});
+        gathered_.passed_by.push_back(
+            {rows.error().what, file.string(), rows.error().hint, exit_no});
         continue;
       }
-      keep(file, log, std::move(episode), std::move(*rows));
+      RecordedEpisode kept{file, std::move(episode), std::move(*rows), {}, false, {}, {}};
+      complete(kept);
+      gathered_.dataset.episodes.push_back(std::move(kept));
       ++made;
     }
-    if (made == 0) {
-      const Error reason = gathered_.passed_by.empty()
-                               ? Error{"has no episode", file.string(), "", exit_no}
-                               : gathered_.passed_by.back();
-      if (!gathered_.passed_by.empty()) gathered_.passed_by.pop_back();
-      return tl::unexpected(reason);
-    }
-    return {};
+    if (made > 0) return {};
+    const Error reason = gathered_.passed_by.empty()
+                             ? Error{"has no episode", file.string(), "", exit_no}
+                             : gathered_.passed_by.back();
+    if (!gathered_.passed_by.empty()) gathered_.passed_by.pop_back();
+    return tl::unexpected(reason);
   }
 
   Expected<void> same_hand(const std::string& model, const std::filesystem::path& file) {
@@ -96,19 +162,41 @@ class Gatherer {
     return {};
   }
 
-  void keep(const std::filesystem::path& file, const RecordingLog& log, Episode episode,
-            Rows rows) {
-    RecordedEpisode kept{file, std::move(episode), std::move(rows), {}, log.simulated};
-    for (const auto& [name, camera] : log.cameras) {
+  void keep_cameras(const std::map<std::string, Camera>& cameras, RecordedEpisode& kept) {
+    for (const auto& [name, camera] : cameras) {
       kept.picture_times[name] = camera.times;
       gathered_.dataset.cameras.emplace(name, Size{camera.width, camera.height});
     }
-    gathered_.dataset.episodes.push_back(std::move(kept));
+  }
+
+  /// Says to which part each episode belongs; those of one part stand together, as LeRobot wants.
+  Expected<void> split() {
+    if (options_.split.empty()) return {};
+    Dataset& dataset = gathered_.dataset;
+    const auto shares = parse_split(options_.split);
+    if (!shares) return tl::unexpected(shares.error());
+    const auto parts = draw_split(*shares, dataset.episodes.size(), options_.split_seed);
+    if (!parts) return tl::unexpected(parts.error());
+    std::vector<RecordedEpisode> ordered;
+    for (std::size_t part = 0; part < shares->size(); ++part) {
+      const std::string& name = (*shares)[part].first;
+      dataset.splits.emplace_back(name, std::ranges::count(*parts, part));
+      for (std::size_t i = 0; i < parts->size(); ++i) {
+        if ((*parts)[i] != part) continue;
+        ordered.push_back(std::move(dataset.episodes[i]));
+        ordered.back().split = name;
+      }
+    }
+    dataset.episodes = std::move(ordered);
+    return {};
   }
 
   const DatasetOptions& options_;
   Gathered gathered_;
   std::optional<model::HandModel> hand_;
+  std::optional<ColumnsFile> columns_;
+  std::vector<std::pair<double, double>> given_;
+  std::vector<std::string> mapped_columns_;  // of states and actions
 };
 
 }  // namespace

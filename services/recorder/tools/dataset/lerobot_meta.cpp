@@ -12,6 +12,18 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+/// Each part as a range of episodes.
+Json splits_of(const Dataset& dataset) {
+  if (dataset.splits.empty()) return {{"train", fmt::format("0:{}", dataset.episodes.size())}};
+  Json made = Json::object();
+  std::size_t begin = 0;
+  for (const auto& [name, count] : dataset.splits) {
+    made[name] = fmt::format("{}:{}", begin, begin + count);
+    begin += count;
+  }
+  return made;
+}
+
 Json video_description(Size size, int rate) {
   return {{"dtype", "video"},
           {"shape", {size.height, size.width, 3}},
@@ -60,7 +72,7 @@ Json lerobot_info(const Dataset& dataset, const std::vector<LerobotFeature>& fea
           {"total_tasks", tasks},
           {"chunks_size", FilePlace::files},
           {"fps", rate},
-          {"splits", {{"train", fmt::format("0:{}", dataset.episodes.size())}}},
+          {"splits", splits_of(dataset)},
           {"data_path", ""},
           {"video_path", nullptr},
           {"features", described}};

@@ -4,6 +4,7 @@
 
 #include "common/recording/compare/recorded_topic.hpp"
 #include "common/recording/mcap/reader.hpp"
+#include "common/recording/messages/message_decoder.hpp"
 #include "services/recorder/tools/dataset/ffmpeg.hpp"
 #include "services/recorder/tools/dataset/message.hpp"
 
@@ -51,6 +52,7 @@ Expected<Rgb> PictureDecoder::decode(const std::vector<std::uint8_t>& bytes, Siz
     return unreadable();
   }
   const AVFrame& frame = *state.frame;
+  if (size.width == 0) size = {frame.width, frame.height};
   state.scaler.reset(sws_getCachedContext(
       state.scaler.release(), frame.width, frame.height, static_cast<AVPixelFormat>(frame.format),
       size.width, size.height, AV_PIX_FMT_RGB24, SWS_AREA, nullptr, nullptr, nullptr));
@@ -71,7 +73,10 @@ Expected<void> read_pictures(
   const auto& places = episode.rows.pictures.at(camera);
   auto reader = recording::mcap::Reader::open(episode.file);
   if (!reader) return tl::unexpected(reader.error());
-  recording::RecordedTypes types(*reader);
+  recording::MessageDecoder decoder(*reader);
+  const auto mapped = episode.picture_sources.find(camera);
+  const bool is_mapped = mapped != episode.picture_sources.end();
+  const std::string wanted = is_mapped ? mapped->second.topic : "camera/image";
   const auto log_time = [&](std::size_t place) {
     return static_cast<std::uint64_t>(to_ns(times[place]));
   };
@@ -79,7 +84,7 @@ Expected<void> read_pictures(
                                   [&](const recording::mcap::Channel& channel) {
                                     const auto topic =
                                         recording::recorded_topic(channel, reader->contents());
-                                    return topic.end.empty() && topic.name == "camera/image";
+                                    return topic.end.empty() && topic.name == wanted;
                                   }});
   std::size_t done = 0;  // places that were taken, or are behind
   while (true) {
@@ -87,18 +92,16 @@ Expected<void> read_pictures(
     if (!next) continue;  // said when the recording was gone through
     if (!*next) break;
     const auto& [channel, message] = **next;
-    const auto* type = types.of(*channel);
-    const auto value = type ? recording::types::decode(*type, message.data)
-                            : Expected<Value>(fail("its type is not described"));
-    if (!value || as_name(text(*value, "camera")) != camera) continue;
+    const auto value = decoder.decode(*channel, message.data);
+    if (!value || (!is_mapped && as_name(text(*value, "camera")) != camera)) continue;
     const auto time =
         std::ranges::lower_bound(times, from_ns(static_cast<std::int64_t>(message.log_time)));
     const auto place = static_cast<std::size_t>(time - times.begin());
     if (place < done || !std::ranges::binary_search(places, place)) continue;
     done = place + 1;
-    const Value* data = value->find("data");
-    const auto* bytes = data ? std::get_if<Value::Bytes>(&data->content) : nullptr;
-    if (auto taken = take(place, bytes ? *bytes : Value::Bytes{}); !taken) return taken;
+    const Value* data = is_mapped ? mapped->second.field.in(*value) : value->find("data");
+    const auto bytes = data ? bytes_of(*data) : std::nullopt;
+    if (auto taken = take(place, bytes.value_or(Value::Bytes{})); !taken) return taken;
   }
   return {};
 }

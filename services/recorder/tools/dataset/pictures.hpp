@@ -33,7 +33,8 @@ class PictureDecoder {
  public:
   PictureDecoder();
   ~PictureDecoder();
-  Expected<Rgb> decode(const std::vector<std::uint8_t>& bytes, Size size);
+  /// Without a size: as large as it is.
+  Expected<Rgb> decode(const std::vector<std::uint8_t>& bytes, Size size = {});
 
  private:
   struct State;

@@ -1,26 +1,21 @@
 #include "services/recorder/tools/dataset/read_log.hpp"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <functional>
 #include <set>
 
 #include "common/base/printable.hpp"
 #include "common/model/human_hand.hpp"
-#include "common/recording/compare/recorded_topic.hpp"
 #include "common/recording/mcap/reader.hpp"
 #include "services/recorder/tools/dataset/message.hpp"
+#include "services/recorder/tools/dataset/recorded_messages.hpp"
 
 namespace prehend::recorder::dataset {
 namespace {
 
-using recording::mcap::Channel;
 using recording::mcap::Reader;
 
-/// In the year 2223; sums of later times would not be numbers any more.
-constexpr std::uint64_t max_log_time = 8'000'000'000'000'000'000;
 constexpr std::string_view demonstration = "demonstration";  // whom the operator's marks are for
 
 /// Sizes must not change in the middle of a recording.
@@ -188,57 +183,14 @@ class LogTaker {
   std::optional<Attempt> running_, showing_;
 };
 
-/// Reads the messages of some topics, one after the other, and remembers what could not be.
-class Messages {
- public:
-  explicit Messages(Reader& reader) : reader_(reader), types_(reader) {}
-
-  void read(const std::function<bool(const std::string&)>& wanted,
-            const std::function<bool(const std::string&, const Value&, Time)>& take) {
-    auto cursor = reader_.messages({.wanted = [&](const Channel& channel) {
-      const auto topic = recording::recorded_topic(channel, reader_.contents());
-      return topic.end.empty() && wanted(topic.name);
-    }});
-    while (true) {
-      const auto next = cursor.next();
-      if (!next) {
-        damage_.push_back(next.error());
-        continue;
-      }
-      if (!*next) break;
-      const auto& [channel, message] = **next;
-      const auto topic = recording::recorded_topic(*channel, reader_.contents()).name;
-      const auto* type = types_.of(*channel);
-      const auto value = type ? recording::types::decode(*type, message.data)
-                              : Expected<Value>(fail("its type is not described"));
-      const Time time = from_ns(static_cast<std::int64_t>(message.log_time));
-      if (message.log_time > max_log_time || !value || !take(topic, *value, time)) ++unused_[topic];
-    }
-  }
-
-  std::vector<Error> damage() const {
-    std::vector<Error> all = damage_;
-    for (const auto& [topic, count] : unused_)
-      all.push_back({fmt::format("{} messages of {} cannot be used", count, topic),
-                     reader_.file().name(), ""});
-    return all;
-  }
-
- private:
-  Reader& reader_;
-  recording::RecordedTypes types_;
-  std::vector<Error> damage_;
-  std::map<std::string, std::uint64_t> unused_;
-};
-
 /// The hand that is meant: the given one, or the only one that got commands.
 Expected<std::string> hand_of(Reader& reader, const std::string& file, const std::string& wanted) {
   std::set<std::string> hands;
-  Messages(reader).read([](const std::string& topic) { return topic == "robot/command"; },
-                        [&](const std::string&, const Value& message, Time) {
-                          hands.insert(text(message, "hand"));
-                          return true;
-                        });
+  RecordedMessages(reader).read([](const std::string& topic) { return topic == "robot/command"; },
+                                [&](const std::string&, const Value& message, Time) {
+                                  hands.insert(text(message, "hand"));
+                                  return Expected<void>();
+                                });
   std::string names;
   for (const std::string& hand : hands) names += (names.empty() ? "" : ", ") + printable(hand);
   if (hands.empty())
@@ -254,22 +206,20 @@ Expected<std::string> hand_of(Reader& reader, const std::string& file, const std
 }  // namespace
 
 Expected<ReadLog> read_log(const std::filesystem::path& file, const std::string& hand) {
-  auto reader = Reader::open(file);
-  if (!reader) {
-    Error error = reader.error();
-    error.exit = ::access(file.c_str(), R_OK) == 0 ? exit_no : exit_broken;
-    return tl::unexpected(std::move(error));
-  }
+  auto reader = open_recording(file);
+  if (!reader) return tl::unexpected(reader.error());
   const auto name = hand_of(*reader, file.string(), hand);
   if (!name) return tl::unexpected(name.error());
 
-  Messages messages(*reader);
+  RecordedMessages messages(*reader);
   LogTaker taker(*name);
   messages.read([](const std::string& topic) { return LogTaker::topics().contains(topic); },
-                [&](const std::string& topic, const Value& message, Time time) {
-                  return (taker.*LogTaker::topics().find(topic)->second)(message, time);
+                [&](const std::string& topic, const Value& message, Time time) -> Expected<void> {
+                  const auto take = LogTaker::topics().find(topic)->second;
+                  if ((taker.*take)(message, time)) return {};
+                  return fail("its values cannot be");
                 });
-  ReadLog read{taker.finish(), reader->contents().damage};
+  ReadLog read{taker.finish(), first_time(*reader), reader->contents().damage};
   for (Error& error : messages.damage()) read.damage.push_back(std::move(error));
   if (read.log.command_dof.empty())
     return fail("holds no command that can be used", file.string(), "", exit_no);

@@ -11,6 +11,7 @@ namespace prehend::recorder::dataset {
 
 struct ReadLog {
   RecordingLog log;
+  Time start{};               // of the recording's first message
   std::vector<Error> damage;  // what could not be read, or not be used
 };
 

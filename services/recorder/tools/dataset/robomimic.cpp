@@ -81,6 +81,7 @@ class RobomimicWriter {
       file_.attribute(group, "success", success);
       masks_[success ? "success" : "failure"].push_back(name);
     }
+    if (!recorded.split.empty()) masks_[recorded.split].push_back(name);
     return {};
   }
 

@@ -6,6 +6,8 @@
 #include <charconv>
 #include <cmath>
 
+#include "common/base/finite_number.hpp"
+
 namespace prehend::recorder {
 namespace {
 
@@ -29,6 +31,21 @@ void add_dataset_options(CLI::App& app, DatasetOptions& options) {
   app.add_option("--size", options.size, "of pictures, as 84x84; without it as recorded")
       ->group(group);
   app.add_option("--hand", options.hand, "which one, where several are recorded")->group(group);
+  app.add_option("--columns", options.columns,
+                 "a file that says which fields of which topics are columns: for recordings of "
+                 "others")
+      ->group(group);
+  app.add_option("--episode", options.episodes,
+                 "FROM..TO in seconds after the recording's begin; may be repeated; without it "
+                 "they are found")
+      ->type_size(1)
+      ->allow_extra_args(false)
+      ->group(group);
+  app.add_option("--split", options.split, "parts of the episodes by name, as train=0.8,valid=0.2")
+      ->group(group);
+  app.add_option("--split-seed", options.split_seed, "draws which episode is in which part")
+      ->capture_default_str()
+      ->group(group);
   app.add_option("--task", options.task, "the task's words; without them as recorded")
       ->group(group);
 }
@@ -43,6 +60,10 @@ std::vector<std::string> to_arguments(const DatasetOptions& options) {
   add("--size", options.size);
   add("--hand", options.hand);
   add("--task", options.task);
+  add("--columns", options.columns);
+  for (const std::string& episode : options.episodes) add("--episode", episode);
+  add("--split", options.split);
+  add("--split-seed", std::to_string(options.split_seed));
   all.emplace_back("--");
   all.insert(all.end(), options.sources.begin(), options.sources.end());
   return all;
@@ -57,7 +78,27 @@ Expected<void> check(const DatasetOptions& options) {
   if (options.format.starts_with("lerobot") && options.rate != std::floor(options.rate))
     return wrong_use("LeRobot wants whole rows a second", fmt::format("--rate {}", options.rate));
   if (const auto size = picture_size(options); !size) return tl::unexpected(size.error());
+  if (const auto times = given_times(options); !times) return tl::unexpected(times.error());
+  if (!options.columns.empty() && !options.hand.empty())
+    return wrong_use("is for our own topics", "--hand " + options.hand, "--columns names topics");
   return {};
+}
+
+Expected<std::vector<std::pair<double, double>>> given_times(const DatasetOptions& options) {
+  constexpr double max_time = 1e6;  // s
+  std::vector<std::pair<double, double>> times;
+  for (const std::string& text : options.episodes) {
+    const std::size_t dots = text.find("..");
+    const auto from = finite_number(std::string_view(text).substr(0, dots));
+    const auto to = dots == std::string::npos
+                        ? std::nullopt
+                        : finite_number(std::string_view(text).substr(dots + 2));
+    if (!from || !to || !(*from >= 0 && *from < *to && *to <= max_time))
+      return wrong_use("is no part of a recording", "--episode " + text,
+                       "FROM..TO, seconds after its begin, as 2.5..10");
+    times.emplace_back(*from, *to);
+  }
+  return times;
 }
 
 Expected<std::optional<std::pair<int, int>>> picture_size(const DatasetOptions& options) {

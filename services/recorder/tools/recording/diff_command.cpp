@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "common/base/log_format.hpp"
+#include "common/base/to_terminal.hpp"
 #include "common/recording/compare/comparison.hpp"
 #include "common/recording/compare/recorded_topic.hpp"
 #include "services/recorder/tools/recording/commands.hpp"
@@ -78,13 +79,13 @@ Json report_json(const Report& report) {
 
 void print(const Report& report) {
   for (const recording::TopicReport& topic : report.topics) {
-    fmt::print("{:24} {:8} compared, {} different", topic.name, topic.compared, topic.different);
-    if (topic.missing > 0) fmt::print(", {} missing", topic.missing);
-    if (topic.extra > 0) fmt::print(", {} more than expected", topic.extra);
-    fmt::print("\n");
-    for (const recording::Difference& each : topic.first) fmt::print("    {}\n", each.text());
+    to_terminal("{:24} {:8} compared, {} different", topic.name, topic.compared, topic.different);
+    if (topic.missing > 0) to_terminal(", {} missing", topic.missing);
+    if (topic.extra > 0) to_terminal(", {} more than expected", topic.extra);
+    to_terminal("\n");
+    for (const recording::Difference& each : topic.first) to_terminal("    {}\n", each.text());
   }
-  fmt::print("{}\n", report.same() ? "same" : "different");
+  to_terminal("{}\n", report.same() ? "same" : "different");
 }
 
 int diff(const DiffArguments& arguments) {

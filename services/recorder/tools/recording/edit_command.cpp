@@ -11,6 +11,7 @@
 
 #include "common/base/log_format.hpp"
 #include "common/base/terminal.hpp"
+#include "common/base/to_terminal.hpp"
 #include "common/recording/compare/recorded_topic.hpp"
 #include "services/recorder/tools/recording/commands.hpp"
 #include "services/recorder/tools/recording/copy.hpp"
@@ -103,7 +104,7 @@ int run(const EditArguments& arguments) {
                      .dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace)
               << '\n';
   } else {
-    fmt::print("{}: {} messages\n", arguments.to, result->messages);
+    to_terminal("{}: {} messages\n", arguments.to, result->messages);
   }
   // Part of the sources is not in what was made.
   return result->damage.empty() ? exit_done : exit_no;

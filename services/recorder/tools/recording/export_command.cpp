@@ -18,6 +18,7 @@
 #include "common/base/paths.hpp"
 #include "common/base/printable.hpp"
 #include "common/recording/compare/recorded_topic.hpp"
+#include "common/recording/messages/message_decoder.hpp"
 #include "services/recorder/tools/dataset_options/dataset_options.hpp"
 #include "services/recorder/tools/recording/commands.hpp"
 #include "services/recorder/tools/recording/export_names.hpp"
@@ -60,7 +61,7 @@ class Export {
   Export(const ExportArguments& arguments, recording::mcap::Reader& reader)
       : arguments_(arguments),
         reader_(reader),
-        types_(reader),
+        decoder_(reader),
         names_(export_names(reader.contents())) {}
 
   int run() {
@@ -95,15 +96,17 @@ class Export {
   Expected<void> write(const recording::mcap::ReadMessage& read) {
     const auto& [channel, message] = read;
     const TableKey& table = key_of(*channel);
-    const recording::types::Structure* type = types_.of(*channel);
-    const auto value = type ? recording::types::decode(*type, message.data)
-                            : Expected<recording::types::Value>(fail("its type is not described"));
+    const recording::types::Structure* type = decoder_.type_of(*channel);
+    auto value = decoder_.decode(*channel, message.data);
+    if (!type && value && arguments_.format == "csv")
+      value = fail(fmt::format("encoding «{}» tells no columns; --format jsonl takes it",
+                               printable(channel->message_encoding)));
     if (!value) {
       LeftOut& left = left_out_[table.first];
-      if (left.count++ == 0) left.why = why_not(*channel, value.error());
+      if (left.count++ == 0) left.why = value.error().what;
       return {};
     }
-    const auto out = stream(table, *type);
+    const auto out = stream(table, type);
     if (!out) return tl::unexpected(out.error());
     if (arguments_.format == "csv") {
       **out << message.log_time << ',' << message.publish_time << ',' << message.sequence;
@@ -128,19 +131,6 @@ class Export {
     return keys_.emplace(channel.id, table_of(channel, reader_.contents())).first->second;
   }
 
-  /// Of a message that cannot be decoded: how it is encoded decides.
-  std::string why_not(const recording::mcap::Channel& channel, const Error& error) const {
-    const auto& schemas = reader_.contents().schemas;
-    const auto schema = schemas.find(channel.schema_id);
-    const std::string described =
-        schema == schemas.end() ? "without a schema"
-                                : fmt::format("schema {} ({})", printable(schema->second.name),
-                                              printable(schema->second.encoding));
-    if (channel.message_encoding == "cdr") return fmt::format("{}, {}", error.what, described);
-    return fmt::format("encoding «{}», {}; only CDR is read", printable(channel.message_encoding),
-                       described);
-  }
-
   std::filesystem::path file_of(const TableKey& table) const {
     return std::filesystem::path(arguments_.folder) / (names_.at(table) + "." + arguments_.format);
   }
@@ -152,7 +142,7 @@ class Export {
 
   /// Where the table's rows go; a table of CSV begins with its heading. The folder is made with its
   /// first file.
-  Expected<std::ostream*> stream(const TableKey& table, const recording::types::Structure& type) {
+  Expected<std::ostream*> stream(const TableKey& table, const recording::types::Structure* type) {
     const auto [place, fresh] = tables_.try_emplace(table);
     std::ostream* out = &std::cout;
     if (!arguments_.folder.empty()) {
@@ -169,7 +159,7 @@ class Export {
     }
     if (fresh && arguments_.format == "csv") {
       *out << "log_time_ns,publish_time_ns,sequence";
-      for (const std::string& column : columns(type)) *out << ',' << column;
+      for (const std::string& column : columns(*type)) *out << ',' << column;
       *out << '\n';
     }
     return out;
@@ -190,7 +180,7 @@ class Export {
 
   const ExportArguments& arguments_;
   recording::mcap::Reader& reader_;
-  recording::RecordedTypes types_;
+  recording::MessageDecoder decoder_;
   std::map<TableKey, std::string> names_;
   std::map<std::uint16_t, TableKey> keys_;  // by channel
   std::map<TableKey, std::ofstream> tables_;

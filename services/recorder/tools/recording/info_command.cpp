@@ -8,6 +8,7 @@
 
 #include "common/base/log_format.hpp"
 #include "common/base/printable.hpp"
+#include "common/base/to_terminal.hpp"
 #include "services/recorder/tools/recording/commands.hpp"
 #include "services/recorder/tools/recording/summary.hpp"
 
@@ -28,18 +29,18 @@ std::string date(std::uint64_t ns) {
 
 void print(const Json& document) {
   const auto messages = document["messages"].get<std::uint64_t>();
-  fmt::print("{} messages in {:.3f} s, {} lost; {:.1f} MB in {} chunks{}\n", messages,
-             document["duration_s"].get<double>(), document["lost"].get<std::uint64_t>(),
-             static_cast<double>(document["size"].get<std::uint64_t>()) * 1e-6,
-             document["chunks"].get<std::size_t>(),
-             document["compression"] == "" ? std::string()
-                                           : ", " + document["compression"].get<std::string>());
+  to_terminal("{} messages in {:.3f} s, {} lost; {:.1f} MB in {} chunks{}\n", messages,
+              document["duration_s"].get<double>(), document["lost"].get<std::uint64_t>(),
+              static_cast<double>(document["size"].get<std::uint64_t>()) * 1e-6,
+              document["chunks"].get<std::size_t>(),
+              document["compression"] == "" ? std::string()
+                                            : ", " + document["compression"].get<std::string>());
   if (messages > 0)
-    fmt::print("from {} to {}\n", date(document["start_ns"].get<std::uint64_t>()),
-               date(document["end_ns"].get<std::uint64_t>()));
+    to_terminal("from {} to {}\n", date(document["start_ns"].get<std::uint64_t>()),
+                date(document["end_ns"].get<std::uint64_t>()));
   for (const Json& topic : document["topics"])
-    fmt::print("  {:24} {:10} {}\n", printable(topic["name"].get<std::string>()),
-               topic["count"].get<std::uint64_t>(), printable(topic["type"].get<std::string>()));
+    to_terminal("  {:24} {:10} {}\n", printable(topic["name"].get<std::string>()),
+                topic["count"].get<std::uint64_t>(), printable(topic["type"].get<std::string>()));
 }
 
 int info(const InfoArguments& arguments) {

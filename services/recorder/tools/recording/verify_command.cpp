@@ -5,6 +5,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "common/base/to_terminal.hpp"
 #include "services/recorder/tools/recording/commands.hpp"
 #include "services/recorder/tools/recording/verify.hpp"
 
@@ -27,8 +28,8 @@ int run(const VerifyArguments& arguments) {
                      -1, ' ', false, nlohmann::ordered_json::error_handler_t::replace)
               << '\n';
   } else {
-    for (const Error& finding : *findings) fmt::print("{}\n", finding.message());
-    if (findings->empty()) fmt::print("{}: sound\n", arguments.file);
+    for (const Error& finding : *findings) to_terminal("{}\n", finding.message());
+    if (findings->empty()) to_terminal("{}: sound\n", arguments.file);
   }
   return findings->empty() ? exit_done : exit_no;
 }

@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include "common/base/log_format.hpp"
+#include "common/base/printable.hpp"
 #include "common/base/terminal.hpp"
 
 namespace prehend::recorder {
@@ -15,7 +16,7 @@ void ProgressLine::show(const std::string& text) {
   const auto now = std::chrono::steady_clock::now();
   if (quiet_ || now < next_) return;
   next_ = now + (terminal_ ? std::chrono::milliseconds(100) : std::chrono::milliseconds(10'000));
-  fmt::print(stderr, "{}{}{}", terminal_ ? "\r\033[K" : "", text, terminal_ ? "" : "\n");
+  fmt::print(stderr, "{}{}{}", terminal_ ? "\r\033[K" : "", printable(text), terminal_ ? "" : "\n");
   std::fflush(stderr);
   shown_ = terminal_;
 }

@@ -33,10 +33,10 @@ std::string text_of(const std::filesystem::path& file) {
   return text.str();
 }
 
-Answer run(const std::string& arguments) {
+Answer run(const std::string& arguments, const std::string& before = {}) {
   const auto output = scratch("out"), complaint = scratch("err");
-  const std::string command = prehend::test::in_programs("prehend-grasp") + " " + arguments + " >" +
-                              output.string() + " 2>" + complaint.string();
+  const std::string command = before + prehend::test::in_programs("prehend-grasp") + " " +
+                              arguments + " >" + output.string() + " 2>" + complaint.string();
   const int status = std::system(command.c_str());
   return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, text_of(output), text_of(complaint)};
 }
@@ -58,6 +58,32 @@ TEST(GraspTool, WrongUseIsTwoAndSaysWhy) {
     EXPECT_NE(answer.complaint.find(says), std::string::npos) << arguments << answer.complaint;
     EXPECT_TRUE(answer.output.empty()) << arguments;
   }
+}
+
+// Guards objects of a user's own, which only the shipped catalogue was asked for.
+TEST(GraspTool, ObjectsAreThoseOfTheLabsCatalogue) {
+  const auto catalogue = scratch("mine.toml"), lab = scratch("lab.toml");
+  std::ofstream(catalogue) << "[[object]]\nname = \"Mine\"\nshape = \"cylinder\"\n"
+                              "size = [0.024, 0.024, 0.105]\nmass = 0.15\nmaterial = \"plastic\"\n";
+  std::ofstream(lab) << "[lab]\ncatalogue = \"" << catalogue.string() << "\"\n";
+  const std::string by_file = " --catalogue " + catalogue.string();
+  for (const auto& [before, named] :
+       {std::pair(std::string(), by_file), std::pair(std::string(), " --config " + lab.string()),
+        std::pair("PREHEND_LAB_CATALOGUE=" + catalogue.string() + " ", std::string())}) {
+    const Answer made = run("taxonomy --json --object Mine" + named, before);
+    EXPECT_EQ(made.code, 0) << before << named << made.complaint;
+    for (const char* command :
+         {"plan --hand barrett --object Talc", "taxonomy --object Talc",
+          "candidates --hand barrett --object Talc", "table --objects Talc"}) {
+      const Answer other = run(command + named, before);
+      EXPECT_EQ(other.code, 2) << command << named;
+      EXPECT_NE(other.complaint.find("mine.toml has Mine"), std::string::npos) << other.complaint;
+    }
+  }
+  const Answer planned = run("plan --hand barrett --object Mine --candidates 4 --seed 3" + by_file);
+  EXPECT_LE(planned.code, 1) << planned.complaint;
+  std::filesystem::remove(catalogue);
+  std::filesystem::remove(lab);
 }
 
 TEST(GraspTool, WhatIsPlannedIsExportedDrawnAndJudgedAlike) {

@@ -70,7 +70,7 @@ TEST_P(Popular, IsUnderstood) {
 }
 
 TEST_P(Popular, Holds) {
-  const auto bodies = planner::catalogue_bodies();
+  const auto bodies = planner::catalogue_bodies({});
   ASSERT_TRUE(bodies) << bodies.error().message();
   const bool all = std::getenv("PREHEND_LONG") != nullptr;
   // Of more joints than most; the others stand for it in a short run.
