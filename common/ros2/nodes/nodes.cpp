@@ -25,6 +25,17 @@ Expected<int> domain_of_nodes() {
   return domain;
 }
 
+Expected<std::string> network_of_nodes(const std::string& said) {
+  if (said == "laptop" || said == "lan") return said;
+  if (!said.empty()) return wrong_use("is neither laptop nor lan", "network " + said);
+  const char* range = std::getenv("ROS_AUTOMATIC_DISCOVERY_RANGE");
+  const std::string_view word = range ? range : "";
+  if (word == "OFF")
+    return wrong_use("lets no node be found", "ROS_AUTOMATIC_DISCOVERY_RANGE=OFF",
+                     "SUBNET or LOCALHOST");
+  return word == "SUBNET" ? "lan" : "laptop";
+}
+
 Expected<dds::Participant> join_nodes(const std::string& name, int domain,
                                       const std::string& network) {
   dds::ParticipantOptions options{.name = name, .domain = domain};

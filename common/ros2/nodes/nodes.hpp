@@ -13,6 +13,11 @@ namespace prehend::ros2 {
 /// Of ROS_DOMAIN_ID, as nodes take it: 0 where nothing is said. Else 0 to 232.
 Expected<int> domain_of_nodes();
 
+/// How they are reached: laptop (nodes of this machine) or lan (of the network). said: in a
+/// configuration; empty: as ROS_AUTOMATIC_DISCOVERY_RANGE has it, where a word that it does not
+/// know is LOCALHOST, and laptop where nothing is said. Fails on other words, and on OFF.
+Expected<std::string> network_of_nodes(const std::string& said);
+
 /// network: laptop (nodes of this machine) or lan (of the network).
 Expected<dds::Participant> join_nodes(const std::string& name, int domain,
                                       const std::string& network);

@@ -11,11 +11,11 @@ namespace prehend::robot {
 Expected<NodesOptions> nodes_of(const service::Config& config) {
   const auto domain = ros2::domain_of_nodes();
   if (!domain) return tl::unexpected(domain.error());
-  NodesOptions nodes{config.text("robot.port"), *domain, config.text("robot.network")};
+  auto network = ros2::network_of_nodes(config.text("robot.network"));
+  if (!network) return tl::unexpected(network.error());
+  NodesOptions nodes{config.text("robot.port"), *domain, std::move(*network)};
   if (nodes.controller.starts_with('/')) nodes.controller.erase(0, 1);
   if (nodes.controller.empty()) nodes.controller = "joint_trajectory_controller";
-  if (nodes.network != "laptop" && nodes.network != "lan")
-    return wrong_use("is no network of nodes", "robot.network", "give laptop or lan");
   return nodes;
 }
 

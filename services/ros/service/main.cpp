@@ -17,9 +17,9 @@ int main(int argc, char** argv) {
   lab.add_to(app);
   ros::Teller::Options options;
   app.add_option("--network", options.network,
-                 "laptop: nodes of this machine; lan: of the network, where everybody may listen")
-      ->check(CLI::IsMember({"laptop", "lan"}))
-      ->capture_default_str();
+                 "laptop: nodes of this machine; lan: of the network, where everybody may listen; "
+                 "without: as ROS_AUTOMATIC_DISCOVERY_RANGE says, else laptop")
+      ->check(CLI::IsMember({"laptop", "lan"}));
   app.add_option("--hand", options.hand, "the robot hand that is told; without: the first heard");
   log::set_name("ros");
   return tool::with_whole_output([&] {

@@ -67,7 +67,9 @@ Expected<void> Teller::join_nodes(const service::Config& config) {
   if (!X_WC) return tl::unexpected(X_WC.error());
   camera_ = config.text("camera.name");
   lens_ = lens_of(config);
-  auto joined = ros2::join_nodes("prehend_ros", options_.domain, options_.network);
+  const auto network = ros2::network_of_nodes(options_.network);
+  if (!network) return tl::unexpected(network.error());
+  auto joined = ros2::join_nodes("prehend_ros", options_.domain, *network);
   if (!joined) return tl::unexpected(joined.error());
   nodes_.emplace(std::move(*joined));
   auto made = voices();

@@ -24,9 +24,9 @@ namespace prehend::ros {
 class Teller {
  public:
   struct Options {
-    int domain = 0;                  // ROS_DOMAIN_ID
-    std::string network = "laptop";  // how nodes are reached
-    std::string hand;                // the robot hand that is told; empty: the first that is heard
+    int domain = 0;       // ROS_DOMAIN_ID
+    std::string network;  // how nodes are reached; empty: as their environment says
+    std::string hand;     // the robot hand that is told; empty: the first that is heard
   };
   static Expected<std::unique_ptr<Teller>> create(const service::Config& config,
                                                   const Options& options);

@@ -39,8 +39,6 @@ dds::GuidPrefix node_of(const dds::RawSample& sample) {
 Expected<std::unique_ptr<Leader>> Leader::create(service::Shell& shell) {
   const service::Config& config = shell.config();
   if (shell.lockstep()) return wrong_use("is not for lockstep", "ros-lead", "nodes are live");
-  const auto network = service::network_of_nodes(config);
-  if (!network) return tl::unexpected(network.error());
   const std::string& kind = config.text("mapping.hand");
   if (kind.empty()) return wrong_use("is no hand", "mapping.hand", model::hand_hint());
   auto hand = model::HandModel::load(model::hand_directory(kind));
@@ -78,7 +76,9 @@ Leader::~Leader() {
 Expected<void> Leader::join_nodes() {
   const auto domain = ros2::domain_of_nodes();
   if (!domain) return tl::unexpected(domain.error());
-  auto joined = ros2::join_nodes("prehend_ros_lead", *domain, shell_.config().text("ros.network"));
+  const auto network = service::network_of_nodes(shell_.config());
+  if (!network) return tl::unexpected(network.error());
+  auto joined = ros2::join_nodes("prehend_ros_lead", *domain, *network);
   if (!joined) return tl::unexpected(joined.error());
   nodes_.emplace(std::move(*joined));
   const auto read = [this](const std::string& topic, const char* type,
