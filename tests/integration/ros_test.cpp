@@ -129,6 +129,25 @@ void expect_joints(const std::string& heard, const model::HandModel& model,
   }
 }
 
+void expect_frames(const std::string& heard, const model::HandModel& model,
+                   const v1::HandState& state) {
+  const auto frames = frames_in(heard);
+  ASSERT_EQ(frames.size(), 4U) << heard;
+  EXPECT_EQ(frames.at(model.links()[0].name).parent, "table");
+  EXPECT_TRUE(
+      frames.at(model.links()[0].name).X.isApprox(make_pose(Eigen::Vector3d(0.1, 0.2, 0.3)), 1e-8));
+  const model::HandJoint& last =
+      model.joints().at(static_cast<std::size_t>(model.links().back().joint));
+  const double angle = state.joint()[static_cast<std::size_t>(model.links().back().joint)];
+  EXPECT_EQ(frames.at(model.links().back().name).parent,
+            model.links()[static_cast<std::size_t>(last.parent)].name);
+  // The joint's frame, turned about its axis; nine digits were printed.
+  EXPECT_TRUE(frames.at(model.links().back().name)
+                  .X.isApprox(last.X_PJ * Pose(Eigen::AngleAxisd(angle, last.axis_J)), 1e-7));
+  EXPECT_EQ(frames.at("object/Talc").parent, "table");
+  EXPECT_TRUE(frames.at("object/Talc").X.isApprox(make_pose(Eigen::Vector3d(1, 2, 3)), 1e-8));
+}
+
 TEST_F(Ros, NodesHearTheHandWithoutABridge) {
   const auto model = model::HandModel::load(model::hand_directory("barrett")).value();
   auto states = writer(dds::robot_state);
@@ -174,20 +193,7 @@ TEST_F(Ros, NodesHearTheHandWithoutABridge) {
     EXPECT_NE(heard.find(line), std::string::npos) << line << heard;
   expect_announced(heard);
 
-  const auto frames = frames_in(heard);
-  ASSERT_EQ(frames.size(), 4U) << heard;
-  EXPECT_EQ(frames.at(model.links()[0].name).parent, "table");
-  EXPECT_TRUE(
-      frames.at(model.links()[0].name).X.isApprox(make_pose(Eigen::Vector3d(0.1, 0.2, 0.3)), 1e-8));
-  const model::HandJoint& last =
-      model.joints().at(static_cast<std::size_t>(model.links().back().joint));
-  const double angle = state.joint()[static_cast<std::size_t>(model.links().back().joint)];
-  EXPECT_EQ(frames.at(tip).parent, model.links()[static_cast<std::size_t>(last.parent)].name);
-  // The joint's frame, turned about its axis; nine digits were printed.
-  EXPECT_TRUE(
-      frames.at(tip).X.isApprox(last.X_PJ * Pose(Eigen::AngleAxisd(angle, last.axis_J)), 1e-7));
-  EXPECT_EQ(frames.at("object/Talc").parent, "table");
-  EXPECT_TRUE(frames.at("object/Talc").X.isApprox(make_pose(Eigen::Vector3d(1, 2, 3)), 1e-8));
+  expect_frames(heard, model, state);
   bridge.signal(SIGTERM);
   const auto exit = bridge.wait(seconds(20));
   ASSERT_TRUE(exit);

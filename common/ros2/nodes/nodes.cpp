@@ -36,6 +36,14 @@ Expected<std::string> network_of_nodes(const std::string& said) {
   return word == "SUBNET" ? "lan" : "laptop";
 }
 
+Expected<std::string> network_of_leaders(const std::string& said, bool secured) {
+  auto network = network_of_nodes(said);
+  if (network && *network == "lan" && secured)
+    return wrong_use("would let anybody on the network lead a hand that has keys", "ros.network",
+                     "laptop: nodes of this machine alone");
+  return network;
+}
+
 Expected<dds::Participant> join_nodes(const std::string& name, int domain,
                                       const std::string& network) {
   dds::ParticipantOptions options{.name = name, .domain = domain};

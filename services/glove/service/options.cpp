@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <fstream>
 
-#include "common/service/nodes_network.hpp"
+#include "common/ros2/nodes/nodes.hpp"
 
 namespace prehend::glove {
 namespace {
@@ -51,13 +51,13 @@ Expected<DeviceOptions> device_options(const service::Config& config) {
   options.X_WT = *X_WT;
   options.port = config.text("glove.port");
   options.senders = config.names("glove.senders");
+  options.secured = !config.text("lab.keys").empty();
   if (const auto kind = find_device(config.text("glove.device"));
       kind && kind->line == Line::nodes) {
-    auto network = service::network_of_nodes(config);
+    auto network = ros2::network_of_leaders(config.text("ros.network"), options.secured);
     if (!network) return tl::unexpected(network.error());
     options.network = std::move(*network);
   }
-  options.secured = !config.text("lab.keys").empty();
   if (const auto file = config.path("glove.token_file"); !file.empty()) {
     auto token = read_token(file);
     if (!token) return tl::unexpected(token.error());

@@ -12,7 +12,7 @@
 #include "common/base/log_format.hpp"
 #include "common/convert/convert.hpp"
 #include "common/dds/topics.hpp"
-#include "common/service/nodes_network.hpp"
+#include "common/ros2/nodes/nodes.hpp"
 #include "services/recognition/cameras/camera.hpp"
 #include "services/recognition/core/detection/detector.hpp"
 #include "services/recognition/core/detection/watcher.hpp"
@@ -326,7 +326,8 @@ Expected<std::unique_ptr<Camera>> open_configured(const service::Config& config,
   CameraOptions wanted{std::string(source.name), config.text("recognition.path"), parts.camera,
                        rate};
   if (source.line == CameraLine::nodes) {
-    const auto network = service::network_of_nodes(config);
+    const auto network =
+        ros2::network_of_leaders(config.text("ros.network"), !config.path("lab.keys").empty());
     if (!network) return tl::unexpected(network.error());
     wanted.network = *network;
   }

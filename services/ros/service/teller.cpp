@@ -59,7 +59,7 @@ Expected<std::unique_ptr<Teller>> Teller::create(const service::Config& config,
 
 Teller::~Teller() {
   // What still receives writes into news_.
-  for (Ear* ear : {&hands_, &objects_, &reports_, &detections_, &pictures_}) ear->reset();
+  for (Reader* reader : {&hands_, &objects_, &reports_, &detections_, &pictures_}) reader->reset();
 }
 
 Expected<void> Teller::join_nodes(const service::Config& config) {
@@ -99,7 +99,7 @@ Expected<Teller::Voices> Teller::voices() {
 }
 
 template <class Topic, class Keep>
-Expected<Teller::Ear> Teller::listen(const Topic& topic, Keep keep) {
+Expected<Teller::Reader> Teller::listen(const Topic& topic, Keep keep) {
   return dds::RawReader::create(*lab_, dds::raw_topic(topic),
                                 [this, &topic, keep](dds::RawSample&& sample) {
                                   typename Topic::Type message;
@@ -115,10 +115,10 @@ Expected<void> Teller::join_lab(const service::Config& config) {
   auto joined = dds::Participant::create(service::membership(config, "ros", "viewer"));
   if (!joined) return tl::unexpected(joined.error());
   lab_.emplace(std::move(*joined));
-  const auto keep = [this](Ear& ear, const auto& topic, auto with) -> Expected<void> {
+  const auto keep = [this](Reader& reader, const auto& topic, auto with) -> Expected<void> {
     auto made = listen(topic, with);
     if (!made) return tl::unexpected(made.error());
-    ear = std::move(*made);
+    reader = std::move(*made);
     return {};
   };
   return keep(hands_, dds::robot_state,
@@ -161,13 +161,13 @@ void Teller::listen_to_pictures() {
   const bool wanted = voices_->picture.readers() + voices_->lens.readers() > 0;
   if (wanted == (pictures_ != nullptr)) return;
   if (!wanted) return pictures_.reset();
-  auto ear = listen(dds::camera_image, [this](const dds::Guid&, const v1::CameraImage* picture) {
+  auto reader = listen(dds::camera_image, [this](const dds::Guid&, const v1::CameraImage* picture) {
     if (picture && picture->camera().to_string() == camera_) news_.picture = *picture;
   });
-  if (ear)
-    pictures_ = std::move(*ear);
+  if (reader)
+    pictures_ = std::move(*reader);
   else
-    log::warning(ear.error());
+    log::warning(reader.error());
 }
 
 void Teller::tell(Duration limit) {

@@ -52,7 +52,7 @@ class Teller {
   struct Voices {
     dds::RawWriter joint_states, description, tf, tf_static, detections, diagnostics, picture, lens;
   };
-  using Ear = std::unique_ptr<dds::RawReader>;
+  using Reader = std::unique_ptr<dds::RawReader>;
 
   explicit Teller(Options options) : options_(std::move(options)) {}
   Expected<void> join_lab(const service::Config& config);
@@ -60,7 +60,7 @@ class Teller {
   Expected<Voices> voices();
   /// keep: gets each message, or nothing when its instance has ended; called with mutex_ held.
   template <class Topic, class Keep>
-  Expected<Ear> listen(const Topic& topic, Keep keep);
+  Expected<Reader> listen(const Topic& topic, Keep keep);
   /// Pictures are large: they are read in the lab while a node reads them here.
   void listen_to_pictures();
   void see(const dds::Guid& instance, const v1::ObjectDetection* detection);
@@ -84,7 +84,7 @@ class Teller {
   std::map<dds::Guid, Detection> seen_;
   std::optional<dds::Participant> nodes_, lab_;
   std::optional<Voices> voices_;
-  Ear hands_, objects_, reports_, detections_, pictures_;
+  Reader hands_, objects_, reports_, detections_, pictures_;
 };
 
 }  // namespace prehend::ros

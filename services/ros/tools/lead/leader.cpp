@@ -12,7 +12,6 @@
 #include "common/dds/topics.hpp"
 #include "common/ros2/joints.hpp"
 #include "common/ros2/nodes/nodes.hpp"
-#include "common/service/nodes_network.hpp"
 #include "common/service/status_publisher.hpp"
 #include "services/ros/core/wrist_goal.hpp"
 
@@ -76,7 +75,9 @@ Leader::~Leader() {
 Expected<void> Leader::join_nodes() {
   const auto domain = ros2::domain_of_nodes();
   if (!domain) return tl::unexpected(domain.error());
-  const auto network = service::network_of_nodes(shell_.config());
+  const service::Config& config = shell_.config();
+  const auto network =
+      ros2::network_of_leaders(config.text("ros.network"), !config.path("lab.keys").empty());
   if (!network) return tl::unexpected(network.error());
   auto joined = ros2::join_nodes("prehend_ros_lead", *domain, *network);
   if (!joined) return tl::unexpected(joined.error());
