@@ -146,9 +146,8 @@ void TaskPerformer::judge() {
   for (const auto& [name, X] : before_) {
     if (name == step.object) continue;
     const Pose& now = places_.at(name);
-    const double share =
-        std::max((now.translation() - X.translation()).norm() / limits_.max_moved,
-                 angle_between(now.linear(), X.linear()) / limits_.max_other_turn);
+    const double share = std::max((now.translation() - X.translation()).norm() / limits_.max_moved,
+                                  angle_between(now.linear(), X.linear()) / limits_.max_other_turn);
     verdict.others = std::max(verdict.others, share);
     if (verdict.reason.empty() && share > 1) verdict.reason = name + " was moved as well";
   }
