@@ -236,8 +236,9 @@ void Driver::judge(Time now) {
   if (is_hot_)
     return fault(
         fmt::format("too hot: {} °C, of at most {:.0f} °C", hottest, options_.max_temperature));
-  if (phase_ != Phase::ready) become_ready(now);
-  if (reads_angle_) publish(now);
+  const bool anew = phase_ != Phase::ready;
+  if (anew) become_ready(now);
+  if (anew || reads_angle_) publish(now);
 }
 
 void Driver::fault(const std::string& why) {
