@@ -110,6 +110,7 @@ const std::vector<ConfigKey>& config_keys() {
       {"robot.port", Text(""), "its serial port, or its controller in ROS 2"},
       {"robot.network", Text(""), "how nodes of ROS 2 are reached, as ros.network"},
       {"robot.baud", std::int64_t{0}, "bits per second on that port; 0: as the robot is sold"},
+      {"robot.id", std::int64_t{0}, "of a gripper or hand on its line; 0: as it is sold"},
       {"robot.wiring", Text(""),
        "which servo moves what; empty: dynamixel.toml in the folder of mapping.hand"},
       {"robot.hand_name", Text("hand"), "key of robot/command"},

@@ -45,6 +45,19 @@ TEST_P(DemoOfHand, HoldsTheObject) {
 
 INSTANTIATE_TEST_SUITE_P(Others, DemoOfHand, testing::Values("dlr", "parallel_jaw"));
 
+// Through the driver of a hand as it is sold, and what is emulated at the end of its wire.
+class DemoOfRobot : public Demo, public testing::WithParamInterface<const char*> {};
+
+TEST_P(DemoOfRobot, HoldsTheObject) {
+  const Answer answer = demo({"--seed", "1", "--robot", std::string("emulated:") + GetParam()});
+  ASSERT_EQ(answer.exit_code, 0) << answer.output << answer.log;
+  const json document = json::parse(answer.output);
+  EXPECT_EQ(document["grasp"]["held"], true);
+  EXPECT_EQ(document["mapping"]["hand"], GetParam());
+}
+
+INSTANTIATE_TEST_SUITE_P(Sold, DemoOfRobot, testing::Values("robotiq_2f85", "inspire_rh56"));
+
 // Grasps are planned for what is seen, and the hand follows one.
 TEST_F(Demo, WithPlannedGraspsHoldsTheObject) {
   ::setenv("XDG_STATE_HOME", (folder_ / "state").c_str(), 1);

@@ -8,6 +8,7 @@
 #include "common/base/file_text.hpp"
 #include "common/convert/convert.hpp"
 #include "tests/integration/rig.hpp"
+#include "tests/support/hands.hpp"
 
 namespace prehend::integration {
 namespace {
@@ -38,8 +39,10 @@ class Robot : public Rig {
     message.sequence_number(++sequence_);
     message.stamp_ns(now_ns());
     message.origin_ns(now_ns());
-    message.dof(std::vector<double>(model_ == "barrett" ? 4 : 1, closure));
-    if (model_ == "barrett") message.dof()[0] = 0;  // the spread
+    Eigen::VectorXd dof = test::hand(model_).postures().at("open");
+    for (Eigen::Index d = 0; d < dof.size(); ++d)
+      if (test::hand(model_).dofs()[static_cast<std::size_t>(d)].closing != 0) dof[d] = closure;
+    message.dof(convert::to_message(dof));
     message.X_WB(convert::to_message(make_pose({0, 0, 0.5})));
     message.mode(v1::MODE_DIRECT);
     return message;
@@ -218,19 +221,21 @@ class RobotOfOneJoint : public Robot {
     const Answer answer = run("prehend-robot-tool", with_lab(check), 30);
     ASSERT_EQ(answer.exit_code, 0) << answer.log;
     EXPECT_EQ(json::parse(answer.output)["state"], "ready");
-    EXPECT_EQ(json::parse(answer.output)["joints_rad"].size(), 1u);
+    EXPECT_EQ(json::parse(answer.output)["joints_rad"].size(), test::hand(model_).dofs().size());
   }
-  void lead_stop_and_release(const Strings& sets) {
+  void lead_stop_and_release(const Strings& sets, double here = 0.02, double there = 0.04,
+                             double within = 5e-4) {
+    const auto is_at = [&](double value) { return std::abs(finger(0) - value) < within; };
     service_.emplace(start("robot", sets));
     ASSERT_TRUE(wait(30, [&] { return heard_ > 0; })) << status_.message();
     meet(commands_);
-    ASSERT_TRUE(lead(0.02, 30, [&] { return std::abs(finger(0) - 0.02) < 5e-4; })) << finger(0);
+    ASSERT_TRUE(lead(here, 30, [&] { return is_at(here); })) << finger(0);
     order(v1::ACTION_STOP, "test");
     ASSERT_TRUE(wait(10, [&] { return gate_.stopped(); }));
-    EXPECT_FALSE(lead(0.04, 1, [&] { return std::abs(finger(0) - 0.02) > 2e-3; }));
+    EXPECT_FALSE(lead(there, 1, [&] { return std::abs(finger(0) - here) > 4 * within; }));
     order(v1::ACTION_RELEASE, "the test goes on");
     ASSERT_TRUE(wait(10, [&] { return !gate_.stopped(); }));
-    EXPECT_TRUE(lead(0.04, 20, [&] { return std::abs(finger(0) - 0.04) < 5e-4; })) << finger(0);
+    EXPECT_TRUE(lead(there, 20, [&] { return is_at(there); })) << finger(0);
   }
 };
 
@@ -243,6 +248,33 @@ TEST_F(RobotOfOneJoint, ServosAreLedAndStopped) {
   ASSERT_TRUE(lead(0.01, 20, [&] { return gate_.stopped(); }));
   EXPECT_EQ(gate_.stopped_by().to_string(), "the robot itself");
 }
+
+/// Those that are sold whole, with a driver of their own.
+class RobotOfItsOwnKind : public RobotOfOneJoint, public testing::WithParamInterface<const char*> {
+ protected:
+  RobotOfItsOwnKind() { model_ = GetParam(); }
+};
+
+TEST_P(RobotOfItsOwnKind, IsLedStoppedReleasedAndNeedsItsHomingAgainAfterARestart) {
+  emulator_.emplace(emulate({"--device", model_, "--homed"}));
+  const Strings sets = settings({"robot.device=" + model_});
+  ASSERT_NO_FATAL_FAILURE(check(sets));
+  ASSERT_NO_FATAL_FAILURE(lead_stop_and_release(sets, 0.3, 0.45, 0.02));
+  emulator_->stop(seconds(10));
+  ASSERT_TRUE(lead(0.3, 20, [&] { return gate_.stopped(); }));
+  EXPECT_EQ(gate_.stopped_by().to_string(), "the robot itself");
+  // Switched off and on, a gripper must be activated again, and says so.
+  const bool homes = model_.starts_with("robotiq");
+  const int before = heard_;
+  emulator_.emplace(emulate({"--device", model_}));
+  ASSERT_TRUE(wait(30, [&] {
+    return homes ? says("it is not activated (activating it opens") : heard_ > before + 10;
+  })) << status_.message();
+  EXPECT_TRUE(gate_.stopped());
+}
+
+INSTANTIATE_TEST_SUITE_P(All, RobotOfItsOwnKind,
+                         testing::Values("robotiq_2f85", "robotiq_2f140", "inspire_rh56"));
 
 /// A controller of ROS 2, in a namespace and a domain of its own.
 class RobotOfRos : public RobotOfOneJoint {

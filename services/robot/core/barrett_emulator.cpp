@@ -105,6 +105,11 @@ void Emulator::block(std::size_t dof, bool blocked) {
     if (dof_of[i] == dof) motors_[i].blocked = blocked;
 }
 
+void Emulator::restart() {
+  (void)break_off();
+  for (Motor& motor : motors_) motor.initialized = false;
+}
+
 // --- supervisory mode
 
 std::string Emulator::receive(std::string_view bytes, Duration now) {

@@ -26,6 +26,7 @@ class Emulator final : public robot::Emulator {
   void measure(const Eigen::VectorXd& dof) override;
   void block(std::size_t dof, bool blocked) override;
   void heat(double celsius) override { temperature_ = celsius; }
+  void restart() override;
 
  private:
   struct Motor {

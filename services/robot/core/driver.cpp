@@ -2,6 +2,8 @@
 
 #include "services/robot/core/barrett_driver.hpp"
 #include "services/robot/core/dynamixel_driver.hpp"
+#include "services/robot/core/inspire_driver.hpp"
+#include "services/robot/core/robotiq_driver.hpp"
 #include "services/robot/core/ros2_control_driver.hpp"
 
 namespace prehend::robot {
@@ -30,6 +32,12 @@ const std::vector<DriverKind>& driver_kinds() {
        barrett::create},
       {"dynamixel", "", "dynamixel.toml", Medium::serial, 57600,
        "servos of protocol 2.0 on one line", dynamixel::create},
+      {"robotiq_2f85", "robotiq_2f85", "", Medium::serial, 115200, "Robotiq 2F-85, Modbus RTU",
+       robotiq::create_2f85},
+      {"robotiq_2f140", "robotiq_2f140", "", Medium::serial, 115200, "Robotiq 2F-140, Modbus RTU",
+       robotiq::create_2f140},
+      {"inspire_rh56", "inspire_rh56", "", Medium::serial, 115200, "Inspire RH56, its own frames",
+       inspire::create},
       {"ros2_control", "", "", Medium::topics, 0, "a controller manager of ROS 2, by DDS",
        ros2_control::create},
   };

@@ -35,6 +35,7 @@ struct Reading {
 
 struct DriverOptions {
   int baud = 9600;              // of the line
+  int id = 0;                   // of the device on it; 0: as it is sold
   double rate = 100;            // Hz, of commands, as far as the line has room
   double max_temperature = 60;  // °C, above which it is faulted
   Duration lost_after = std::chrono::milliseconds(300);  // without a sound answer

@@ -166,6 +166,10 @@ void Emulator::heat(double celsius) {
   for (Unit& unit : units_) unit.set(table::temperature, std::lround(celsius));
 }
 
+void Emulator::restart() {
+  for (Unit& unit : units_) reboot(unit);
+}
+
 // --- what is said
 
 std::string Emulator::receive(std::string_view bytes, Duration now) {

@@ -27,6 +27,7 @@ class Emulator final : public robot::Emulator {
   void measure(const Eigen::VectorXd& dof) override;
   void block(std::size_t dof, bool blocked) override;
   void heat(double celsius) override;
+  void restart() override;
 
  private:
   struct Unit {

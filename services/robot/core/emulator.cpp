@@ -2,6 +2,8 @@
 
 #include "services/robot/core/barrett_emulator.hpp"
 #include "services/robot/core/dynamixel_emulator.hpp"
+#include "services/robot/core/inspire_emulator.hpp"
+#include "services/robot/core/robotiq_emulator.hpp"
 #include "services/robot/core/ros2_control_emulator.hpp"
 
 namespace prehend::robot {
@@ -31,6 +33,9 @@ const std::vector<EmulatorKind>& emulator_kinds() {
   static const std::vector<EmulatorKind> kinds{
       {"barrett", "barrett", "", barrett_hand, Medium::serial, 38400},
       {"dynamixel", "", "dynamixel.toml", dynamixel_servos, Medium::serial, 1000000},
+      {"robotiq_2f85", "robotiq_2f85", "", robotiq::emulate_2f85, Medium::serial, 115200},
+      {"robotiq_2f140", "robotiq_2f140", "", robotiq::emulate_2f140, Medium::serial, 115200},
+      {"inspire_rh56", "inspire_rh56", "", inspire::emulate, Medium::serial, 115200},
       {"ros2_control", "", "", controllers, Medium::topics, 0},
   };
   return kinds;

@@ -18,6 +18,8 @@ struct EmulatedOptions {
   int temperature_bytes = 2;  // of its feedback, where the protocol leaves that open
   double velocity_scale = 1;  // how much faster it is than it is told, as units may be mistaken
   std::string wiring = {}, wiring_file = {};  // as of its driver
+  int id = 0;                                 // on the line; 0: as it is sold
+  int answers_as = 0;                         // the id in its answers; 0: its own
 };
 
 /// The far end of a robot's line as a value: what the host says in, what the robot says out.
@@ -41,6 +43,8 @@ class Emulator {
   /// A joint moves no more, or again.
   virtual void block(std::size_t dof, bool blocked) = 0;
   virtual void heat(double celsius) = 0;
+  /// It was switched off and on: what it does not keep without power is lost.
+  virtual void restart() = 0;
 };
 
 struct EmulatorKind {

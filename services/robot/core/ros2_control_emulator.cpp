@@ -117,6 +117,12 @@ void Emulator::measure(const Eigen::VectorXd& dof) {
   }
 }
 
+/// Its controller holds where it finds the joints.
+void Emulator::restart() {
+  trajectory_.points.clear();
+  begun_from_ = measured();
+}
+
 void Emulator::block(std::size_t dof, bool blocked) {
   joints_.at(dof).blocked = blocked;
 }

@@ -23,6 +23,7 @@ class Emulator final : public robot::Emulator {
   void measure(const Eigen::VectorXd& dof) override;
   void block(std::size_t dof, bool blocked) override;
   void heat(double) override {}  // nobody tells temperatures
+  void restart() override;
 
   int refused() const { return refused_; }  // trajectories
 

@@ -23,10 +23,15 @@ Expected<void> emulate(const EmulationOptions& options, Emulator& robot,
   Random random(faults.seed);
   std::unique_ptr<serial::Plug> plug;
   serial::Wire wire(options.baud);
+  bool restarted = false;
   while (!stopped()) {
     Duration now = std::chrono::duration_cast<Duration>(Clock::now() - start);
     robot.heat(serial::within(now, faults.hot_at, faults.hot_for) ? faults.hot : warm);
     robot.block(faults.stuck, serial::within(now, faults.stuck_at, faults.stuck_for));
+    if (!restarted && faults.restart_at >= 0 && now > seconds(faults.restart_at)) {
+      robot.restart();
+      restarted = true;
+    }
     const bool cut = serial::within(now, faults.cut_at, faults.cut_for);
     if (cut) {
       plug.reset();

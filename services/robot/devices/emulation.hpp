@@ -25,6 +25,7 @@ struct FaultOptions {
   double stuck_at = -1;     // when a joint does not move any more
   double stuck_for = 3;     // s, until it does
   std::size_t stuck = 0;    // DoF of that joint
+  double restart_at = -1;   // when it is switched off and on, and forgets
   std::uint64_t seed = 1;   // the same makes the same faults
 };
 

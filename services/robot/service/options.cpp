@@ -45,7 +45,10 @@ Expected<Connection> connection_of(const service::Config& config) {
       (*kind)->hand.empty() ? config.text("mapping.hand") : std::string((*kind)->hand));
   auto hand = model::HandModel::load(folder);
   if (!hand) return tl::unexpected(hand.error());
+  const std::int64_t id = config.integer("robot.id");
+  if (id < 0 || id > 254) return wrong_use("must be 0 to 254", "robot.id");
   DriverOptions options{.baud = speed,
+                        .id = static_cast<int>(id),
                         .rate = config.number("robot.rate"),
                         .max_temperature = config.number("robot.max_temperature"),
                         .lost_after = seconds(config.number("robot.lost_after"))};

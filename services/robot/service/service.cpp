@@ -22,7 +22,8 @@ constexpr Duration stale = std::chrono::milliseconds(200);  // without commands:
 std::string advice(Phase phase, const std::string& trouble) {
   switch (phase) {
     case Phase::configured:
-      return "configured, not homed; prehend robot home, or robot.home = true";
+      return "configured, " + (trouble.empty() ? "not homed" : trouble) +
+             "; prehend robot home, or robot.home = true";
     case Phase::ready:
       return {};
     default:

@@ -130,6 +130,8 @@ void add_faults(CLI::App& command, FaultOptions& faults) {
   command.add_option("--hot-for", faults.hot_for, "s that this lasts")->capture_default_str();
   command.add_option("--stuck-at", faults.stuck_at, "s after the start, when the joint is stuck");
   command.add_option("--stuck-for", faults.stuck_for, "s that this lasts")->capture_default_str();
+  command.add_option("--restart", faults.restart_at,
+                     "s after the start, when it is switched off and on");
   command.add_option("--seed", faults.seed, "of the faults");
 }
 
@@ -152,6 +154,10 @@ void add_emulate(tool::Program& program) {
       ->check(CLI::Range(0, 2));
   command->add_option("--velocity-scale", a->robot.velocity_scale,
                       "how much faster it is than it is told");
+  command->add_option("--id", a->robot.id, "on its line; 0: as it is sold")
+      ->check(CLI::Range(0, 254));
+  command->add_option("--answers-as", a->robot.answers_as, "id in its answers, as of another")
+      ->check(CLI::Range(0, 254));
   command->add_option("--stuck", a->stuck, "joint that is stuck");
   add_faults(*command, a->faults);
   program.on(*command, [a]() -> int {

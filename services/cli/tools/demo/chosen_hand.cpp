@@ -16,6 +16,11 @@ bool is_ours(const std::string& hand) {
 
 }  // namespace
 
+std::string hand_of_robot(const std::string& robot) {
+  const std::string device = robot.substr(robot.find(':') + 1);
+  return is_ours(device) ? device : std::string();
+}
+
 std::string hand_setting(const std::string& hand) {
   if (hand.empty() || is_ours(hand)) return hand;
   return std::filesystem::absolute(model::hand_directory(hand)).string();

@@ -12,6 +12,7 @@
 #include "common/base/log_format.hpp"
 #include "common/base/printable.hpp"
 #include "common/base/terminal.hpp"
+#include "services/cli/tools/demo/chosen_hand.hpp"
 #include "services/cli/tools/demo/demonstration.hpp"
 #include "services/cli/tools/demo/series.hpp"
 
@@ -131,6 +132,7 @@ int demo_command(const std::vector<std::string>& arguments) {
   if (const auto code = service::parse(app, arguments)) return *code;
   demo.direct = mode == "direct";
   demo.planned = mode == "planned";
+  if (demo.hand.empty()) demo.hand = hand_of_robot(demo.robot);
 
   Screen screen(quiet);
   const stage::Progress progress = [&screen](const std::string& text) { screen.show(text); };

@@ -71,8 +71,9 @@ TEST_P(EveryHand, KeepsItsFingertips) {
     for (const model::HandFingertip& other : made->model.fingertips())
       if (made->model.links()[static_cast<std::size_t>(other.link)].name == link)
         nearest = std::min(nearest, (other.p_LT - tip.p_LT).norm());
-    const bool slides = written.dofs()[0].kind == model::JointKind::prismatic;
-    EXPECT_LT(nearest, slides ? 0.025 : 0.005) << link;
+    // Of a gripper the middle of the pad is written.
+    const bool is_gripper = written.dofs().size() == 1;
+    EXPECT_LT(nearest, is_gripper ? 0.04 : 0.005) << link;
   }
 }
 
@@ -115,9 +116,10 @@ TEST_P(EveryHand, KeepsItsKinematicsMassesAndShapes) {
 
 TEST_P(EveryHand, LooksOutOfThePalmAsWritten) {
   const Eigen::Matrix3d R = written.X_BG().linear().transpose() * made->model.X_BG().linear();
-  EXPECT_GT(R(2, 2), 0.9);
-  // The thumbs of these two lie beside the palm and swing where no sign of closing leads them.
-  if (GetParam() != "robonaut" && GetParam() != "rutgers") {
+  // The RH56 is written leaning from the palm's normal towards its open fingers, by 35 degrees.
+  EXPECT_GT(R(2, 2), GetParam() == "inspire_rh56" ? 0.6 : 0.9);
+  // The thumbs of these lie beside the palm and swing where no sign of closing leads them.
+  if (GetParam() != "robonaut" && GetParam() != "rutgers" && GetParam() != "inspire_rh56") {
     EXPECT_GT(R(1, 1), 0.8);
   }
 }
