@@ -135,8 +135,9 @@ TEST(Split, HasThePartsThatAreAskedFor) {
 }
 
 TEST(Split, SaysWhatIsNone) {
-  for (const char* text : {"", "train", "train=", "train=x", "train=0.8", "train=0.5,train=0.5",
-                           "a/b=1", "train=nan,valid=0.2", "train=1.2,valid=-0.2", "train=1,"})
+  for (const char* text :
+       {"", "train", "train=", "train=x", "train=0.8", "train=0.5,train=0.5", "a/b=1",
+        "train=nan,valid=0.2", "train=1.2,valid=-0.2", "train=1,", "success=1"})
     EXPECT_FALSE(parse_split(text)) << text;
   EXPECT_TRUE(parse_split("all=1"));
 }

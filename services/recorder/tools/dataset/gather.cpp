@@ -56,6 +56,11 @@ class Gatherer {
     auto given = given_times(options_);
     if (!given) return tl::unexpected(given.error());
     given_ = std::move(*given);
+    if (!options_.split.empty()) {
+      auto shares = parse_split(options_.split);
+      if (!shares) return tl::unexpected(shares.error());
+      shares_ = std::move(*shares);
+    }
     if (options_.columns.empty()) return {};
     auto columns = load_columns(options_.columns);
     if (!columns) return tl::unexpected(columns.error());
@@ -171,15 +176,13 @@ class Gatherer {
 
   /// Says to which part each episode belongs; those of one part stand together, as LeRobot wants.
   Expected<void> split() {
-    if (options_.split.empty()) return {};
+    if (shares_.empty()) return {};
     Dataset& dataset = gathered_.dataset;
-    const auto shares = parse_split(options_.split);
-    if (!shares) return tl::unexpected(shares.error());
-    const auto parts = draw_split(*shares, dataset.episodes.size(), options_.split_seed);
+    const auto parts = draw_split(shares_, dataset.episodes.size(), options_.split_seed);
     if (!parts) return tl::unexpected(parts.error());
     std::vector<RecordedEpisode> ordered;
-    for (std::size_t part = 0; part < shares->size(); ++part) {
-      const std::string& name = (*shares)[part].first;
+    for (std::size_t part = 0; part < shares_.size(); ++part) {
+      const std::string& name = shares_[part].first;
       dataset.splits.emplace_back(name, std::ranges::count(*parts, part));
       for (std::size_t i = 0; i < parts->size(); ++i) {
         if ((*parts)[i] != part) continue;
@@ -196,6 +199,7 @@ class Gatherer {
   std::optional<model::HandModel> hand_;
   std::optional<ColumnsFile> columns_;
   std::vector<std::pair<double, double>> given_;
+  Shares shares_;
   std::vector<std::string> mapped_columns_;  // of states and actions
 };
 
