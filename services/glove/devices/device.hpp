@@ -75,7 +75,7 @@ enum class Line {
 inline constexpr auto line_names = named_values<Line>({{Line::none, "none"},
                                                        {Line::serial, "serial"},
                                                        {Line::datagrams, "udp"},
-                                                       {Line::nodes, "ros2"},
+                                                       {Line::nodes, "nodes"},
                                                        {Line::topic, "topic"},
                                                        {Line::file, "file"}});
 

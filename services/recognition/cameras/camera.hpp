@@ -51,7 +51,7 @@ inline constexpr auto camera_line_names = named_values<CameraLine>({{CameraLine:
                                                                     {CameraLine::device, "device"},
                                                                     {CameraLine::stream, "stream"},
                                                                     {CameraLine::folder, "folder"},
-                                                                    {CameraLine::nodes, "ros2"},
+                                                                    {CameraLine::nodes, "nodes"},
                                                                     {CameraLine::topic, "topic"}});
 
 /// Everything that others may want to know of a kind of camera. Nothing outside this folder names

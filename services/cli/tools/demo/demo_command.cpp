@@ -91,6 +91,12 @@ void add_choices(CLI::App& app) {
       "--targets", [] {}, "only say what `cmake --build` must make for this");
 }
 
+void choose(DemoOptions& demo, const std::string& mode) {
+  demo.direct = mode == "direct";
+  demo.planned = mode == "planned";
+  if (demo.hand.empty()) demo.hand = hand_of_robot(demo.robot);
+}
+
 }  // namespace
 
 int demo_command(const std::vector<std::string>& arguments) {
@@ -130,9 +136,7 @@ int demo_command(const std::vector<std::string>& arguments) {
   app.add_flag("--compare-direct", series.compare_direct,
                "with --seeds: each once more with direct mapping");
   if (const auto code = service::parse(app, arguments)) return *code;
-  demo.direct = mode == "direct";
-  demo.planned = mode == "planned";
-  if (demo.hand.empty()) demo.hand = hand_of_robot(demo.robot);
+  choose(demo, mode);
 
   Screen screen(quiet);
   const stage::Progress progress = [&screen](const std::string& text) { screen.show(text); };

@@ -292,9 +292,9 @@ Expected<void> GraspPlay::start_glove(const std::filesystem::path& scene_file,
     const bool serial = is_serial(glove_row_);
     std::string port = serial ? absolute(glove_.detail) : glove_.detail;
     if (port.empty()) {
-      port = serial                      ? (stage_.folder() / "glove_port").string()
-             : glove_row_.line == "ros2" ? fmt::format("demo_{}/hand_joints", ::getpid())
-                                         : free_address();
+      port = serial                       ? (stage_.folder() / "glove_port").string()
+             : glove_row_.line == "nodes" ? fmt::format("demo_{}/hand_joints", ::getpid())
+                                          : free_address();
       if (auto there = emulate(glove_row_, scene_file, port, {}); !there) return there;
       if (!glove_row_.tracker.empty()) {
         // The glove measures only joints: a tracker on its back says where the hand is.
