@@ -58,14 +58,16 @@ TEST_P(WildInput, NeverMovesFasterThanTheLimits) {
     if (random.uniform() < 0.02)
       mapping.on_detection_gone(static_cast<std::uint32_t>(random.index(3)));
     if (before) {
-      // The robot follows, but stops half-way in phases.
+      // The robot follows, but stops on its way in phases: so early that slow fingers are told to
+      // go on, too.
       robot = before->dof;
       if ((step / 400) % 2 == 1)
         for (std::size_t i = 0; i < hand.dofs().size(); ++i) {
           const model::HandDof& dof = hand.dofs()[i];
-          const double half = 0.5 * (dof.lower + dof.upper);
+          const double way = 0.25 * (dof.upper - dof.lower);
           double& q = robot[static_cast<Eigen::Index>(i)];
-          if (dof.closing != 0) q = dof.closing > 0 ? std::min(q, half) : std::max(q, half);
+          if (dof.closing != 0)
+            q = dof.closing > 0 ? std::min(q, dof.lower + way) : std::max(q, dof.upper - way);
         }
       base = before->X_WB;
     }
