@@ -71,9 +71,10 @@ TEST_P(EveryHand, KeepsItsFingertips) {
     for (const model::HandFingertip& other : made->model.fingertips())
       if (made->model.links()[static_cast<std::size_t>(other.link)].name == link)
         nearest = std::min(nearest, (other.p_LT - tip.p_LT).norm());
-    // Of a gripper the middle of the pad is written.
+    // Of a gripper the middle of the pad is written, which lies behind a bar or not.
+    const bool slides = written.dofs()[0].kind == model::JointKind::prismatic;
     const bool is_gripper = written.dofs().size() == 1;
-    EXPECT_LT(nearest, is_gripper ? 0.04 : 0.005) << link;
+    EXPECT_LT(nearest, slides ? 0.025 : is_gripper ? 0.04 : 0.005) << link;
   }
 }
 
