@@ -19,6 +19,36 @@ constexpr double distal_to_middle = 0.6;
 constexpr int index = 0, middle = 4, ring = 8, little = 12, thumb = 16;
 constexpr std::array fingers{index, middle, ring, little};
 
+/// What bends with a whole finger, told by one joint that bends much: 0 counts open, 255 a fist.
+std::vector<JointSensor> sensors_of_fingers() {
+  constexpr std::pair<std::string_view, int> told_by[] = {{"thumb", thumb + 3},
+                                                          {"index", index + 2},
+                                                          {"middle", middle + 2},
+                                                          {"ring", ring + 2},
+                                                          {"little", little + 2}};
+  const HumanPosture open = model::HumanHand::open_posture();
+  const HumanPosture fist = model::HumanHand::fist_posture();
+  std::vector<JointSensor> made;
+  for (const auto& [name, dof] : told_by) {
+    const double gain = (fist[dof] - open[dof]) / 255;
+    made.push_back({name, dof, false, gain, -open[dof] / gain});
+  }
+  return made;
+}
+
+HumanPosture posture_of_fingers(const std::vector<double>& counts, const JointGains& gains) {
+  static const auto sensors = sensors_of_fingers();
+  const HumanPosture open = model::HumanHand::open_posture();
+  const HumanPosture fist = model::HumanHand::fist_posture();
+  std::array<double, model::finger_count> closure{};
+  for (std::size_t f = 0; f < closure.size() && f < gains.gain.size(); ++f) {
+    const int dof = sensors[f].dof;
+    closure[f] =
+        (gains.gain[f] * counts[f] + gains.offset[f] - open[dof]) / (fist[dof] - open[dof]);
+  }
+  return model::HumanHand::posture(closure);
+}
+
 std::vector<double> mean(const std::vector<std::vector<double>>& samples) {
   std::vector<double> sum(samples.front().size());
   for (const auto& sample : samples)
@@ -58,6 +88,7 @@ const std::vector<JointSensor>& joint_sensors() {
 
 std::vector<JointSensor> joint_sensors_of(std::size_t count) {
   if (count == max_joint_sensors) return joint_sensors();
+  if (count == finger_sensors) return sensors_of_fingers();
   std::vector<JointSensor> sensors;
   if (count != min_joint_sensors) return sensors;
   for (const JointSensor& sensor : joint_sensors())
@@ -68,7 +99,7 @@ std::vector<JointSensor> joint_sensors_of(std::size_t count) {
 Expected<JointGains> typical_gains(std::size_t count) {
   const auto sensors = joint_sensors_of(count);
   if (sensors.empty())
-    return fail(fmt::format("a joint-angle glove has 18 or 22 sensors, not {}", count));
+    return fail(fmt::format("a joint-angle glove has 5, 18 or 22 sensors, not {}", count));
   JointGains gains;
   for (const JointSensor& sensor : sensors) {
     gains.gain.push_back(sensor.gain);
@@ -80,7 +111,7 @@ Expected<JointGains> typical_gains(std::size_t count) {
 Expected<void> check(const JointGains& gains) {
   const std::string where(joint_gains_table);
   if (joint_sensors_of(gains.gain.size()).empty() || gains.gain.size() != gains.offset.size())
-    return fail("needs 18 or 22 gains and as many offsets", where, "calibrate again");
+    return fail("needs 5, 18 or 22 gains and as many offsets", where, "calibrate again");
   for (std::size_t s = 0; s < gains.gain.size(); ++s)
     if (!std::isfinite(gains.gain[s]) || !std::isfinite(gains.offset[s]) || gains.gain[s] == 0)
       return fail(fmt::format("gain or offset {} is not a usable number", s + 1), where,
@@ -89,6 +120,7 @@ Expected<void> check(const JointGains& gains) {
 }
 
 HumanPosture joint_angles(const std::vector<double>& counts, const JointGains& gains) {
+  if (counts.size() == finger_sensors) return posture_of_fingers(counts, gains);
   const auto sensors = joint_sensors_of(counts.size());
   HumanPosture posture = HumanPosture::Zero();
   for (std::size_t s = 0; s < sensors.size() && s < gains.gain.size(); ++s)

@@ -9,7 +9,7 @@
 
 namespace prehend::glove {
 
-/// A sensor of a glove that measures joints, CyberGlove-class.
+/// A sensor of a glove that measures joints: CyberGlove-class, or one that bends with each finger.
 struct JointSensor {
   std::string_view name;
   int dof;           // of model::HumanPosture; -1: none there (palm arch, wrist)
@@ -26,24 +26,29 @@ inline constexpr std::string_view joint_gains_table = "joint_glove";
 const std::vector<JointSensor>& joint_sensors();
 inline constexpr std::size_t max_joint_sensors = 22, min_joint_sensors = 18;
 
-/// The sensors of a glove that has `count` of them; empty unless 18 or 22.
+/// One sensor a finger, thumb first: it bends with all joints of the finger, and is calibrated as
+/// its middle joint (the thumb's last).
+inline constexpr std::size_t finger_sensors = model::finger_count;
+
+/// The sensors of a glove that has `count` of them; empty unless 5, 18 or 22.
 std::vector<JointSensor> joint_sensors_of(std::size_t count);
 
-/// angle = gain · counts + offset for every sensor, in the order in which they are sent; 18 or 22.
-/// The table of this name in a user's calibration.
+/// angle = gain · counts + offset for every sensor, in the order in which they are sent; 5, 18
+/// or 22. The table of this name in a user's calibration.
 struct JointGains {
   std::vector<double> gain;    // rad a count
   std::vector<double> offset;  // rad
 };
 
-/// Typical gains, for somebody who has not been calibrated. Fails unless 18 or 22.
+/// Typical gains, for somebody who has not been calibrated. Fails unless 5, 18 or 22.
 Expected<JointGains> typical_gains(std::size_t count);
 
-/// Sizes agree, 18 or 22 of them, all finite, no gain zero.
+/// Sizes agree, 5, 18 or 22 of them, all finite, no gain zero.
 Expected<void> check(const JointGains& gains);
 
 /// Joint angles, rad, within the limits of a hand, from counts (of which there are as many as
-/// gains). A distal joint that is not measured bends 0.6 times as far as the one before it.
+/// gains). Of 18 a distal joint that is not measured bends 0.6 times as far as the one before it;
+/// of 5 each finger is as far between open and fist as its sensor says.
 model::HumanPosture joint_angles(const std::vector<double>& counts, const JointGains& gains);
 
 /// The counts that a glove would send, not rounded, from 1 to 255; what no joint moves is at 128.

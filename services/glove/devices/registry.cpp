@@ -9,6 +9,7 @@
 #include "services/glove/devices/landmarks.hpp"
 #include "services/glove/devices/nest_of_birds.hpp"
 #include "services/glove/devices/node_hand.hpp"
+#include "services/glove/devices/open_glove.hpp"
 #include "services/glove/devices/paced.hpp"
 #include "services/glove/files/hand_recording.hpp"
 
@@ -92,6 +93,13 @@ const std::vector<DeviceKind>& device_kinds() {
        .emulate = emulate_joint_glove,
        .tracker = "nest_of_birds",
        .keys = {"glove.port", "glove.baud", "glove.rate", "glove.wrist_port"}},
+      {.name = "open_glove",
+       .help = "an open glove that bends with each finger (LucidGloves), on a serial port",
+       .create = create_open_glove,
+       .line = Line::serial,
+       .emulate = emulate_open_glove,
+       .tracker = "nest_of_birds",
+       .keys = {"glove.port", "glove.baud", "glove.wrist_port"}},
       {.name = "landmarks",
        .help = "a bare hand that a camera sees, as datagrams",
        .create = create_landmarks,
