@@ -48,6 +48,7 @@ std::vector<std::vector<double>> samples(const HumanPosture& posture, const Join
 TEST(JointSensors, AreThoseOfBothGloves) {
   EXPECT_EQ(joint_sensors_of(22).size(), 22u);
   EXPECT_EQ(joint_sensors_of(18).size(), 18u);
+  EXPECT_EQ(joint_sensors_of(finger_sensors).size(), 5u);
   EXPECT_TRUE(joint_sensors_of(20).empty());
   EXPECT_FALSE(typical_gains(20));
   EXPECT_FALSE(check({}));
@@ -71,6 +72,31 @@ TEST(JointSensors, RoundTripCountsAndAngles) {
       const HumanPosture got = joint_angles(rounded(joint_counts(truth, gains)), gains);
       EXPECT_LT((got - truth).cwiseAbs().maxCoeff(), 0.0134);
     }
+}
+
+// A sensor for each finger: any hand that closes its fingers one by one is read back, also where
+// the sensors count down when they close.
+TEST(JointSensors, OfFingersTellHowFarEachIsClosed) {
+  Random random(3);
+  for (int n = 0; n < 200; ++n) {
+    std::array<double, 5> closure;
+    for (double& c : closure) c = random.uniform(0.05, 0.95);
+    const HumanPosture truth = HumanHand::posture(closure);
+    JointGains gains = *typical_gains(finger_sensors);
+    if (n % 2 == 1)
+      for (std::size_t s = 0; s < finger_sensors; ++s) {
+        gains.offset[s] += 255 * gains.gain[s];
+        gains.gain[s] = -gains.gain[s];
+      }
+    const HumanPosture got = joint_angles(rounded(joint_counts(truth, gains)), gains);
+    EXPECT_LT((got - truth).cwiseAbs().maxCoeff(), 0.01);
+    const auto fitted = fit_gains(samples(HumanHand::open_posture(), gains, random),
+                                  samples(HumanHand::fist_posture(), gains, random),
+                                  samples(pinch_posture(), gains, random));
+    ASSERT_TRUE(fitted) << fitted.error().message();
+    const HumanPosture by_fit = joint_angles(joint_counts(truth, gains), *fitted);
+    EXPECT_LT((by_fit - truth).cwiseAbs().maxCoeff(), 0.05);
+  }
 }
 
 TEST(JointSensors, KeepWhatAHandCanDo) {
