@@ -1,5 +1,7 @@
 #include "common/analysis/grasp_map.hpp"
 
+#include <fmt/format.h>
+
 #include <Eigen/Geometry>
 #include <Eigen/QR>
 #include <Eigen/SVD>
@@ -57,7 +59,9 @@ Expected<MatrixXd> contact_jacobian(const model::HandModel& hand, const VectorXd
                                     const Pose& X_BO, const std::vector<Contact>& contacts) {
   const auto joints = static_cast<Index>(hand.joints().size());
   if (joint_angles.size() != joints || !joint_angles.allFinite())
-    return fail("needs an angle of each joint", hand.name());
+    return fail(
+        fmt::format("has {} angles, {} has {} joints", joint_angles.size(), hand.name(), joints),
+        "joints", "give a finite angle in radians for each joint, or name the right --hand");
   const std::vector<Pose> X_BL = hand.link_poses(joint_angles);
   const Eigen::Matrix3d R_OB = X_BO.linear().transpose();
   MatrixXd jacobian = MatrixXd::Zero(4 * static_cast<Index>(contacts.size()), joints);

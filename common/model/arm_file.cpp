@@ -1,4 +1,6 @@
 // Reads arm.toml and joins it with what arm.urdf said to an ArmModel.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -15,7 +17,7 @@ constexpr const char* arm_page = "see models/arms/README.md";
 constexpr const char* arm_parts = "an arm is arm.urdf and arm.toml";
 constexpr double default_ramp = 0.25;  // s, from rest to full velocity
 constexpr double max_speed = 100;      // rad/s
-constexpr double max_range = 26;       // rad: four turns each way
+constexpr double max_range = 26;       // rad: four turns in all
 
 /// A chain of links as the arm's, or why it is none.
 Expected<ArmModel> arm_of(const HandTree& tree) {
@@ -46,7 +48,9 @@ Expected<ArmModel> arm_of(const HandTree& tree) {
       return fail("velocity limit must be positive, in rad/s", "joint " + joint.name,
                   "give its <limit> a velocity");
     if (joint.upper - joint.lower > max_range)
-      return fail("may turn more than eight times", "joint " + joint.name, "limits are in radians");
+      return fail(fmt::format("may turn by {:.1f} rad; {:.0f} are allowed, four turns",
+                              joint.upper - joint.lower, max_range),
+                  "joint " + joint.name, "write its <limit> in radians, or make the range smaller");
     arm.joints.push_back({joint.name, joint.X_PJ, joint.axis_J, joint.lower, joint.upper, velocity,
                           velocity / default_ramp, joint.max_torque});
     add_link(tree.links[i + 1]);
@@ -117,8 +121,8 @@ class ArmLoader {
     }
     for (const ArmJoint& joint : arm.joints) {
       if (!(joint.lower < joint.upper) || !(joint.upper - joint.lower <= max_range))
-        return fail("lower must be less than upper", "limits of joint " + joint.name,
-                    "radians, at most four turns each way");
+        return fail("lower must be less than upper, by at most four turns",
+                    "limits of joint " + joint.name, "write them in radians");
       if (!(joint.velocity > 0 && joint.velocity < max_speed && joint.acceleration > 0 &&
             joint.acceleration < 1e4))
         return fail("velocity and acceleration must be positive", "limits of joint " + joint.name,

@@ -49,10 +49,14 @@ Expected<std::shared_ptr<const Mesh>> read_mesh(const toml::table& table, const 
   if (name.empty()) return fail("mesh needs the name of a file");
   auto mesh = load_mesh(beside / name, table["mesh_scale"].value_or(1.0));
   if (!mesh) return tl::unexpected(mesh.error());
-  const Eigen::Vector3d mm = 1e3 * bounds(*mesh).sizes();
+  const auto in_mm = [](const Eigen::Vector3d& size) {
+    return fmt::format("{:.1f} x {:.1f} x {:.1f} mm", 1e3 * size.x(), 1e3 * size.y(),
+                       1e3 * size.z());
+  };
   if (!fills(*mesh, shape))
-    return fail(fmt::format("mesh is {:.1f} x {:.1f} x {:.1f} mm, which is not its size", mm.x(),
-                            mm.y(), mm.z()));
+    return fail(fmt::format("mesh is {}, but the object is {}", in_mm(bounds(*mesh).sizes()),
+                            in_mm(2 * half_extents(shape))),
+                {}, "correct size, or set mesh_scale: 0.001 for a mesh in mm");
   return std::make_shared<const Mesh>(moved(*mesh, -bounds(*mesh).center()));
 }
 

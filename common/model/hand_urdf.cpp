@@ -179,7 +179,8 @@ Expected<HandTree> read_hand_urdf(const std::string& text) {
   try {
     source = urdf::parseURDF(text);
   } catch (const std::exception& error) {  // of numbers that it cannot read
-    return fail(std::string("is not understood: ") + error.what());
+    return fail(std::string("a number cannot be read: ") + error.what(), {},
+                "look for text where a number belongs; `prehend hand check` names the place");
   }
   if (!source || !source->getRoot())
     return fail("is no robot description", {}, "`prehend hand check` says what is wrong with it");

@@ -20,6 +20,9 @@ using Bytes = std::vector<std::uint8_t>;
 
 inline constexpr std::size_t encapsulation = 4;  // bytes
 
+/// What to do about a message that is none.
+inline constexpr const char* type_hint = "ros2 topic info --verbose shows who tells which type";
+
 /// Makes them, little endian.
 class CdrWriter {
  public:

@@ -39,7 +39,7 @@ Expected<Joints> parse_joint_state(std::span<const std::uint8_t> bytes) {
   made.positions = read.reals();
   made.velocities = read.reals();
   made.efforts = read.reals();
-  if (!read.good()) return fail("is no joint state");
+  if (!read.good()) return fail("is no whole sensor_msgs/JointState", {}, type_hint);
   const std::size_t count = made.names.size();
   if (made.positions.size() != count) return fail("has other than a position for each joint");
   if ((!made.velocities.empty() && made.velocities.size() != count) ||
@@ -80,7 +80,7 @@ Expected<JointTrajectory> parse_joint_trajectory(std::span<const std::uint8_t> b
     for (int i = 0; i < 3; ++i) (void)read.reals();
     point.time_from_start = Duration(read.stamp());
   }
-  if (!read.good()) return fail("is no joint trajectory");
+  if (!read.good()) return fail("is no whole trajectory_msgs/JointTrajectory", {}, type_hint);
   if (!are_all_different(made.names)) return fail("names a joint twice");
   Duration last = Duration(-1);
   for (const auto& point : made.points) {

@@ -24,7 +24,7 @@ Expected<CompressedPicture> parse_compressed_image(std::span<const std::uint8_t>
   made.frame = read.text();
   made.format = read.text();
   made.data = read.bytes();
-  if (!read.good()) return fail("is no compressed image");
+  if (!read.good()) return fail("is no whole sensor_msgs/CompressedImage", {}, type_hint);
   return made;
 }
 
@@ -55,7 +55,7 @@ Expected<Lens> parse_camera_info(std::span<const std::uint8_t> bytes) {
   made.distortion = read.reals();
   std::array<double, 9> k{};
   for (double& value : k) value = read.real();
-  if (!read.good()) return fail("is no camera info");
+  if (!read.good()) return fail("is no whole sensor_msgs/CameraInfo", {}, type_hint);
   if (!model.empty() && model != "plumb_bob")
     return fail("has the distortion model «" + printable(model.substr(0, 64)) + "»", {},
                 "plumb_bob is understood");

@@ -18,7 +18,7 @@ Expected<StampedPose> parse_pose_stamped(std::span<const std::uint8_t> bytes) {
   made.stamp_ns = read.stamp();
   made.frame = read.text();
   const auto [p, q] = read.pose();
-  if (!read.good()) return fail("is no stamped pose");
+  if (!read.good()) return fail("is no whole geometry_msgs/PoseStamped", {}, type_hint);
   const auto X = checked_pose(p, q);
   if (!X) return tl::unexpected(X.error());
   made.X_FB = *X;
@@ -42,7 +42,7 @@ Expected<Points> parse_pose_array(std::span<const std::uint8_t> bytes) {
   made.frame = read.text();
   made.points.resize(read.length(pose_bytes));
   for (Eigen::Vector3d& point : made.points) point = read.pose().first;
-  if (!read.good()) return fail("is no pose array");
+  if (!read.good()) return fail("is no whole geometry_msgs/PoseArray", {}, type_hint);
   return made;
 }
 

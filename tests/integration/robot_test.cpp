@@ -314,7 +314,8 @@ TEST_F(RobotOfRos, AControllerThatIsGoneStopsItUntilItIsReleased) {
   meet(commands_);
   // What is no message is counted and left out.
   EXPECT_TRUE(lead(0.02, 30, [&] {
-    return std::abs(finger(0) - 0.02) < 5e-4 && dropped("joint state is no joint state") > 0;
+    return std::abs(finger(0) - 0.02) < 5e-4 &&
+           dropped("joint state is no whole sensor_msgs/JointState") > 0;
   })) << finger(0);
   emulator_->stop(seconds(10));
   ASSERT_TRUE(lead(0.02, 20, [&] { return gate_.stopped(); }));

@@ -63,7 +63,7 @@ class NodeCamera final : public Camera {
                   "does the camera's node run? ros2 topic hz, and ROS_DOMAIN_ID of both");
     if (const auto lens = lenses_->next({})) compare(lens->payload);
     const auto picture = ros2::parse_compressed_image(message->payload);
-    if (!picture) return tl::unexpected(picture.error());
+    if (!picture) return fail(picture.error().what, "/" + topic_, picture.error().hint);
     const Time now = process_now(), stamp = from_ns(picture->stamp_ns);
     age_ = stamp <= now && is_within(stamp, now, max_age) ? between(stamp, now) : Duration{};
     return decode_picture(picture->data, "/" + topic_);

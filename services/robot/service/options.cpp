@@ -29,7 +29,9 @@ Expected<Connection> connection_of(const service::Config& config) {
   connection.device = config.text("robot.device");
   connection.port = config.text("robot.port");
   const std::int64_t baud = config.integer("robot.baud");
-  if (baud < 0 || baud > 10000000) return wrong_use("is no speed of a line", "robot.baud");
+  if (baud < 0 || baud > 10000000)
+    return wrong_use("must be 0 to 10000000 bits per second", "robot.baud",
+                     "0 takes the speed that the robot is sold with");
   const int speed = baud == 0 ? (*kind)->baud : static_cast<int>(baud);
   if ((*kind)->medium == Medium::topics) {
     const auto nodes = nodes_of(config);

@@ -1,5 +1,7 @@
 #include "services/mapping/tools/benchmark/people.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <system_error>
 
@@ -32,9 +34,16 @@ Expected<std::vector<RealTake>> load_people(const std::filesystem::path& folder)
   if (error) return fail(error.message(), folder.string(), "is the path right?");
   std::ranges::sort(files);
   std::vector<RealTake> people;
+  std::string first = "put CSV of Leap or of 21 landmarks, or MCAP with hand/posture there";
   for (const auto& file : files)
-    if (auto take = load_recording(file)) people.push_back(std::move(*take));
-  if (people.empty()) return fail("holds no recordings of right hands", folder.string());
+    if (auto take = load_recording(file))
+      people.push_back(std::move(*take));
+    else if (&file == &files.front())
+      first = take.error().message();
+  if (people.empty())
+    return fail(
+        fmt::format("none of its {} files is a usable recording of a right hand", files.size()),
+        folder.string(), first);
   return people;
 }
 

@@ -248,6 +248,7 @@ Expected<Plan> load_plan(const std::filesystem::path& file) {
   if (!plan) {
     Error error = plan.error();
     error.where = file.string() + (error.where.empty() ? "" : ": " + error.where);
+    if (error.hint.empty()) error.hint = "plan the grasps again: prehend grasp plan";
     return tl::unexpected(std::move(error));
   }
   return plan;
