@@ -80,6 +80,10 @@ class EveryDevice : public ::testing::TestWithParam<DeviceKind> {
     return std::make_unique<EmulatedDevice>(std::move(emulation), source_);
   }
   bool has_line() const { return GetParam().has_port(); }
+  /// Before its driver, at whose end it must not speak: Fast DDS 2.9.1 hands over within a process
+  /// by pointers, and ends it when a reader leaves meanwhile (common/dds/guard/within_process.hpp).
+  /// They are two processes elsewhere.
+  static void silence(std::unique_ptr<EmulatedDevice>& emulated) { emulated.reset(); }
 
   /// Of all frames so far. Arrivals were before now.
   static void expect_sound(const std::vector<Frame>& frames) {
@@ -170,11 +174,12 @@ TEST(Devices, ThereIsOneForEachUse) {
 TEST_P(EveryDevice, GivesSoundFrames) {
   if (GetParam().line == Line::topic) return;
   if (GetParam().line == Line::file) return;  // recording_test.cpp reads its files
-  const auto emulated = has_line() ? emulator() : nullptr;
+  auto emulated = has_line() ? emulator() : nullptr;
   Listener listener;
   const auto driver = device();
   driver->start(listener.sink());
   ASSERT_TRUE(listener.frames(100));
+  silence(emulated);
   const auto frames = listener.all();
   expect_sound(frames);
   if (!has_line()) return;
@@ -194,11 +199,12 @@ TEST_P(EveryDevice, SurvivesEveryFault) {
        {.noise = 0.01, .extreme = 0.05, .garbage = 0.05, .drop_bytes = 0.05, .swap_bytes = 0.05}}};
   for (const auto& [name, fault] : faults) {
     SCOPED_TRACE(name);
-    const auto emulated = emulator(fault);
+    auto emulated = emulator(fault);
     Listener listener;
     const auto driver = device();
     driver->start(listener.sink());
     ASSERT_TRUE(listener.frames(30, 20));
+    silence(emulated);
     expect_sound(listener.all());
     if (fault.drop_bytes > 0.1 || fault.garbage > 0.1) {
       EXPECT_FALSE(listener.drops().empty()) << "lost bytes are counted";
@@ -211,7 +217,7 @@ TEST_P(EveryDevice, ComesBackWithin2500MillisecondsOfReplugging) {
   if (!has_line()) return;
   constexpr double unplug_at = 3, unplug_for = 1, aim = 2.5;
   const auto start = Clock::now();
-  const auto emulated = emulator({.unplug_at = unplug_at, .unplug_for = unplug_for});
+  auto emulated = emulator({.unplug_at = unplug_at, .unplug_for = unplug_for});
   Listener listener;
   const auto driver = device();
   driver->start(listener.sink());
@@ -224,18 +230,20 @@ TEST_P(EveryDevice, ComesBackWithin2500MillisecondsOfReplugging) {
   RecordProperty("seconds_after_replugging", std::to_string(after));
   std::cout << GetParam().name << ": frames " << after << " s after replugging\n";
   ASSERT_TRUE(listener.frames(20));
+  silence(emulated);
   expect_sound(listener.all());
 }
 
 TEST_P(EveryDevice, SaysWhenItFallsSilentAndComesBack) {
   if (!has_line()) return;
-  const auto emulated = emulator({.silent_at = 2.5, .silent_for = 1});
+  auto emulated = emulator({.silent_at = 2.5, .silent_for = 1});
   Listener listener;
   const auto driver = device();
   driver->start(listener.sink());
   ASSERT_TRUE(listener.frames(5));
   ASSERT_TRUE(listener.says(GetParam().line == Line::serial ? "silent" : "no landmarks"));
   ASSERT_TRUE(listener.frames(20));
+  silence(emulated);
   expect_sound(listener.all());
 }
 
