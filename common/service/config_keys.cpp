@@ -108,7 +108,7 @@ const std::vector<ConfigKey>& config_keys() {
 
       {"robot.device", Text("barrett"), "the robot at the end of the wire, see services/robot"},
       {"robot.port", Text(""), "its serial port, or its controller in ROS 2"},
-      {"robot.network", Text(""), "how nodes of ROS 2 are reached, as ros.network"},
+      {"robot.network", Text("laptop"), "how nodes of ROS 2 are reached: laptop or lan"},
       {"robot.baud", std::int64_t{0}, "bits per second on that port; 0: as the robot is sold"},
       {"robot.id", std::int64_t{0}, "of a gripper or hand on its line; 0: as it is sold"},
       {"robot.wiring", Text(""),
@@ -133,9 +133,8 @@ const std::vector<ConfigKey>& config_keys() {
        "the topic of ROS 2 by whose trajectories prehend-ros-lead leads the hand"},
       {"ros.wrist_poses", Text("wrist_pose"),
        "topic of ROS 2 whose poses lead the base of the robot hand"},
-      {"ros.network", Text(""),
-       "how nodes of ROS 2 that lead, or are hand or camera, are reached: laptop, lan; empty: as "
-       "ROS_AUTOMATIC_DISCOVERY_RANGE says, else laptop"},
+      {"ros.network", Text("laptop"),
+       "how nodes of ROS 2 that lead, or are hand or camera, are reached: laptop or lan"},
 
       {"gate.max_age", 0.2, "s: robots refuse commands that are older, or as far ahead"},
       {"gate.max_silence", 0.3, "s without a command, after which another writer may lead"},

@@ -23,17 +23,9 @@ constexpr Duration turn = std::chrono::milliseconds(2);
 
 /// What driver and hand say while it is woken, set up and led for a while.
 std::string conversation(int temperature_bytes) {
-  barrett::Emulator robot(hand(), {.initialized = true, .temperature_bytes = temperature_bytes});
-  barrett::Driver driver(hand(), {});
-  std::string all, heard;
-  driver.connected(from_ns(0));
-  for (int n = 0; n < 400; ++n) {
-    const std::string said = driver.step(heard, from_ns(0) + turn * n);
-    fuzz::add_turn(all, heard);
-    fuzz::add_turn(all, said);
-    heard = robot.receive(said, turn * n);
-  }
-  return all;
+  return fuzz::converse(
+      barrett::Emulator(hand(), {.initialized = true, .temperature_bytes = temperature_bytes}),
+      barrett::Driver(hand(), {}), 400, turn);
 }
 
 }  // namespace

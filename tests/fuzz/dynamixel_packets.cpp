@@ -34,27 +34,8 @@ constexpr Duration turn = std::chrono::milliseconds(5);
 
 /// What driver and servos say while they are set up and led for a while.
 std::string conversation() {
-  dynamixel::Emulator robot(hand(), servos(), {});
-  dynamixel::Driver driver(hand(), {.baud = 1000000}, servos());
-  std::string all, heard;
-  driver.connected(from_ns(0));
-  for (int n = 0; n < 200; ++n) {
-    const std::string said = driver.step(heard, from_ns(0) + turn * n);
-    fuzz::add_turn(all, heard);
-    fuzz::add_turn(all, said);
-    heard = robot.receive(said, turn * n);
-  }
-  return all;
-}
-
-void decode(const std::string& input) {
-  dynamixel::Parser parser;
-  parser.feed(input);
-  while (const auto packet = parser.next()) {
-    dynamixel::Parser again;
-    again.feed(dynamixel::encode(*packet));
-    fuzz::require(again.next() == packet, "is another packet when it is sent on");
-  }
+  return fuzz::converse(dynamixel::Emulator(hand(), servos(), {}),
+                        dynamixel::Driver(hand(), {.baud = 1000000}, servos()), 200, turn);
 }
 
 }  // namespace
@@ -64,7 +45,8 @@ int main(int argc, char** argv) {
   fuzzer.seeds = {conversation()};
   fuzzer.mutate = [](Random& r, std::string stream) { return fuzz::mutate_bytes(r, stream); };
   fuzzer.target = [](const std::string& input) {
-    decode(input);
+    fuzz::require_whole(dynamixel::Parser(), input,
+                        [](const auto& packet) { return dynamixel::encode(packet); });
     dynamixel::Driver driver(hand(), {.baud = 1000000}, servos());
     dynamixel::Emulator robot(hand(), servos(), {});
     driver.connected(from_ns(0));

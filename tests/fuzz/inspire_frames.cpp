@@ -24,28 +24,11 @@ constexpr Duration turn = std::chrono::milliseconds(6);
 
 /// What driver and hand say when it is found, and while it is led.
 std::string conversation(bool leads) {
-  inspire::Emulator robot(hand(), {});
-  inspire::Driver driver(hand(), {.baud = 115200});
-  std::string all, heard;
-  driver.connected(from_ns(0));
-  for (int n = 0; n < 100; ++n) {
-    if (leads) driver.follow(Eigen::VectorXd::Constant(6, 0.004 * n), {}, from_ns(0) + turn * n);
-    const std::string said = driver.step(heard, from_ns(0) + turn * n);
-    fuzz::add_turn(all, heard);
-    fuzz::add_turn(all, said);
-    heard = robot.receive(said, turn * n);
-  }
-  return all;
-}
-
-void decode(inspire::Side side, const std::string& input) {
-  inspire::Parser parser(side);
-  parser.feed(input);
-  while (const auto frame = parser.next()) {
-    inspire::Parser again(side);
-    again.feed(inspire::encode(side, *frame));
-    fuzz::require(again.next() == frame, "is another frame when it is sent on");
-  }
+  return fuzz::converse(inspire::Emulator(hand(), {}), inspire::Driver(hand(), {.baud = 115200}),
+                        100, turn, [leads](auto& driver, int n, Time now) {
+                          if (leads)
+                            driver.follow(Eigen::VectorXd::Constant(6, 0.004 * n), {}, now);
+                        });
 }
 
 void check_said(const std::string& said) {
@@ -68,8 +51,9 @@ int main(int argc, char** argv) {
   fuzzer.seeds = {conversation(false), conversation(true)};
   fuzzer.mutate = [](Random& r, std::string stream) { return fuzz::mutate_bytes(r, stream); };
   fuzzer.target = [](const std::string& input) {
-    decode(inspire::Side::asks, input);
-    decode(inspire::Side::answers, input);
+    for (const auto side : {inspire::Side::asks, inspire::Side::answers})
+      fuzz::require_whole(inspire::Parser(side), input,
+                          [side](const auto& frame) { return inspire::encode(side, frame); });
     inspire::Driver driver(hand(), {.baud = 115200});
     inspire::Emulator robot(hand(), {});
     driver.connected(from_ns(0));

@@ -31,28 +31,11 @@ robotiq::Emulator make_gripper() {
 
 /// What driver and gripper say when it is found, and while it is led.
 std::string conversation(bool leads) {
-  robotiq::Emulator robot = make_gripper();
-  robotiq::Driver driver = make_driver();
-  std::string all, heard;
-  driver.connected(from_ns(0));
-  for (int n = 0; n < 100; ++n) {
-    if (leads) driver.follow(Eigen::VectorXd::Constant(1, 0.005 * n), {}, from_ns(0) + turn * n);
-    const std::string said = driver.step(heard, from_ns(0) + turn * n);
-    fuzz::add_turn(all, heard);
-    fuzz::add_turn(all, said);
-    heard = robot.receive(said, turn * n);
-  }
-  return all;
-}
-
-void decode(modbus::Side side, const std::string& input) {
-  modbus::Parser parser(side);
-  parser.feed(input);
-  while (const auto frame = parser.next()) {
-    modbus::Parser again(side);
-    again.feed(modbus::encode(*frame));
-    fuzz::require(again.next() == frame, "is another frame when it is sent on");
-  }
+  return fuzz::converse(make_gripper(), make_driver(), 100, turn,
+                        [leads](auto& driver, int n, Time now) {
+                          if (leads)
+                            driver.follow(Eigen::VectorXd::Constant(1, 0.005 * n), {}, now);
+                        });
 }
 
 void check_said(const std::string& said) {
@@ -74,8 +57,9 @@ int main(int argc, char** argv) {
   fuzzer.seeds = {conversation(false), conversation(true)};
   fuzzer.mutate = [](Random& r, std::string stream) { return fuzz::mutate_bytes(r, stream); };
   fuzzer.target = [](const std::string& input) {
-    decode(modbus::Side::asks, input);
-    decode(modbus::Side::answers, input);
+    for (const auto side : {modbus::Side::asks, modbus::Side::answers})
+      fuzz::require_whole(modbus::Parser(side), input,
+                          [](const auto& frame) { return modbus::encode(frame); });
     robotiq::Driver driver = make_driver();
     robotiq::Emulator robot = make_gripper();
     driver.connected(from_ns(0));

@@ -34,6 +34,12 @@ inline const Value& in(const Value& value, std::initializer_list<const char*> pa
 inline const Value::List& list(const Value& value, std::initializer_list<const char*> path) {
   return std::get<Value::List>(in(value, path).content);
 }
+inline std::string text(const Value& value, std::initializer_list<const char*> path) {
+  return std::get<std::string>(in(value, path).content);
+}
+inline std::uint64_t count(const Value& value, std::initializer_list<const char*> path) {
+  return std::get<std::uint64_t>(in(value, path).content);
+}
 inline double number(const Value& value) {
   return std::get<double>(value.content);
 }

@@ -37,7 +37,7 @@ Expected<std::string> network_of_nodes(const std::string& said) {
 }
 
 Expected<std::string> network_of_leaders(const std::string& said, bool secured) {
-  auto network = network_of_nodes(said);
+  auto network = network_of_nodes(said.empty() ? "laptop" : said);
   if (network && *network == "lan" && secured)
     return wrong_use("would let anybody on the network lead a hand that has keys", "ros.network",
                      "laptop: nodes of this machine alone");

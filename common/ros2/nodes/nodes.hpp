@@ -18,8 +18,8 @@ Expected<int> domain_of_nodes();
 /// know is LOCALHOST, and laptop where nothing is said. Fails on other words, and on OFF.
 Expected<std::string> network_of_nodes(const std::string& said);
 
-/// The same, of nodes that lead a hand or say what is seen. Refused: lan in a lab with keys
-/// (`secured`), since anybody may be a node there.
+/// The same, of nodes that lead a hand or say what is seen; here no variable opens the network, so
+/// empty is laptop. Refused: lan in a lab with keys (`secured`), since anybody may be a node there.
 Expected<std::string> network_of_leaders(const std::string& said, bool secured);
 
 /// network: laptop (nodes of this machine) or lan (of the network).

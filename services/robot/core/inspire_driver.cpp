@@ -158,11 +158,7 @@ PolledDriver::Heard Driver::hear(Time now) {
   const auto frame = parser_.next();
   for (int n = parser_.take_broken(); n > 0; --n) count_reject("garbled answer");
   if (!frame) return Heard::nothing;
-  if (frame->id != id_) {
-    suspect(fmt::format("id {} does not answer, but id {} does", id_, frame->id));
-    count_reject("answer of another");
-    return Heard::foreign;
-  }
+  if (is_of_another(id_, frame->id)) return Heard::foreign;
   if (frame->command != question_.command || frame->address != question_.address) {
     count_reject("answer to another question");
     return Heard::foreign;

@@ -1,5 +1,7 @@
 #include "services/robot/core/polled_driver.hpp"
 
+#include <fmt/format.h>
+
 namespace prehend::robot {
 namespace {
 
@@ -57,6 +59,13 @@ std::string PolledDriver::step(std::string_view heard, Time now) {
   waiting_ = true;
   asked_ = now;
   return said;
+}
+
+bool PolledDriver::is_of_another(int asked, int answered) {
+  if (answered == asked) return false;
+  suspect(fmt::format("id {} does not answer, but id {} does", asked, answered));
+  count_reject("answer of another");
+  return true;
 }
 
 /// Something is wrong: it stays where it was seen last, and is asked anew after a rest.

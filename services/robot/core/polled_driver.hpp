@@ -50,6 +50,8 @@ class PolledDriver : public Driver {
   virtual std::optional<std::string> what_is_wrong(Time now) const = 0;
 
   void suspect(std::string why) { suspicion_ = std::move(why); }
+  /// An answer of another device than the one that was asked is suspected and counted.
+  bool is_of_another(int asked, int answered);
 
   const model::HandModel& hand_;
   DriverOptions options_;

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <tuple>
 #include <utility>
 
 #include "common/base/clock.hpp"
@@ -21,6 +20,20 @@
 
 namespace prehend::ros {
 namespace {
+
+struct Told {
+  const char *name, *type;
+  bool kept;  // who comes late gets the last one
+};
+/// In the order of Teller::Voice.
+constexpr Told told_topics[] = {{"joint_states", "sensor_msgs/JointState", false},
+                                {"robot_description", "std_msgs/String", true},
+                                {"tf", "tf2_msgs/TFMessage", false},
+                                {"tf_static", "tf2_msgs/TFMessage", true},
+                                {"detections", "vision_msgs/Detection3DArray", false},
+                                {"diagnostics", "diagnostic_msgs/DiagnosticArray", false},
+                                {"camera/image/compressed", "sensor_msgs/CompressedImage", false},
+                                {"camera/camera_info", "sensor_msgs/CameraInfo", false}};
 
 Expected<Pose> pose_of(const std::vector<double>& v) {
   if (v.size() != 7) return wrong_use("is no pose", "camera.X_WC", "seven numbers");
@@ -72,30 +85,13 @@ Expected<void> Teller::join_nodes(const service::Config& config) {
   auto joined = ros2::join_nodes("prehend_ros", options_.domain, *network);
   if (!joined) return tl::unexpected(joined.error());
   nodes_.emplace(std::move(*joined));
-  auto made = voices();
-  if (!made) return tl::unexpected(made.error());
-  voices_.emplace(std::move(*made));
-  write(voices_->tf_static, tf_message({{to_ns(process_now()), table_frame, camera_, *X_WC}}));
-  return {};
-}
-
-Expected<Teller::Voices> Teller::voices() {
-  std::vector<dds::RawWriter> made;
-  for (const auto& [name, type, kept] :
-       {std::tuple("joint_states", "sensor_msgs/JointState", false),
-        std::tuple("robot_description", "std_msgs/String", true),
-        std::tuple("tf", "tf2_msgs/TFMessage", false),
-        std::tuple("tf_static", "tf2_msgs/TFMessage", true),
-        std::tuple("detections", "vision_msgs/Detection3DArray", false),
-        std::tuple("diagnostics", "diagnostic_msgs/DiagnosticArray", false),
-        std::tuple("camera/image/compressed", "sensor_msgs/CompressedImage", false),
-        std::tuple("camera/camera_info", "sensor_msgs/CameraInfo", false)}) {
+  for (const auto& [name, type, kept] : told_topics) {
     auto writer = dds::RawWriter::create(*nodes_, ros2::topic_of_nodes(name, type, kept));
     if (!writer) return tl::unexpected(writer.error());
-    made.push_back(std::move(*writer));
+    voices_.push_back(std::move(*writer));
   }
-  return Voices{std::move(made[0]), std::move(made[1]), std::move(made[2]), std::move(made[3]),
-                std::move(made[4]), std::move(made[5]), std::move(made[6]), std::move(made[7])};
+  write(Voice::tf_static, tf_message({{to_ns(process_now()), table_frame, camera_, *X_WC}}));
+  return {};
 }
 
 template <class Topic, class Keep>
@@ -158,7 +154,7 @@ void Teller::see(const dds::Guid& instance, const v1::ObjectDetection* detection
 }
 
 void Teller::listen_to_pictures() {
-  const bool wanted = voices_->picture.readers() + voices_->lens.readers() > 0;
+  const bool wanted = voice(Voice::picture).readers() + voice(Voice::lens).readers() > 0;
   if (wanted == (pictures_ != nullptr)) return;
   if (!wanted) return pictures_.reset();
   auto reader = listen(dds::camera_image, [this](const dds::Guid&, const v1::CameraImage* picture) {
@@ -188,7 +184,7 @@ void Teller::tell(Duration limit) {
   if (!news.seen) return;
   std::int64_t newest = 0;
   for (const Detection& one : *news.seen) newest = std::max(newest, one.stamp_ns);
-  write(voices_->detections,
+  write(Voice::detections,
         detections_message(newest > 0 ? newest : to_ns(process_now()), table_frame, *news.seen));
 }
 
@@ -203,7 +199,7 @@ const model::HandModel* Teller::introduce(const std::string& name) {
     log::warning(model ? urdf.error() : model.error());
     return nullptr;
   }
-  write(voices_->description, text_message(*urdf));
+  write(Voice::description, text_message(*urdf));
   model_.emplace(std::move(*model));
   return &*model_;
 }
@@ -219,22 +215,22 @@ void Teller::tell(const v1::HandState& state) {
   // As many as there are joints, or none: so ROS 2 wants them.
   if (state.velocity().size() == joints.names.size()) joints.velocities = state.velocity();
   if (state.torque().size() == joints.names.size()) joints.efforts = state.torque();
-  write(voices_->joint_states, ros2::joint_state(joints));
-  write(voices_->tf,
+  write(Voice::joint_states, ros2::joint_state(joints));
+  write(Voice::tf,
         tf_message(transforms_of(*model, *X_WB, positions, table_frame, state.stamp_ns())));
 }
 
 void Teller::tell(const v1::ObjectState& state) {
   const auto X_WO = convert::from_message(state.X_WO());
   if (!X_WO) return;
-  write(voices_->tf,
+  write(Voice::tf,
         tf_message({{state.stamp_ns(), table_frame, "object/" + state.body().to_string(), *X_WO}}));
 }
 
 void Teller::tell(const v1::GraspReport& report) {
   const auto number = [](double value) { return fmt::format("{:.4g}", value); };
   const std::string hand = report.hand().to_string();
-  write(voices_->diagnostics,
+  write(Voice::diagnostics,
         diagnostics_message(report.stamp_ns(),
                             {.good = report.held(),
                              .name = "prehend: grasp of " + hand,
@@ -252,17 +248,17 @@ void Teller::tell(const v1::GraspReport& report) {
 }
 
 void Teller::tell(const v1::CameraImage& picture) {
-  write(voices_->picture, ros2::compressed_image({.stamp_ns = picture.stamp_ns(),
-                                                  .frame = camera_,
-                                                  .format = picture.encoding().to_string(),
-                                                  .data = picture.data()}));
-  write(voices_->lens, ros2::camera_info(picture.stamp_ns(), camera_, lens_));
+  write(Voice::picture, ros2::compressed_image({.stamp_ns = picture.stamp_ns(),
+                                                .frame = camera_,
+                                                .format = picture.encoding().to_string(),
+                                                .data = picture.data()}));
+  write(Voice::lens, ros2::camera_info(picture.stamp_ns(), camera_, lens_));
 }
 
-void Teller::write(dds::RawWriter& writer, Bytes bytes) {
+void Teller::write(Voice what, Bytes bytes) {
   dds::RawSample sample;
   sample.payload = std::move(bytes);
-  writer.write(sample, process_now());
+  voice(what).write(sample, process_now());
 }
 
 }  // namespace prehend::ros

@@ -49,15 +49,22 @@ class Teller {
       return hands.empty() && objects.empty() && reports.empty() && !seen && !picture;
     }
   };
-  struct Voices {
-    dds::RawWriter joint_states, description, tf, tf_static, detections, diagnostics, picture, lens;
+  /// What is told; each has a row in the table of topics.
+  enum class Voice {
+    joint_states,
+    description,
+    tf,
+    tf_static,
+    detections,
+    diagnostics,
+    picture,
+    lens
   };
   using Reader = std::unique_ptr<dds::RawReader>;
 
   explicit Teller(Options options) : options_(std::move(options)) {}
   Expected<void> join_lab(const service::Config& config);
   Expected<void> join_nodes(const service::Config& config);
-  Expected<Voices> voices();
   /// keep: gets each message, or nothing when its instance has ended; called with mutex_ held.
   template <class Topic, class Keep>
   Expected<Reader> listen(const Topic& topic, Keep keep);
@@ -70,7 +77,8 @@ class Teller {
   void tell(const v1::CameraImage& picture);
   /// Nothing: it is not known.
   const model::HandModel* introduce(const std::string& model);
-  void write(dds::RawWriter& writer, Bytes bytes);
+  dds::RawWriter& voice(Voice what) { return voices_[static_cast<std::size_t>(what)]; }
+  void write(Voice what, Bytes bytes);
 
   Options options_;
   std::vector<std::string> told_;  // hands that lab.toml names
@@ -83,7 +91,7 @@ class Teller {
   News news_;
   std::map<dds::Guid, Detection> seen_;
   std::optional<dds::Participant> nodes_, lab_;
-  std::optional<Voices> voices_;
+  std::vector<dds::RawWriter> voices_;  // by Voice
   Reader hands_, objects_, reports_, detections_, pictures_;
 };
 

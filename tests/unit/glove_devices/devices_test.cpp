@@ -222,8 +222,9 @@ TEST_P(EveryDevice, ComesBackWithin2500MillisecondsOfReplugging) {
   const auto driver = device();
   driver->start(listener.sink());
   ASSERT_TRUE(listener.frames(5));
-  ASSERT_TRUE(listener.says("")) << "says nothing";
-  EXPECT_GT(Clock::now() - start, seconds(unplug_at));
+  // Before that it may complain because it has to wait for a processor.
+  const auto unplugged = start + std::chrono::duration_cast<Clock::duration>(seconds(unplug_at));
+  ASSERT_TRUE(listener.complains_after(unplugged)) << "says nothing";
   ASSERT_TRUE(listener.frames(1));
   const double after = to_seconds(Clock::now() - start) - unplug_at - unplug_for;
   EXPECT_LT(after, aim);

@@ -44,6 +44,7 @@ class Listener {
                 [this](std::string line) {
                   const std::lock_guard lock(mutex_);
                   lines_.push_back(std::move(line));
+                  said_at_.push_back(std::chrono::steady_clock::now());
                   news_.notify_all();
                 },
             .drop =
@@ -72,6 +73,12 @@ class Listener {
       });
     });
   }
+  /// Whatever it is, but not before that.
+  bool complains_after(std::chrono::steady_clock::time_point time, double patience = 10) {
+    std::unique_lock lock(mutex_);
+    return news_.wait_for(lock, seconds(patience),
+                          [&] { return !said_at_.empty() && said_at_.back() > time; });
+  }
   std::vector<Frame> all() {
     const std::lock_guard lock(mutex_);
     return frames_;
@@ -90,6 +97,7 @@ class Listener {
   std::condition_variable news_;
   std::vector<Frame> frames_;
   std::vector<std::string> lines_;
+  std::vector<std::chrono::steady_clock::time_point> said_at_;  // of each line
   std::map<std::string, std::uint64_t> drops_;
 };
 

@@ -138,11 +138,7 @@ TEST(DynamixelDriver, GarbageNowAndThenIsLeftOut) {
 TEST(DynamixelDriver, NothingButGarbageIsALostWire) {
   Wire wire;
   wire.run(2);
-  Random random(4);
-  wire.spoil = [&random](std::string answer) {
-    for (char& c : answer) c = static_cast<char>(random.bits() & 0xff);
-    return answer;
-  };
+  wire.spoil = noise(4);
   wire.run(1);
   EXPECT_EQ(wire.first_trouble, "the wire is lost");
 }

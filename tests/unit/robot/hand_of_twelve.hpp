@@ -1,7 +1,10 @@
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <functional>
 #include <string>
+#include <string_view>
 
 #include "common/base/random.hpp"
 #include "common/model/hand_model.hpp"
@@ -30,6 +33,30 @@ inline std::function<std::string(std::string)> garbage(std::uint64_t seed, char 
     if (!answer.empty() && random.uniform() < 0.05) answer.erase(random.index(answer.size()), 1);
     return answer;
   };
+}
+
+/// Each byte of every answer is any.
+inline std::function<std::string(std::string)> noise(std::uint64_t seed) {
+  return [random = Random(seed)](std::string answer) mutable {
+    for (char& c : answer) c = static_cast<char>(random.bits() & 0xff);
+    return answer;
+  };
+}
+
+inline std::string bytes_of_hex(std::string_view hex) {
+  std::string bytes;
+  for (std::size_t i = 0; i + 1 < hex.size(); i += 2)
+    bytes += static_cast<char>(std::stoi(std::string(hex.substr(i, 2)), nullptr, 16));
+  return bytes;
+}
+
+/// What the parser makes of the bytes, which are no more than a frame.
+template <class Parser>
+auto only_frame(Parser parser, const std::string& bytes) {
+  parser.feed(bytes);
+  auto frame = parser.next();
+  EXPECT_FALSE(parser.next());
+  return frame;
 }
 
 }  // namespace prehend::robot

@@ -15,28 +15,13 @@ const model::HandModel& rh56() {
   return *loaded;
 }
 
-std::string bytes_of_hex(std::string_view hex) {
-  std::string bytes;
-  for (std::size_t i = 0; i + 1 < hex.size(); i += 2)
-    bytes += static_cast<char>(std::stoi(std::string(hex.substr(i, 2)), nullptr, 16));
-  return bytes;
-}
-
-std::optional<Frame> only_frame(Side side, const std::string& bytes) {
-  Parser parser(side);
-  parser.feed(bytes);
-  auto frame = parser.next();
-  EXPECT_FALSE(parser.next());
-  return frame;
-}
-
 // Inspire's SDK: all fingers open, its answer, and the question for the angles.
 TEST(InspireProtocol, FramesAreThoseOfTheManufacturer) {
   Values open;
   open.fill(1000);
   EXPECT_EQ(encode(Side::asks, {1, Command::write, 1486, bytes_of(table::angle_set, open)}),
             bytes_of_hex("EB90010F12CE05E803E803E803E803E803E80377"));
-  EXPECT_EQ(only_frame(Side::answers, bytes_of_hex("90EB010412CE0501EB")),
+  EXPECT_EQ(only_frame(Parser(Side::answers), bytes_of_hex("90EB010412CE0501EB")),
             (Frame{1, Command::write, 1486, "\1"}));
   EXPECT_EQ(encode(Side::asks, {1, Command::read, 1546, "\x0c"}),
             bytes_of_hex("EB900104110A060C32"));
@@ -255,11 +240,7 @@ TEST(InspireDriver, GarbageNowAndThenIsLeftOut) {
 TEST(InspireDriver, NothingButGarbageIsALostWire) {
   Wire wire;
   wire.run(0.5);
-  Random random(4);
-  wire.spoil = [&random](std::string answer) {
-    for (char& c : answer) c = static_cast<char>(random.bits() & 0xff);
-    return answer;
-  };
+  wire.spoil = noise(4);
   wire.run(1);
   EXPECT_EQ(wire.first_trouble, "the wire is lost");
 }

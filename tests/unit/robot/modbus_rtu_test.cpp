@@ -6,43 +6,29 @@
 
 #include "common/base/random.hpp"
 #include "services/robot/core/robotiq_protocol.hpp"
+#include "tests/unit/robot/hand_of_twelve.hpp"
 
 namespace prehend::robot::modbus {
 namespace {
-
-std::string bytes_of(std::string_view hex) {
-  std::string bytes;
-  for (std::size_t i = 0; i + 1 < hex.size(); i += 2)
-    bytes += static_cast<char>(std::stoi(std::string(hex.substr(i, 2)), nullptr, 16));
-  return bytes;
-}
-
-std::optional<Frame> only_frame(Side side, const std::string& bytes) {
-  Parser parser(side);
-  parser.feed(bytes);
-  auto frame = parser.next();
-  EXPECT_FALSE(parser.next());
-  return frame;
-}
 
 // Robotiq, manual of the 2F-85, control over Modbus RTU: activation, closing, status when grasped.
 TEST(ModbusRtu, FramesAreThoseOfTheManual) {
   using namespace robotiq;
   EXPECT_EQ(modbus::encode(write(9, action_at, robotiq::encode(Action{}))),
-            bytes_of("091003E800030600000000000073"
-                     "30"));
+            bytes_of_hex("091003E800030600000000000073"
+                         "30"));
   EXPECT_EQ(modbus::encode(write(9, action_at, robotiq::encode(Action{active, 0, 0, 0}))),
-            bytes_of("091003E800030601000000000072E1"));
+            bytes_of_hex("091003E800030601000000000072E1"));
   EXPECT_EQ(
       modbus::encode(write(9, action_at, robotiq::encode(Action{active | goes, 255, 255, 255}))),
-      bytes_of("091003E8000306090000FFFFFF4229"));
+      bytes_of_hex("091003E8000306090000FFFFFF4229"));
   EXPECT_EQ(modbus::encode(read(9, Function::read_input, status_at, register_count)),
-            bytes_of("090407D00003B1CE"));
-  const auto grasped = only_frame(Side::answers, bytes_of("090406B90000FFBD005C9A"));
+            bytes_of_hex("090407D00003B1CE"));
+  const auto grasped = only_frame(Parser(Side::answers), bytes_of_hex("090406B90000FFBD005C9A"));
   ASSERT_TRUE(grasped);
   EXPECT_EQ(status_of(*registers_of(*grasped, register_count)),
             (Status{active | goes, Activation::done, Object::while_closing, 0, 255, 189, 0}));
-  const auto taken = only_frame(Side::answers, bytes_of("091003E800030130"));
+  const auto taken = only_frame(Parser(Side::answers), bytes_of_hex("091003E800030130"));
   ASSERT_TRUE(taken);
   EXPECT_EQ(taken->function, 16);
 }
@@ -75,7 +61,7 @@ TEST(ModbusRtu, FindsFramesAmongOtherBytes) {
     for (std::size_t k = random.index(5); k > 0; --k)
       stream += static_cast<char>(0x40 + random.index(32));  // no function
     const bool damaged = !stream.empty();
-    stream += bytes_of("090406B90000FFBD005C9A");
+    stream += bytes_of_hex("090406B90000FFBD005C9A");
     std::optional<Frame> found;
     for (const char c : stream) {
       parser.feed(std::string(1, c));
@@ -88,7 +74,7 @@ TEST(ModbusRtu, FindsFramesAmongOtherBytes) {
 }
 
 TEST(ModbusRtu, OneWrongBitAnywhereIsNoFrame) {
-  const std::string good = bytes_of("090406B90000FFBD005C9A");
+  const std::string good = bytes_of_hex("090406B90000FFBD005C9A");
   for (std::size_t i = 0; i < good.size(); ++i)
     for (int bit = 0; bit < 8; ++bit) {
       std::string bytes = good;

@@ -9,18 +9,13 @@
 namespace prehend::ros {
 namespace {
 
+using test::count;
 using test::in;
 using test::list;
 using test::number;
 using test::ros_value;
+using test::text;
 using test::Value;
-
-std::string text(const Value& value, std::initializer_list<const char*> path) {
-  return std::get<std::string>(in(value, path).content);
-}
-std::uint64_t count(const Value& value, std::initializer_list<const char*> path) {
-  return std::get<std::uint64_t>(in(value, path).content);
-}
 
 Detection cup() {
   Detection made{.stamp_ns = 2'500'000'000,

@@ -27,6 +27,14 @@ TEST(NetworkOfNodes, IsWhatIsSaidElseTheirRange) {
     EXPECT_EQ(network_of_nodes("laptop").value(), "laptop") << range;
     EXPECT_EQ(network_of_nodes("lan").value(), "lan") << range;
   }
+  // No variable lets others lead; and nobody does whom a lab with keys does not know.
+  {
+    const Range set("SUBNET");
+    EXPECT_EQ(network_of_leaders("", false).value(), "laptop");
+    EXPECT_EQ(network_of_leaders("lan", false).value(), "lan");
+    EXPECT_FALSE(network_of_leaders("lan", true));
+    EXPECT_EQ(network_of_leaders("laptop", true).value(), "laptop");
+  }
   const Range off("OFF");
   EXPECT_FALSE(network_of_nodes(""));
   EXPECT_EQ(network_of_nodes("lan").value(), "lan");

@@ -10,18 +10,13 @@
 namespace prehend::ros2 {
 namespace {
 
+using test::count;
 using test::in;
 using test::list;
 using test::number;
 using test::ros_value;
+using test::text;
 using test::Value;
-
-std::string text(const Value& value, std::initializer_list<const char*> path) {
-  return std::get<std::string>(in(value, path).content);
-}
-std::uint64_t count(const Value& value, std::initializer_list<const char*> path) {
-  return std::get<std::uint64_t>(in(value, path).content);
-}
 
 TEST(Ros2Pictures, PicturesStayTheirBytes) {
   const std::vector<std::uint8_t> data{0xff, 0xd8, 0, 1, 2};
