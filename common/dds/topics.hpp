@@ -46,6 +46,15 @@ inline constexpr Topic<v1::GloveButtonPubSubType> glove_button{
      .content = Content::order,
      .rate = "as glove/frame, of a device with buttons"}};
 
+/// Touch never blocks motion: a sample that is lost is not repeated.
+inline constexpr Topic<v1::GloveFeedbackPubSubType> glove_feedback{
+    {.name = "glove/feedback",
+     .qos = {.reliable = false, .deadline = std::chrono::milliseconds(100)},
+     .writers = Role::mapping,
+     .readers = Role::glove,
+     .open = true,
+     .rate = "as robot/touch"}};
+
 inline constexpr Topic<v1::CameraImagePubSubType> camera_image{{.name = "camera/image",
                                                                 .qos = {.reliable = false},
                                                                 .writers = Role::recognition,
@@ -88,6 +97,13 @@ inline constexpr Topic<v1::HandStatePubSubType> robot_state{
      .readers = Role::mapping | Role::performer | Role::replayer,
      .open = true,
      .rate = "100 Hz"}};
+
+inline constexpr Topic<v1::HandTouchPubSubType> robot_touch{{.name = "robot/touch",
+                                                             .qos = {.reliable = false},
+                                                             .writers = Role::simulation,
+                                                             .readers = Role::mapping,
+                                                             .open = true,
+                                                             .rate = "100 Hz"}};
 
 inline constexpr Topic<v1::GateStatePubSubType> robot_gate{
     {.name = "robot/gate",
@@ -237,13 +253,13 @@ inline constexpr Topic<v1::ServiceStatusPubSubType> service_status{
 /// In the order of the table in idl/README.md. What is not here has no reader and no writer
 /// (a static_assert of Participant).
 inline constexpr std::tuple typed_topics{
-    glove_frame,      hand_posture,     glove_button,        camera_image,
-    object_detection, grasp_candidates, robot_command,       robot_state,
-    robot_gate,       arm_command,      arm_state,           scene_state,
-    object_state,     grasp_report,     demonstration_grasp, demonstration_segment,
-    task_model,       task_progress,    mapping_training,    operator_command,
-    operator_reply,   operator_consent, lab_clock,           lab_progress,
-    lab_beacon,       service_status};
+    glove_frame,         hand_posture,          glove_button,     glove_feedback,
+    camera_image,        object_detection,      grasp_candidates, robot_command,
+    robot_state,         robot_touch,           robot_gate,       arm_command,
+    arm_state,           scene_state,           object_state,     grasp_report,
+    demonstration_grasp, demonstration_segment, task_model,       task_progress,
+    mapping_training,    operator_command,      operator_reply,   operator_consent,
+    lab_clock,           lab_progress,          lab_beacon,       service_status};
 
 template <class PubSub>
 inline constexpr bool is_listed = std::apply(

@@ -74,6 +74,8 @@ class HandBody {
   /// go, with the joint coupled to it.
   double motor(int dof) const;
   double motor_velocity(int dof) const;
+  /// Of each link, in W: of its point that is at p_W.
+  Eigen::Vector3d velocity_at(int link, const Eigen::Vector3d& p_W) const;
   /// False for links that overlap when the hand rests.
   bool may_touch(int link, int other) const;
   const std::vector<std::unique_ptr<btMultiBodyLinkCollider>>& colliders() const {

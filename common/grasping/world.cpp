@@ -379,6 +379,35 @@ std::vector<analysis::Contact> World::contacts(int body) const {
   return found;
 }
 
+std::vector<Touch> World::touches() const {
+  std::vector<Touch> found;
+  const auto velocity = [&](const Surface& surface, const Vector3d& p_W) -> Vector3d {
+    if (surface.body < 0) return Vector3d::Zero();
+    const btRigidBody& rigid = *state_->bodies[static_cast<std::size_t>(surface.body)].rigid;
+    return from_bullet(rigid.getVelocityInLocalPoint(to_bullet(p_W) -
+                                                     rigid.getCenterOfMassTransform().getOrigin()));
+  };
+  state_->each_contact([&](const btManifoldPoint& point, const Surface& a, const Surface& b) {
+    // Bullet's normal points from the second body to the first, and so do its forces.
+    const Vector3d normal_W = from_bullet(point.m_normalWorldOnB);
+    const Vector3d force_W =
+        from_bullet(point.m_normalWorldOnB * point.getAppliedImpulse() +
+                    point.m_lateralFrictionDir1 * point.m_appliedImpulseLateral1 +
+                    point.m_lateralFrictionDir2 * point.m_appliedImpulseLateral2) /
+        time_step();
+    const auto pressed = [&](const Surface& link, const Surface& other, const Vector3d& p_W,
+                             double sign) {
+      if (link.link < 0 || other.link >= 0) return;
+      const Vector3d apart = velocity(other, p_W) - state_->fingers->velocity_at(link.link, p_W);
+      found.push_back({link.link, other.body, p_W, sign * normal_W, sign * force_W,
+                       apart - apart.dot(normal_W) * normal_W, point.m_combinedFriction});
+    };
+    pressed(a, b, from_bullet(point.getPositionWorldOnA()), 1);
+    pressed(b, a, from_bullet(point.getPositionWorldOnB()), -1);
+  });
+  return found;
+}
+
 bool World::touches_others(int body) const {
   bool touches = false;
   state_->each_contact([&](const btManifoldPoint&, const Surface& a, const Surface& b) {

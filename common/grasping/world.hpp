@@ -76,6 +76,17 @@ struct BodyMotion {
   Eigen::Vector3d angular_velocity = Eigen::Vector3d::Zero();  // rad/s, in W
 };
 
+/// What pressed on a link of the hand in the last step, at one point.
+struct Touch {
+  int link = 0;   // of the hand
+  int body = -1;  // that presses; -1: the table
+  Eigen::Vector3d p_W;
+  Eigen::Vector3d normal_W;  // unit, into the link
+  Eigen::Vector3d force_W;   // N, on the link: pressure and friction
+  Eigen::Vector3d slip_W;    // m/s, along the surface, of what presses against the link
+  double friction = 0;       // coefficient
+};
+
 /// A physical world with one hand, a table and objects, stepped by Bullet (double). The base of the
 /// hand follows its command within the arm's limits. Each joint is driven by a spring that reaches
 /// its torque limit when the command is its DoF's squeeze ahead, no faster than its velocity limit.
@@ -138,6 +149,8 @@ class World {
 
   /// Touches of the hand on a body in the last step.
   std::vector<analysis::Contact> contacts(int body) const;
+  /// All that pressed on the hand in the last step, but for its own links.
+  std::vector<Touch> touches() const;
   /// True if the body touches anything but the hand.
   bool touches_others(int body) const;
   bool hand_touches_anything() const;

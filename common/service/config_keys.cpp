@@ -56,6 +56,8 @@ const std::vector<ConfigKey>& config_keys() {
       {"glove.hemisphere", Text("left"),
        "side of the transmitter where the hand is: front, rear, left, right, upper or lower"},
       {"glove.buttons", false, "the tracker has a mouse; its buttons go to glove/button"},
+      {"glove.feedback_force", 20.0,
+       "N on a robot's finger that hold the wearer's back with all a glove has; 0: it never does"},
       {"glove.file", Text(""), "recording to play"},
       {"glove.rate", 30.0, "Hz, of the synthetic hand, a joint-angle glove, and in point mode"},
 

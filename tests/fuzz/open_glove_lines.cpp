@@ -11,8 +11,9 @@ using namespace prehend::glove;
 int main(int argc, char** argv) {
   fuzz::Fuzzer fuzzer;
   fuzzer.seeds = {"A100B2047C4095D0E12F2048G2048P77(AB)12(EB)4000JNM\r\n",
-                  open_glove::to_line({{1, 2, 3, 4, 5}, {1, 6}}) +
-                      open_glove::to_line({{4095, 0, 4095, 0, 4095}, {}})};
+                  open_glove::to_line(open_glove::Sample{{1, 2, 3, 4, 5}, {1, 6}}) +
+                      open_glove::to_line(open_glove::Sample{{4095, 0, 4095, 0, 4095}, {}}),
+                  "A0B250C500D1000E1000\n"};
   fuzzer.mutate = [](Random& random, std::string stream) {
     return fuzz::mutate_bytes(random, stream);
   };
@@ -21,6 +22,11 @@ int main(int argc, char** argv) {
     open_glove::LineParser parser;
     bool any = false;
     const auto take = [&](const std::string& line) {
+      if (const auto held = open_glove::parse_held_back(line)) {
+        any = true;
+        for (const double share : *held)
+          fuzz::require(share >= 0 && share <= 1, "held back by more than all");
+      }
       const auto sample = open_glove::parse(line);
       if (!sample) return;
       any = true;

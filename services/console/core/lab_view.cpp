@@ -26,6 +26,13 @@ constexpr Colour doubt_colour{0.20, 0.60, 0.86, 0.35};
 constexpr Colour forces_colour{0.55, 0.35, 0.80, 0.25};
 constexpr Colour white{1, 1, 1, 1};
 constexpr double forces_scale = 0.1;  // m for 1 N
+constexpr std::array finger_names{"thumb", "index", "middle", "ring", "little"};
+
+/// From green, which is hardly felt, to red: 20 N and more.
+Colour pressure_colour(double newtons) {
+  const double share = std::clamp(newtons / 20, 0.0, 1.0);
+  return {0.15 + 0.7 * share, 0.75 - 0.6 * share, 0.2, 1};
+}
 
 std::string object_frame(const std::string& body) {
   return "object/" + body;
@@ -118,6 +125,8 @@ Documents LabView::begin(std::int64_t now_ns) {
 Documents LabView::hear(std::string_view topic, const Value& value, std::int64_t now_ns) {
   const View message(value);
   if (topic == "robot/state") return robot_state(message);
+  if (topic == "robot/touch") return robot_touch(message);
+  if (topic == "glove/feedback") return glove_feedback(message);
   if (topic == "robot/command") return robot_command(message);
   if (topic == "object/state") return object_state(message);
   if (topic == "scene/state") return scene_state(message);
@@ -211,6 +220,39 @@ Documents LabView::robot_state(View message) {
   return made;
 }
 
+/// What each link feels, as it feels it: where, how hard, which way.
+Documents LabView::robot_touch(View message) {
+  const std::string hand = message["hand"].text();
+  const model::HandModel* model = options_.hand(message["model"].text());
+  if (!model) return {};
+  const std::string id = "touch/" + hand;
+  Json drawn = entity(stamp(message), id, model->links()[0].name);
+  for (const View& pad : message["pads"].elements()) {
+    const Eigen::Vector3d at = pad["p_BC"].vector(), force = pad["force_B"].vector();
+    const double pressure = pad["pressure"].number();
+    if (!pad["touching"].flag() || !at.allFinite() || !force.allFinite() || !(pressure >= 0))
+      continue;
+    const Colour colour = pressure_colour(pressure);
+    add_shape(drawn, {model::ShapeKind::sphere, Eigen::Vector3d::Constant(0.006)}, make_pose(at),
+              colour);
+    if (force.norm() > 1e-3)
+      add_arrow(drawn, at, std::min(0.005, 0.1 / force.norm()) * force, 0.003, colour);
+  }
+  return {scene(std::move(drawn), id, stamp(message))};
+}
+
+Documents LabView::glove_feedback(View message) {
+  Json names = Json::array(), forces = Json::array();
+  std::size_t finger = 0;
+  for (const View& felt : message["fingers"].elements()) {
+    if (finger >= finger_names.size()) break;
+    names.push_back(finger_names[finger++]);
+    forces.push_back(felt["force"].number());
+  }
+  return {signals(stamp(message), "touch", message["glove"].text(), "N on the robot's finger",
+                  std::move(names), std::move(forces))};
+}
+
 Documents LabView::robot_command(View message) {
   const double weight = message["weight"].number();
   if (!std::isfinite(weight)) return {};
@@ -259,11 +301,10 @@ Documents LabView::hand_posture(View message) {
               glove_colour);
   };
   ball(back, 0.012);
-  constexpr std::array fingers{"thumb", "index", "middle", "ring", "little"};
   Json names = Json::array(), distances = Json::array();
   std::size_t finger = 0;
   for (const View& tip : message["fingertips"].elements()) {
-    const char* name = finger < fingers.size() ? fingers[finger++] : "";
+    const char* name = finger < finger_names.size() ? finger_names[finger++] : "";
     const Eigen::Vector3d at = *X_WH * tip["p_HF"].vector();
     if (!tip["valid"].flag() || !at.allFinite()) continue;
     ball(at, 0.008);

@@ -59,9 +59,11 @@ class LabView {
   };
 
   Documents robot_state(View message);
+  Documents robot_touch(View message);
   Documents robot_command(View message);
   Documents object_state(View message);
   Documents scene_state(View message);
+  Documents glove_feedback(View message);
   Documents hand_posture(View message);
   Documents camera_image(View message);
   Documents object_detection(View message);

@@ -36,17 +36,15 @@ std::vector<JointSensor> sensors_of_fingers() {
   return made;
 }
 
-HumanPosture posture_of_fingers(const std::vector<double>& counts, const JointGains& gains) {
+/// Angles of the joint that tells of a finger, rad.
+struct FingerWay {
+  double open, fist;
+};
+
+FingerWay way_of(std::size_t finger) {
   static const auto sensors = sensors_of_fingers();
-  const HumanPosture open = model::HumanHand::open_posture();
-  const HumanPosture fist = model::HumanHand::fist_posture();
-  std::array<double, model::finger_count> closure{};
-  for (std::size_t f = 0; f < closure.size() && f < gains.gain.size(); ++f) {
-    const int dof = sensors[f].dof;
-    closure[f] =
-        (gains.gain[f] * counts[f] + gains.offset[f] - open[dof]) / (fist[dof] - open[dof]);
-  }
-  return model::HumanHand::posture(closure);
+  const int dof = sensors[finger].dof;
+  return {model::HumanHand::open_posture()[dof], model::HumanHand::fist_posture()[dof]};
 }
 
 std::vector<double> mean(const std::vector<std::vector<double>>& samples) {
@@ -120,7 +118,8 @@ Expected<void> check(const JointGains& gains) {
 }
 
 HumanPosture joint_angles(const std::vector<double>& counts, const JointGains& gains) {
-  if (counts.size() == finger_sensors) return posture_of_fingers(counts, gains);
+  if (counts.size() == finger_sensors)
+    return model::HumanHand::posture(finger_closures(counts, gains));
   const auto sensors = joint_sensors_of(counts.size());
   HumanPosture posture = HumanPosture::Zero();
   for (std::size_t s = 0; s < sensors.size() && s < gains.gain.size(); ++s)
@@ -128,6 +127,21 @@ HumanPosture joint_angles(const std::vector<double>& counts, const JointGains& g
   if (counts.size() == min_joint_sensors)
     for (const int finger : fingers) posture[finger + 3] = distal_to_middle * posture[finger + 2];
   return model::HumanHand(1).clamp(posture);
+}
+
+std::array<double, model::finger_count> finger_closures(const std::vector<double>& counts,
+                                                        const JointGains& gains) {
+  std::array<double, model::finger_count> closures{};
+  for (std::size_t f = 0; f < closures.size() && f < gains.gain.size(); ++f) {
+    const auto [open, fist] = way_of(f);
+    closures[f] = (gains.gain[f] * counts[f] + gains.offset[f] - open) / (fist - open);
+  }
+  return closures;
+}
+
+double finger_count_at(double closure, std::size_t finger, const JointGains& gains) {
+  const auto [open, fist] = way_of(finger);
+  return (open + closure * (fist - open) - gains.offset[finger]) / gains.gain[finger];
 }
 
 std::vector<double> joint_counts(const HumanPosture& posture, const JointGains& gains) {

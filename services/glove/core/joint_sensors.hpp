@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <string_view>
 #include <vector>
@@ -50,6 +51,12 @@ Expected<void> check(const JointGains& gains);
 /// gains). Of 18 a distal joint that is not measured bends 0.6 times as far as the one before it;
 /// of 5 each finger is as far between open and fist as its sensor says.
 model::HumanPosture joint_angles(const std::vector<double>& counts, const JointGains& gains);
+
+/// How far each finger is closed, 0 open, 1 a fist, by five counts: not cut to that range.
+std::array<double, model::finger_count> finger_closures(const std::vector<double>& counts,
+                                                        const JointGains& gains);
+/// The count of one of these fingers that is that far closed.
+double finger_count_at(double closure, std::size_t finger, const JointGains& gains);
 
 /// The counts that a glove would send, not rounded, from 1 to 255; what no joint moves is at 128.
 std::vector<double> joint_counts(const model::HumanPosture& posture, const JointGains& gains);

@@ -12,6 +12,7 @@
 #include "common/base/named_values.hpp"
 #include "common/model/catalogue.hpp"
 #include "common/model/scene.hpp"
+#include "services/glove/core/feedback.hpp"
 #include "services/glove/core/frame.hpp"
 #include "services/glove/core/frame_source.hpp"
 #include "services/glove/core/joint_sensors.hpp"
@@ -25,6 +26,8 @@ struct DeviceSink {
   /// Something is missing; one line that says what, and what to do. Said once when it changes.
   std::function<void(std::string)> degraded;
   std::function<void(std::string_view reason, std::uint64_t count)> drop;
+  /// The wearer begins to feel what was felt then; empty: nobody asks.
+  std::function<void(Time stamp)> felt{};
 };
 
 /// Everything a device may need; each takes what concerns it.
@@ -48,6 +51,7 @@ struct DeviceOptions {
   double rate = 30;                         // Hz, of what measures when it is asked
   std::uint64_t seed = 0;                   // of a synthetic hand's noise, beside the scene's own
   bool left = false;                        // the hand that wears the glove
+  double feedback_force = 0;                // N, that holds a finger back with all it has; 0: none
   double hand_scale = 1;                    // length of the user's hand, 1: of an average adult
   model::Scene scene;                       // what a computed hand reaches for
   model::Catalogue catalogue;               // the objects in it
@@ -60,6 +64,9 @@ class Device {
   virtual ~Device() = default;  // ends its thread
   /// Begins to deliver. Called once.
   virtual void start(DeviceSink sink) = 0;
+  /// What the wearer is to feel for feedback_holds, of a kind that can (DeviceKind::feels). From
+  /// any thread; does not wait.
+  virtual void feel(const Feedback&) {}
 };
 
 /// Where frames come from.
@@ -96,6 +103,8 @@ struct DeviceKind {
   bool synthetic = false;
   /// It may be worn on a left hand, too.
   bool left = true;
+  /// It can hold fingers back.
+  bool feels = false;
   /// The kind of tracker on its back, at glove.wrist_port, that says where the hand is, since the
   /// device itself measures only joints; empty: it tracks the hand.
   std::string_view tracker{};

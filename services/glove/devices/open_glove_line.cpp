@@ -4,13 +4,15 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <utility>
 
 namespace prehend::glove::open_glove {
 namespace {
 
 constexpr std::string_view numbers = "ABCDEFGP";  // fingers, stick, trigger
-constexpr std::size_t needed = 7;                 // all but the trigger
+constexpr int held_full = 1000;
+constexpr std::size_t needed = 7;  // all but the trigger
 constexpr std::string_view button_letters = "JKIHNO";
 constexpr std::string_view gesture_letters = "LM";  // the glove's own opinion of the fingers
 
@@ -71,6 +73,29 @@ std::string to_line(const Sample& sample) {
   for (const std::uint8_t button : sample.held)
     if (button >= 1 && button <= buttons) line += button_letters[button - 1U];
   return line + "\n";
+}
+
+std::string to_line(const HeldBack& shares) {
+  std::string line;
+  for (std::size_t f = 0; f < shares.size(); ++f)
+    line +=
+        fmt::format("{}{}", numbers[f], std::lround(held_full * std::clamp(shares[f], 0.0, 1.0)));
+  return line + "\n";
+}
+
+std::optional<HeldBack> parse_held_back(std::string_view text) {
+  HeldBack shares{};
+  std::array<bool, model::finger_count> seen{};
+  while (!text.empty()) {
+    const auto finger = numbers.find(text.front());
+    text.remove_prefix(1);
+    if (finger >= shares.size() || std::exchange(seen[finger], true)) return std::nullopt;
+    const auto value = take_number(text);
+    if (!value || *value > held_full) return std::nullopt;
+    shares[finger] = static_cast<double>(*value) / held_full;
+  }
+  return std::ranges::all_of(seen, [](bool one) { return one; }) ? std::optional(shares)
+                                                                 : std::nullopt;
 }
 
 std::vector<std::string> LineParser::feed(std::string_view bytes) {

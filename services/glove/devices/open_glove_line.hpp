@@ -32,8 +32,11 @@ struct Sample {
 /// not known. What a host says has no stick, so that its echo is no glove.
 std::optional<Sample> parse(std::string_view line);
 
-/// What the host says: no finger is held back.
-inline constexpr std::string_view let_go = "A0B0C0D0E0\n";
+/// What the host says: how far each finger is held back, 0 not at all, 1 so that it cannot bend.
+using HeldBack = std::array<double, model::finger_count>;
+std::string to_line(const HeldBack& shares);
+/// The same read by a glove. Nothing: a finger is missing, twice there or out of range.
+std::optional<HeldBack> parse_held_back(std::string_view line);
 
 /// With its line end.
 std::string to_line(const Sample& sample);

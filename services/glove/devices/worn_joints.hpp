@@ -27,6 +27,8 @@ class WornJoints {
   /// Counts of as many sensors. held: numbers of the buttons; nothing: it has none.
   void deliver(std::vector<double> counts, std::optional<std::vector<std::uint8_t>> held, Time now);
 
+  /// Of the sensors that it has begun with.
+  const JointGains& gains() const { return gains_; }
   const DeviceSink& sink() const { return sink_; }
 
  private:

@@ -1,5 +1,7 @@
 #include "services/glove/service/messages.hpp"
 
+#include <cmath>
+
 #include "common/convert/convert.hpp"
 
 namespace prehend::glove {
@@ -67,6 +69,16 @@ v1::HandPosture to_message(const Posture& posture, const std::string& glove, con
   }
   message.joint_angles(posture.joint_angles);
   return message;
+}
+
+Expected<Feedback> from_message(const v1::GloveFeedback& message) {
+  Feedback feedback{.stamp = from_ns(message.stamp_ns())};
+  for (std::size_t f = 0; f < feedback.fingers.size(); ++f) {
+    const v1::FingerFeedback& finger = message.fingers()[f];
+    if (!(finger.force() >= 0 && std::isfinite(finger.force()))) return fail("feedback not finite");
+    feedback.fingers[f] = {finger.force(), finger.contact(), finger.slip(), finger.limit()};
+  }
+  return feedback;
 }
 
 }  // namespace prehend::glove

@@ -2,7 +2,9 @@
 
 #include <string>
 
+#include "common/base/error.hpp"
 #include "idl/Glove.h"
+#include "services/glove/core/feedback.hpp"
 #include "services/glove/core/frame.hpp"
 
 namespace prehend::glove {
@@ -14,6 +16,9 @@ Frame from_message(const v1::GloveFrame& message);
 
 /// Of a frame of a device that has buttons.
 v1::GloveButton button_message(const Frame& frame, const std::string& glove);
+
+/// Fails on a force that is negative or not finite.
+Expected<Feedback> from_message(const v1::GloveFeedback& message);
 
 struct Wearer {
   std::string user;

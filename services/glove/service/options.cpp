@@ -76,6 +76,9 @@ Expected<DeviceOptions> device_options(const service::Config& config) {
   options.wrist_port = config.text("glove.wrist_port");
   options.file = config.path("glove.file");
   options.rate = config.number("glove.rate");
+  options.feedback_force = config.number("glove.feedback_force");
+  if (!(options.feedback_force >= 0))
+    return fail("is negative", "glove.feedback_force", "N; 0: no finger is held back");
   options.hand_scale = config.number("glove.hand_scale");
   if (!(options.hand_scale >= 0.7 && options.hand_scale <= 1.4))
     return fail("must lie in 0.7 to 1.4", "glove.hand_scale", "1 is an average adult");

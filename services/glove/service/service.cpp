@@ -85,6 +85,11 @@ Service::Service(service::Shell& shell, const DeviceKind& kind, const DeviceOpti
 void Service::connect(std::unique_ptr<Device> device) {
   device_ = std::move(device);
   if (shell_.lockstep()) return;
+  if (kind_.feels)
+    shell_.subscribe(dds::glove_feedback, std::function([this](const v1::GloveFeedback& message,
+                                                               const dds::SampleInfo& info) {
+                       on_feedback(message, info);
+                     }));
   const bool left = shell_.config().text("glove.hand") == "left";
   if (left) log::info("the left hand is mirrored into a right one");
   device_->start({.frame =
@@ -106,7 +111,11 @@ void Service::connect(std::unique_ptr<Device> device) {
                         });
                       },
                   .drop = [this](std::string_view reason,
-                                 std::uint64_t count) { shell_.status().drop(reason, count); }});
+                                 std::uint64_t count) { shell_.status().drop(reason, count); },
+                  .felt =
+                      [this](Time stamp) {
+                        shell_.status().latency("touch to glove", shell_.now() - stamp);
+                      }});
 }
 
 void Service::on_frame(const Frame& frame) {
@@ -131,6 +140,15 @@ void Service::on_frame(const Frame& frame) {
   if (!degraded_.empty()) log::info("frames come again");
   degraded_.clear();
   shell_.status().running();
+}
+
+/// Touch never blocks motion, and what is late is felt no more.
+void Service::on_feedback(const v1::GloveFeedback& message, const dds::SampleInfo& info) {
+  if (info.gone || message.glove().to_string() != glove_) return;
+  const auto feedback = from_message(message);
+  if (!feedback) return shell_.status().drop(feedback.error().what);
+  if (shell_.now() - feedback->stamp > feedback_holds) return shell_.status().drop("late feedback");
+  device_->feel(*feedback);
 }
 
 void Service::on_tick(Time now) {

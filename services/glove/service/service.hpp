@@ -23,6 +23,7 @@ class Service {
           Wearer wearer, const model::HumanHand& hand);
   void connect(std::unique_ptr<Device> device);
   void on_frame(const Frame& frame);
+  void on_feedback(const v1::GloveFeedback& message, const dds::SampleInfo& info);
   void on_tick(Time now);
   void degrade(const std::string& line);
 

@@ -36,4 +36,24 @@ Expected<RobotState> state_from_message(const v1::HandState& message) {
                     convert::from_message(message.torque()), *X_WB};
 }
 
+std::vector<LinkTouch> touch_from_message(const v1::HandTouch& message) {
+  std::vector<LinkTouch> links;
+  for (const v1::PadTouch& pad : message.pads())
+    links.push_back(pad.valid() ? LinkTouch{pad.touching(), pad.pressure(), pad.slipping()}
+                                : LinkTouch{});
+  return links;
+}
+
+v1::GloveFeedback to_message(const HandFeedback& feedback) {
+  v1::GloveFeedback message;
+  for (std::size_t f = 0; f < feedback.size(); ++f) {
+    v1::FingerFeedback& finger = message.fingers()[f];
+    finger.force(feedback[f].force);
+    finger.contact(feedback[f].contact);
+    finger.slip(feedback[f].slip);
+    finger.limit(feedback[f].limit);
+  }
+  return message;
+}
+
 }  // namespace prehend::mapping

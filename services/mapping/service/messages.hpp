@@ -1,6 +1,7 @@
 #pragma once
 
 #include "common/dds/topics.hpp"
+#include "services/mapping/core/finger_feedback.hpp"
 #include "services/mapping/core/mapping.hpp"
 
 namespace prehend::mapping {
@@ -10,5 +11,9 @@ Expected<Posture> posture_from_message(const v1::HandPosture& message);
 /// The same of object/detection and robot/state.
 Expected<Detection> detection_from_message(const v1::ObjectDetection& message);
 Expected<RobotState> state_from_message(const v1::HandState& message);
+/// The same of robot/touch: what each link feels.
+std::vector<LinkTouch> touch_from_message(const v1::HandTouch& message);
+
+v1::GloveFeedback to_message(const HandFeedback& feedback);
 
 }  // namespace prehend::mapping

@@ -10,6 +10,7 @@
 #include "common/dds/topics.hpp"
 #include "common/service/order_book.hpp"
 #include "common/service/writers.hpp"
+#include "services/mapping/core/finger_feedback.hpp"
 #include "services/mapping/core/glove_lead.hpp"
 #include "services/mapping/core/mapping.hpp"
 #include "services/mapping/core/mapping_model.hpp"
@@ -72,6 +73,7 @@ class Service::Topics {
         modes_(modes),
         hand_name_(shell.config().text("mapping.hand_name")),
         output_(shell.publish(dds::robot_command)),
+        feedback_(shell.publish(dds::glove_feedback)),
         replies_(shell.publish(dds::operator_reply)),
         last_posture_(shell.now() + start_up) {
     message_.hand(hand_name_);
@@ -84,6 +86,8 @@ class Service::Topics {
                                                [this](auto& s, auto& i) { on_candidates(s, i); }));
     shell.subscribe(dds::robot_state,
                     Handler<v1::HandState>([this](auto& s, auto& i) { on_state(s, i); }));
+    shell.subscribe(dds::robot_touch,
+                    Handler<v1::HandTouch>([this](auto& s, auto& i) { on_touch(s, i); }));
     // In lockstep there is none.
     if (!shell.lockstep())
       shell.subscribe(dds::robot_gate,
@@ -124,6 +128,7 @@ class Service::Topics {
       return;
     }
     publish(*command);
+    glove_ = message.glove().to_string();
     gloves_.followed(info.participant, now);
     led_ = info.participant;
     last_posture_ = now;
@@ -158,7 +163,23 @@ class Service::Topics {
     if (info.gone || message.hand() != hand_name_) return;
     const auto taken = state_from_message(message).and_then(
         [&](const RobotState& state) { return mapping_.on_state(state); });
-    if (!taken) shell_.status().drop(taken.error().what);
+    if (!taken) return shell_.status().drop(taken.error().what);
+    dof_ = convert::from_message(message.dof());
+  }
+
+  /// What the hand feels goes to the glove that leads it; while none does, nobody is told.
+  void on_touch(const v1::HandTouch& message, const dds::SampleInfo& info) {
+    if (info.gone || message.hand() != hand_name_ || glove_.empty() || dof_.size() == 0) return;
+    if (shell_.now() - last_posture_ > patience) return;
+    const auto felt = feel(*hand_, touch_from_message(message), dof_);
+    if (!felt) return shell_.status().drop(felt.error().what);
+    v1::GloveFeedback feedback = to_message(*felt);
+    feedback.glove(glove_);
+    feedback.hand(hand_name_);
+    feedback.sequence_number(message.sequence_number());
+    feedback.stamp_ns(message.stamp_ns());
+    feedback.origin_ns(message.origin_ns());
+    feedback_.publish(feedback);
   }
 
   void on_gate(const v1::GateState& message, const dds::SampleInfo& info) {
@@ -273,11 +294,14 @@ class Service::Topics {
   MappingModes modes_;
   std::string hand_name_;
   service::Shell::Output<v2::HandCommand> output_;
+  service::Shell::Output<v1::GloveFeedback> feedback_;
   service::Shell::Output<v1::OperatorReply> replies_;
   v2::HandCommand message_;  // reused, so that a command costs no allocation
   std::uint64_t sequence_number_ = 0;
   Time last_posture_;  // that was answered
   std::string last_reject_, missing_;
+  std::string glove_;                   // that leads; empty: none has
+  Eigen::VectorXd dof_;                 // rad, of the robot hand; empty: not known
   std::map<std::uint32_t, Time> seen_;  // tracks, when they last came
 };
 

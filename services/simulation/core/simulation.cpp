@@ -56,6 +56,7 @@ Simulation::Simulation(const model::HandModel& hand, const Options& options,
       world_(std::move(world)),
       arm_(std::move(arm)),
       detector_(world_->time_step()),
+      touch_(hand.links().size(), world_->time_step()),
       period_(seconds(world_->time_step())) {}
 
 Expected<void> Simulation::build(const model::Scene& scene,
@@ -219,6 +220,7 @@ bool Simulation::step() {
   }
   if (arm_) arm_->step(*world_);
   world_->step();
+  touch_.update(world_->touches(), world_->base());
   if (braking_) brake();
   if (closures_ == 0 && time_ - looked_ >= look) put_back();
   if (const auto body = detector_.update(*world_); body && command_) {

@@ -16,6 +16,7 @@
 #include "common/model/scene.hpp"
 #include "services/simulation/core/closure.hpp"
 #include "services/simulation/core/command.hpp"
+#include "services/simulation/core/touch_sense.hpp"
 
 namespace prehend::simulation {
 
@@ -71,6 +72,8 @@ class Simulation {
   /// The base still moves, though it was told to stop.
   bool is_braking() const { return braking_; }
   const grasping::World& world() const { return *world_; }
+  /// What each link of the hand feels.
+  const std::vector<PadTouch>& touch() const { return touch_.pads(); }
   /// What the arm does; nothing without one.
   std::optional<carrying::ArmMotion> arm_motion() const;
   const carrying::CarryingArm* arm() const { return arm_.get(); }
@@ -91,6 +94,7 @@ class Simulation {
   std::unique_ptr<grasping::World> world_;
   std::unique_ptr<carrying::CarryingArm> arm_;
   ClosureDetector detector_;
+  TouchSense touch_;
   Duration period_;
   Time time_{}, goal_{};
   std::optional<Command> command_;  // the last accepted one

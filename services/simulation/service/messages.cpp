@@ -42,6 +42,25 @@ v1::HandState to_message(const grasping::HandMotion& motion) {
   return message;
 }
 
+v1::HandTouch to_message(const std::vector<PadTouch>& pads, const model::HandModel& hand) {
+  v1::HandTouch message;
+  message.model(hand.name());
+  for (std::size_t i = 0; i < pads.size(); ++i) {
+    v1::PadTouch pad;
+    pad.link(hand.links()[i].name);
+    pad.valid(true);
+    pad.touching(pads[i].touching);
+    pad.force_B(convert::to_message(pads[i].force_B));
+    pad.pressure(pads[i].pressure);
+    pad.p_BC(convert::to_message(pads[i].p_BC));
+    pad.slip(pads[i].slip);
+    pad.friction_use(pads[i].friction_use);
+    pad.slipping(pads[i].slipping);
+    message.pads().push_back(pad);
+  }
+  return message;
+}
+
 v1::ObjectState to_message(const grasping::Body& body, const grasping::BodyMotion& motion) {
   v1::ObjectState message;
   message.body(body.name);

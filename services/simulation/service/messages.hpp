@@ -9,6 +9,7 @@
 #include "idl/World.h"
 #include "services/simulation/core/closure.hpp"
 #include "services/simulation/core/command.hpp"
+#include "services/simulation/core/touch_sense.hpp"
 
 /// Between the topics and the values of the core.
 namespace prehend::simulation {
@@ -26,6 +27,7 @@ Expected<Sighting> from_message(const v1::ObjectDetection& message,
                                 const grasping::CatalogueBodies& catalogue);
 
 v1::HandState to_message(const grasping::HandMotion& motion);
+v1::HandTouch to_message(const std::vector<PadTouch>& pads, const model::HandModel& hand);
 v1::ObjectState to_message(const grasping::Body& body, const grasping::BodyMotion& motion);
 v1::BodyDescription to_message(const grasping::Body& body);
 v1::GraspReport to_message(const Closure& closure, const GraspVerdict& verdict);

@@ -43,6 +43,7 @@ Service::Service(service::Shell& shell, model::HandModel hand, model::Catalogue 
       bodies_(std::move(bodies)),
       hand_name_(shell.config().text("simulation.hand_name")),
       hand_state_(shell.publish(dds::robot_state)),
+      hand_touch_(shell.publish(dds::robot_touch)),
       object_state_(shell.publish(dds::object_state)),
       scene_state_(shell.publish(dds::scene_state)),
       reports_(shell.publish(dds::grasp_report)),
@@ -199,6 +200,12 @@ void Service::publish_state() {
   state.stamp_ns(to_ns(time));
   if (simulation_->command()) state.origin_ns(to_ns(simulation_->command()->origin));
   hand_state_.publish(state);
+  v1::HandTouch touch = to_message(simulation_->touch(), hand_);
+  touch.hand(hand_name_);
+  touch.sequence_number(sequence_);
+  touch.stamp_ns(state.stamp_ns());
+  touch.origin_ns(state.origin_ns());
+  hand_touch_.publish(touch);
   for (int i = 0; i < simulation_->world().body_count(); ++i) {
     v1::ObjectState object =
         to_message(simulation_->world().body(i), simulation_->world().body_motion(i));

@@ -52,6 +52,7 @@ class Service {
   std::unique_ptr<robot::Gatekeeper> gate_;
   std::optional<ArmTeller> arm_;  // none: the hand flies
   service::Shell::Output<v1::HandState> hand_state_;
+  service::Shell::Output<v1::HandTouch> hand_touch_;
   service::Shell::Output<v1::ObjectState> object_state_;
   service::Shell::Output<v1::SceneState> scene_state_;
   service::Shell::Output<v1::GraspReport> reports_;

@@ -336,6 +336,45 @@ TEST(LabView, ANameOfAFrameIsOneString) {
   }
 }
 
+TEST(LabView, WhatAHandFeelsIsDrawnWhereItPressesAndPlottedForEachFinger) {
+  LabView shown = view();
+  const auto vector = [](double x, double y, double z) {
+    return structure({{"x", Value{x}}, {"y", Value{y}}, {"z", Value{z}}});
+  };
+  const auto pad = [&](bool touching, double pressure) {
+    return structure({{"touching", Value{touching}},
+                      {"pressure", Value{pressure}},
+                      {"p_BC", vector(0.01, 0.02, 0.03)},
+                      {"force_B", vector(0, 0, pressure)}});
+  };
+  const auto drawn = [&](std::vector<Value> pads) {
+    const auto made = shown.hear("robot/touch",
+                                 structure({{"hand", Value{std::string("hand")}},
+                                            {"model", Value{std::string("barrett")}},
+                                            {"pads", Value{Value::List(std::move(pads))}}}),
+                                 0);
+    EXPECT_EQ(made.size(), 1U);
+    return message_of(made.at(0))["entities"].at(0);
+  };
+  const json one = drawn({pad(true, 4), pad(false, 4), pad(true, std::nan(""))});
+  EXPECT_EQ(one["id"], "touch/hand");
+  ASSERT_EQ(one["spheres"].size(), 1U);
+  EXPECT_EQ(one["spheres"][0]["pose"]["position"], (json{{"x", 0.01}, {"y", 0.02}, {"z", 0.03}}));
+  ASSERT_EQ(one["arrows"].size(), 1U);
+  EXPECT_TRUE(drawn({})["spheres"].empty()) << "what is let go is drawn no more";
+
+  std::vector<Value> fingers;
+  for (int f = 0; f < 5; ++f) fingers.push_back(structure({{"force", Value{1.5 * f}}}));
+  const auto plotted = shown.hear("glove/feedback",
+                                  structure({{"glove", Value{std::string("glove")}},
+                                             {"fingers", Value{Value::List(std::move(fingers))}}}),
+                                  0);
+  ASSERT_EQ(plotted.size(), 1U);
+  const json said = message_of(plotted[0]);
+  EXPECT_EQ(said["names"], (json{"thumb", "index", "middle", "ring", "little"}));
+  EXPECT_EQ(said["values"], (json{0.0, 1.5, 3.0, 4.5, 6.0}));
+}
+
 TEST(LabView, DamagedMessagesDrawNothing) {
   LabView shown = view();
   for (const dds::TopicInfo& topic : dds::topic_table) {

@@ -22,7 +22,18 @@ TEST(OpenGloveLine, WhatIsDamagedIsNone) {
         "A1B2C3D4E5F1G1(AB)", "A99999999999B2C3D4E5F1G1", "$GPGGA,1,2"})
     EXPECT_FALSE(parse(line)) << line;
   // Our own words, if they come back.
-  EXPECT_FALSE(parse(let_go.substr(0, let_go.size() - 1)));
+  const std::string ours = to_line(HeldBack{});
+  EXPECT_FALSE(parse(ours.substr(0, ours.size() - 1)));
+}
+
+TEST(OpenGloveLine, TellsHowFarEachFingerIsHeldBack) {
+  EXPECT_EQ(to_line(HeldBack{}), "A0B0C0D0E0\n");
+  const std::string line = to_line(HeldBack{0, 0.25, 0.5, 1, 7});
+  EXPECT_EQ(line, "A0B250C500D1000E1000\n");
+  EXPECT_EQ(parse_held_back("A0B250C500D1000E1000"), (HeldBack{0, 0.25, 0.5, 1, 1}));
+  for (const char* wrong : {"", "A0B0C0D0", "A0B0C0D0E1001", "A0B0C0D0E0E0", "A0B0C0D0F0",
+                            "A0B0C0D0E0F0", "A0B0C0D0E", "A1B2C3D4E5F1G1"})
+    EXPECT_FALSE(parse_held_back(wrong)) << wrong;
 }
 
 TEST(OpenGloveLine, ComesBackAsItWent) {
