@@ -85,6 +85,18 @@ class EveryDevice : public ::testing::TestWithParam<DeviceKind> {
   /// They are two processes elsewhere.
   static void silence(std::unique_ptr<EmulatedDevice>& emulated) { emulated.reset(); }
 
+  /// Calls with s from the start at which something is to happen to a device that has spoken; later
+  /// ones, as long as it did so too late, since it waited for a processor.
+  template <class Attempt>
+  static void after_first_frames(Attempt attempt) {
+    for (const double at : {2.5, 5.0, 10.0, 20.0})
+      if (attempt(at) || HasFailure()) return;
+    FAIL() << "it does not begin to speak";
+  }
+  static bool passed(Clock::time_point start, double at) {
+    return to_seconds(Clock::now() - start) > at - 0.2;
+  }
+
   /// Of all frames so far. Arrivals were before now.
   static void expect_sound(const std::vector<Frame>& frames) {
     for (std::size_t n = 0; n < frames.size(); ++n) {
@@ -215,37 +227,43 @@ TEST_P(EveryDevice, SurvivesEveryFault) {
 // Without power, too: it begins as when it was switched on.
 TEST_P(EveryDevice, ComesBackWithin2500MillisecondsOfReplugging) {
   if (!has_line()) return;
-  constexpr double unplug_at = 3, unplug_for = 1, aim = 2.5;
-  const auto start = Clock::now();
-  auto emulated = emulator({.unplug_at = unplug_at, .unplug_for = unplug_for});
-  Listener listener;
-  const auto driver = device();
-  driver->start(listener.sink());
-  ASSERT_TRUE(listener.frames(5));
-  // Before that it may complain because it has to wait for a processor.
-  const auto unplugged = start + std::chrono::duration_cast<Clock::duration>(seconds(unplug_at));
-  ASSERT_TRUE(listener.complains_after(unplugged)) << "says nothing";
-  ASSERT_TRUE(listener.frames(1));
-  const double after = to_seconds(Clock::now() - start) - unplug_at - unplug_for;
-  EXPECT_LT(after, aim);
-  RecordProperty("seconds_after_replugging", std::to_string(after));
-  std::cout << GetParam().name << ": frames " << after << " s after replugging\n";
-  ASSERT_TRUE(listener.frames(20));
-  silence(emulated);
-  expect_sound(listener.all());
+  constexpr double unplug_for = 1, aim = 2.5;
+  after_first_frames([&](double unplug_at) {
+    const auto start = Clock::now();
+    auto emulated = emulator({.unplug_at = unplug_at, .unplug_for = unplug_for});
+    Listener listener;
+    const auto driver = device();
+    driver->start(listener.sink());
+    if (!listener.frames(5) || passed(start, unplug_at)) return false;
+    // Before that it may complain because it has to wait for a processor.
+    const auto unplugged = start + std::chrono::duration_cast<Clock::duration>(seconds(unplug_at));
+    EXPECT_TRUE(listener.complains_after(unplugged)) << "says nothing";
+    EXPECT_TRUE(listener.frames(1));
+    const double after = to_seconds(Clock::now() - start) - unplug_at - unplug_for;
+    EXPECT_LT(after, aim);
+    std::cout << GetParam().name << ": frames " << after << " s after replugging\n";
+    EXPECT_TRUE(listener.frames(20));
+    silence(emulated);
+    expect_sound(listener.all());
+    return true;
+  });
 }
 
 TEST_P(EveryDevice, SaysWhenItFallsSilentAndComesBack) {
   if (!has_line()) return;
-  auto emulated = emulator({.silent_at = 2.5, .silent_for = 1});
-  Listener listener;
-  const auto driver = device();
-  driver->start(listener.sink());
-  ASSERT_TRUE(listener.frames(5));
-  ASSERT_TRUE(listener.says(GetParam().line == Line::serial ? "silent" : "no landmarks"));
-  ASSERT_TRUE(listener.frames(20));
-  silence(emulated);
-  expect_sound(listener.all());
+  after_first_frames([&](double silent_at) {
+    const auto start = Clock::now();
+    auto emulated = emulator({.silent_at = silent_at, .silent_for = 1});
+    Listener listener;
+    const auto driver = device();
+    driver->start(listener.sink());
+    if (!listener.frames(5) || passed(start, silent_at)) return false;
+    EXPECT_TRUE(listener.says(GetParam().line == Line::serial ? "silent" : "no landmarks"));
+    EXPECT_TRUE(listener.frames(20));
+    silence(emulated);
+    expect_sound(listener.all());
+    return true;
+  });
 }
 
 TEST_P(EveryDevice, EndsAtOnce) {
