@@ -16,6 +16,9 @@ int main(int argc, char** argv) {
       if (left) line.stamp = 1732200000.125;
       fuzzer.seeds.push_back(to_line(line, webxr));
     }
+  fuzzer.seeds.push_back(
+      R"({"version": 1, "hand": "left", "origin": "room", "controller": {"position_m": [0.1, 0, 1], )"
+      R"("orientation": [1, 0, 0, 0], "trigger": 0.5, "grip": 1}})");
   fuzzer.seeds.push_back(fuzzer.seeds[0] + fuzzer.seeds[1] + "\n" + fuzzer.seeds[2]);
   fuzzer.long_round = 1'000'000;
   fuzzer.mutate = [](Random& random, std::string line) {

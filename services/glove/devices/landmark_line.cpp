@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "services/glove/core/frame.hpp"
+#include "services/glove/core/held_controller.hpp"
 #include "services/glove/core/plausible_hand.hpp"
 
 namespace prehend::glove {
@@ -66,6 +67,50 @@ bool take_buttons(const Json& buttons, LandmarkLine& line) {
   return true;
 }
 
+using Refusable = tl::expected<Landmarks, std::string_view>;
+
+/// So many finite numbers; else why not.
+template <int Count>
+tl::expected<Eigen::Matrix<double, Count, 1>, std::string_view> numbers_in(const Json& list) {
+  Eigen::Matrix<double, Count, 1> made;
+  if (!list.is_array() || list.size() != Count) return tl::unexpected("unreadable");
+  for (int k = 0; k < Count; ++k) {
+    // What is not finite has no number in JSON; programs write null.
+    const Json& number = list[static_cast<std::size_t>(k)];
+    if (!number.is_number()) return tl::unexpected(number.is_null() ? "not finite" : "unreadable");
+    made[k] = number.get<double>();
+  }
+  return made;
+}
+
+Refusable points_in(const Json& points, bool left) {
+  std::vector<Vector3d> joints;
+  for (std::size_t i = 0; i < std::min<std::size_t>(points.size(), max_joints + 1); ++i) {
+    const auto point = numbers_in<3>(points[i]);
+    if (!point) return tl::unexpected(point.error());
+    joints.push_back(*point);
+  }
+  return landmarks_among(joints, left);
+}
+
+Refusable hand_on(const Json& controller, bool left) {
+  const auto pressed = [&](const char* name) {
+    const Json value = controller.value(name, Json());
+    return value.is_number() ? value.get<double>() : -1;
+  };
+  const auto position = numbers_in<3>(controller.value("position_m", Json()));
+  const auto turned = numbers_in<4>(controller.value("orientation", Json()));
+  if (!position || !turned) return tl::unexpected(position ? turned.error() : position.error());
+  const double trigger = pressed("trigger"), grip = pressed("grip");
+  if (!(trigger >= 0 && trigger <= 1 && grip >= 0 && grip <= 1))
+    return tl::unexpected("unreadable");
+  const auto& q = *turned;
+  const auto X_RG = checked_pose(*position, Eigen::Quaterniond(q[0], q[1], q[2], q[3]));
+  if (!X_RG) return tl::unexpected("not a rotation");
+  if (position->norm() > farthest) return tl::unexpected("out of range");
+  return glove::hand_on({left, *X_RG, trigger, grip});
+}
+
 }  // namespace
 
 tl::expected<LandmarkLine, std::string_view> parse_landmarks(std::string_view text) {
@@ -79,11 +124,13 @@ tl::expected<LandmarkLine, std::string_view> parse_landmarks(std::string_view te
   };
   if (field("version") != landmark_line_version) return refuse("unknown version");
   LandmarkLine line;
-  const Json &origin = field("origin"), &points = field("points_m");
+  const Json &origin = field("origin"), &points = field("points_m"),
+             &controller = field("controller");
   const std::string hand = small_letters(field("hand"));
   line.left = hand == "left";
   line.in_room = origin == "room";
-  if ((!line.left && hand != "right") || (!line.in_room && origin != "hand") || !points.is_array())
+  if ((!line.left && hand != "right") || (!line.in_room && origin != "hand") ||
+      points.is_array() == controller.is_object())
     return refuse("unreadable");
   if (const Json& stamp = field("stamp_s"); !stamp.is_null()) {
     if (!stamp.is_number()) return refuse("unreadable");
@@ -92,17 +139,8 @@ tl::expected<LandmarkLine, std::string_view> parse_landmarks(std::string_view te
     if (!(std::abs(*line.stamp) < 9e9)) return refuse("out of range");
   }
   if (!take_buttons(field("buttons"), line)) return refuse("unreadable");
-  std::vector<Vector3d> joints(std::min<std::size_t>(points.size(), max_joints + 1));
-  for (std::size_t i = 0; i < joints.size(); ++i) {
-    const Json& point = points[i];
-    if (!point.is_array() || point.size() != 3) return refuse("unreadable");
-    for (std::size_t k = 0; k < 3; ++k) {
-      // What is not finite has no number in JSON; programs write null.
-      if (!point[k].is_number()) return refuse(point[k].is_null() ? "not finite" : "unreadable");
-      joints[i][static_cast<Eigen::Index>(k)] = point[k].get<double>();
-    }
-  }
-  const auto landmarks = landmarks_among(joints, line.left);
+  const auto landmarks =
+      points.is_array() ? points_in(points, line.left) : hand_on(controller, line.left);
   if (!landmarks) return tl::unexpected(landmarks.error());
   line.points = *landmarks;
   return line;

@@ -25,6 +25,9 @@
 ///   points_m  21 points as MediaPipe has them (bare_hand.hpp), or 25 in the order of WebXR, which
 ///             also has the four metacarpals, or the 26 of OpenXR, with the palm first; metres, at
 ///             most 5 from the origin
+///   controller  in place of points_m, of one that a hand holds: {"position_m": [x, y, z],
+///             "orientation": [w, x, y, z], "trigger": 0 to 1, "grip": 0 to 1}, the grip pose of
+///             OpenXR (held_controller.hpp)
 ///   buttons   optional: numbers of the buttons that are held, 1 to 8; [] for none. Who has buttons
 ///             says so in every line
 namespace prehend::glove {

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "common/base/random.hpp"
+#include "services/glove/core/plausible_hand.hpp"
 
 namespace prehend::glove {
 namespace {
@@ -51,6 +52,64 @@ TEST(LandmarkLine, ReadsAWrittenLine) {
   EXPECT_FALSE(line->in_room);
   EXPECT_FALSE(line->stamp);
   EXPECT_NEAR(line->points[20].x(), 0.2, 1e-9);
+}
+
+std::string controller_line(const std::string& hand, const std::string& controller) {
+  return R"({"version": 1, "hand": ")" + hand + R"(", "origin": "room", "controller": )" +
+         controller + "}";
+}
+
+// OpenXR: -z points out at the thumb's side, x out of the back of a right hand, out of the palm of
+// a left one; so y points to the wrist.
+TEST(LandmarkLine, AControllerIsAHandThatHoldsIt) {
+  for (const bool left : {false, true}) {
+    const auto line = parse_landmarks(controller_line(
+        left ? "Left" : "right",
+        R"({"position_m": [0.1, 0.2, 0.3], "orientation": [1, 0, 0, 0], "trigger": 0, "grip": 0})"));
+    ASSERT_TRUE(line) << line.error();
+    EXPECT_EQ(line->left, left);
+    EXPECT_EQ(why_no_hand(line->points, left), "");
+    const BareHand hand = bare_hand(line->points, left);
+    EXPECT_GT(hand.x_R.normalized().dot(-Eigen::Vector3d::UnitY()), 0.95) << "fingers";
+    EXPECT_GT(hand.z_R.normalized().dot(Eigen::Vector3d(left ? -1 : 1, 0, 0)), 0.9) << "back";
+    EXPECT_LT(line->points[4].z(), 0.3) << "thumb";
+    const Eigen::Vector3d palm = (line->points[0] + line->points[9]) / 2;
+    EXPECT_LT((palm - Eigen::Vector3d(0.1, 0.2, 0.3)).norm(), 0.001);
+  }
+}
+
+TEST(LandmarkLine, TriggerAndGripBendTheirFingers) {
+  const auto bent = [](double trigger, double grip) {
+    const auto line = parse_landmarks(controller_line(
+        "right", R"({"position_m": [0, 0, 0], "orientation": [1, 0, 0, 0], "trigger": )" +
+                     std::to_string(trigger) + R"(, "grip": )" + std::to_string(grip) + "}"));
+    EXPECT_TRUE(line);
+    std::array<bool, 5> is_bent{};  // the tip comes nearer to the wrist
+    const auto open = landmarks_of(model::HumanHand(1), model::HumanHand::open_posture());
+    for (std::size_t f = 0; f < 5; ++f)
+      is_bent[f] = (line->points[4 * f + 4] - line->points[0]).norm() <
+                   (open[4 * f + 4] - open[0]).norm() - 0.02;
+    return is_bent;
+  };
+  EXPECT_EQ(bent(0, 0), (std::array{false, false, false, false, false}));
+  EXPECT_EQ(bent(1, 0), (std::array{true, true, false, false, false}));
+  EXPECT_EQ(bent(0, 1), (std::array{true, false, true, true, true}));
+}
+
+TEST(LandmarkLine, AControllerThatIsNoneIsRefusedWithItsReason) {
+  const auto reason = [](const std::string& controller) {
+    return refusal(controller_line("right", controller));
+  };
+  EXPECT_EQ(reason("3"), "unreadable");
+  EXPECT_EQ(reason("{}"), "unreadable");
+  const std::string place = R"("position_m": [0, 0, 0], )", pressed = R"("trigger": 0, "grip": 0})";
+  EXPECT_EQ(reason("{" + place + R"("orientation": [0, 0, 0, 0], )" + pressed), "not a rotation");
+  EXPECT_EQ(reason("{" + place + R"("orientation": [1, 0, 0, null], )" + pressed), "not finite");
+  EXPECT_EQ(reason(R"({"position_m": [0, 9, 0], "orientation": [1, 0, 0, 0], )" + pressed),
+            "out of range");
+  EXPECT_EQ(reason("{" + place + R"("orientation": [1, 0, 0, 0], "trigger": 2, "grip": 0})"),
+            "unreadable");
+  EXPECT_EQ(reason("{" + place + R"("orientation": [1, 0, 0, 0], )" + pressed), "");
 }
 
 TEST(LandmarkLine, SaysWhichButtonsAreHeld) {
