@@ -69,15 +69,19 @@ bool take_buttons(const Json& buttons, LandmarkLine& line) {
 
 using Refusable = tl::expected<Landmarks, std::string_view>;
 
+tl::unexpected<std::string_view> refuse(std::string_view reason) {
+  return tl::unexpected(reason);
+}
+
 /// So many finite numbers; else why not.
 template <int Count>
 tl::expected<Eigen::Matrix<double, Count, 1>, std::string_view> numbers_in(const Json& list) {
   Eigen::Matrix<double, Count, 1> made;
-  if (!list.is_array() || list.size() != Count) return tl::unexpected("unreadable");
+  if (!list.is_array() || list.size() != Count) return refuse("unreadable");
   for (int k = 0; k < Count; ++k) {
     // What is not finite has no number in JSON; programs write null.
     const Json& number = list[static_cast<std::size_t>(k)];
-    if (!number.is_number()) return tl::unexpected(number.is_null() ? "not finite" : "unreadable");
+    if (!number.is_number()) return refuse(number.is_null() ? "not finite" : "unreadable");
     made[k] = number.get<double>();
   }
   return made;
@@ -102,19 +106,17 @@ Refusable hand_on(const Json& controller, bool left) {
   const auto turned = numbers_in<4>(controller.value("orientation", Json()));
   if (!position || !turned) return tl::unexpected(position ? turned.error() : position.error());
   const double trigger = pressed("trigger"), grip = pressed("grip");
-  if (!(trigger >= 0 && trigger <= 1 && grip >= 0 && grip <= 1))
-    return tl::unexpected("unreadable");
+  if (!(trigger >= 0 && trigger <= 1 && grip >= 0 && grip <= 1)) return refuse("unreadable");
   const auto& q = *turned;
   const auto X_RG = checked_pose(*position, Eigen::Quaterniond(q[0], q[1], q[2], q[3]));
-  if (!X_RG) return tl::unexpected("not a rotation");
-  if (position->norm() > farthest) return tl::unexpected("out of range");
+  if (!X_RG) return refuse("not a rotation");
+  if (position->norm() > farthest) return refuse("out of range");
   return glove::hand_on({left, *X_RG, trigger, grip});
 }
 
 }  // namespace
 
 tl::expected<LandmarkLine, std::string_view> parse_landmarks(std::string_view text) {
-  const auto refuse = [](std::string_view reason) { return tl::unexpected(reason); };
   const Json json = Json::parse(text, nullptr, false);
   if (!json.is_object()) return refuse(has_no_number(text) ? "not finite" : "unreadable");
   const auto field = [&](const char* name) -> const Json& {
@@ -148,7 +150,6 @@ tl::expected<LandmarkLine, std::string_view> parse_landmarks(std::string_view te
 
 tl::expected<Landmarks, std::string_view> landmarks_among(const std::vector<Vector3d>& joints,
                                                           bool left) {
-  const auto refuse = [](std::string_view reason) { return tl::unexpected(reason); };
   if (joints.size() != 21 && joints.size() != 25 && joints.size() != max_joints)
     return refuse("wrong count");
   Landmarks made;
