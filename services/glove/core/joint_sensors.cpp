@@ -19,6 +19,16 @@ constexpr double distal_to_middle = 0.6;
 constexpr int index = 0, middle = 4, ring = 8, little = 12, thumb = 16;
 constexpr std::array fingers{index, middle, ring, little};
 
+constexpr std::array fingers_by_sensor{thumb, index, middle, ring, little};
+
+/// How far the joints of a finger are bent together, 0 as an open hand's, 1 as a fist's: what a
+/// string along it tells. first: its first dof.
+double bent_by(const HumanPosture& posture, int first) {
+  const HumanPosture open = model::HumanHand::open_posture();
+  const HumanPosture fist = model::HumanHand::fist_posture();
+  return (posture - open).segment<3>(first + 1).sum() / (fist - open).segment<3>(first + 1).sum();
+}
+
 /// What bends with a whole finger, told by one joint that bends much: 0 counts open, 255 a fist.
 std::vector<JointSensor> sensors_of_fingers() {
   constexpr std::pair<std::string_view, int> told_by[] = {{"thumb", thumb + 3},
@@ -45,6 +55,14 @@ FingerWay way_of(std::size_t finger) {
   static const auto sensors = sensors_of_fingers();
   const int dof = sensors[finger].dof;
   return {model::HumanHand::open_posture()[dof], model::HumanHand::fist_posture()[dof]};
+}
+
+/// What the sensor tells of a posture as the angle of its joint, rad.
+double angle_told(const HumanPosture& posture, const std::vector<JointSensor>& sensors,
+                  std::size_t s) {
+  if (sensors.size() != finger_sensors) return posture[sensors[s].dof];
+  const auto [open, fist] = way_of(s);
+  return open + bent_by(posture, fingers_by_sensor[s]) * (fist - open);
 }
 
 std::vector<double> mean(const std::vector<std::vector<double>>& samples) {
@@ -149,7 +167,8 @@ std::vector<double> joint_counts(const HumanPosture& posture, const JointGains& 
   std::vector<double> counts;
   for (std::size_t s = 0; s < sensors.size(); ++s) {
     const int dof = sensors[s].dof;
-    const double count = dof < 0 ? 128 : (posture[dof] - gains.offset[s]) / gains.gain[s];
+    const double count =
+        dof < 0 ? 128 : (angle_told(posture, sensors, s) - gains.offset[s]) / gains.gain[s];
     counts.push_back(std::clamp(count, 1.0, 255.0));
   }
   return counts;
@@ -179,20 +198,23 @@ Expected<JointGains> fit_gains(const std::vector<std::vector<double>>& open,
   if (!gains) return gains;
   const auto sensors = joint_sensors_of(open.front().size());
   const std::array counts{mean(open), mean(fist), mean(pinch)};
-  const std::array poses{model::HumanHand::open_posture(), model::HumanHand::fist_posture(),
-                         pinch_posture()};
+  const std::array postures{model::HumanHand::open_posture(), model::HumanHand::fist_posture(),
+                            pinch_posture()};
   int moved = 0;
   for (std::size_t s = 0; s < sensors.size(); ++s) {
     const int dof = sensors[s].dof;
     if (dof < 0) continue;
     const std::size_t used = dof < middle || dof >= thumb ? 3 : 2;
+    std::array<double, 3> angle{};
     double x = 0, y = 0;
-    for (std::size_t k = 0; k < used; ++k)
-      x += counts[k][s] / static_cast<double>(used), y += poses[k][dof] / static_cast<double>(used);
+    for (std::size_t k = 0; k < used; ++k) {
+      angle[k] = angle_told(postures[k], sensors, s);
+      x += counts[k][s] / static_cast<double>(used), y += angle[k] / static_cast<double>(used);
+    }
     double xx = 0, xy = 0, low = counts[0][s], high = low;
     for (std::size_t k = 0; k < used; ++k) {
       xx += (counts[k][s] - x) * (counts[k][s] - x);
-      xy += (counts[k][s] - x) * (poses[k][dof] - y);
+      xy += (counts[k][s] - x) * (angle[k] - y);
       low = std::min(low, counts[k][s]), high = std::max(high, counts[k][s]);
     }
     if (high - low >= min_movement && std::abs(xy) > 1e-9 * xx) {
@@ -200,7 +222,7 @@ Expected<JointGains> fit_gains(const std::vector<std::vector<double>>& open,
       gains->offset[s] = y - gains->gain[s] * x;
       ++moved;
     } else {
-      gains->offset[s] = poses[0][dof] - gains->gain[s] * counts[0][s];
+      gains->offset[s] = angle[0] - gains->gain[s] * counts[0][s];
     }
   }
   if (moved < 4)

@@ -27,8 +27,8 @@ inline constexpr std::string_view joint_gains_table = "joint_glove";
 const std::vector<JointSensor>& joint_sensors();
 inline constexpr std::size_t max_joint_sensors = 22, min_joint_sensors = 18;
 
-/// One sensor a finger, thumb first: it bends with all joints of the finger, and is calibrated as
-/// its middle joint (the thumb's last).
+/// One sensor a finger, thumb first: it bends with all joints of the finger by their sum, and is
+/// calibrated as its middle joint (the thumb's last).
 inline constexpr std::size_t finger_sensors = model::finger_count;
 
 /// The sensors of a glove that has `count` of them; empty unless 5, 18 or 22.

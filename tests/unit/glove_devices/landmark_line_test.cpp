@@ -84,11 +84,13 @@ TEST(LandmarkLine, TriggerAndGripBendTheirFingers) {
         "right", R"({"position_m": [0, 0, 0], "orientation": [1, 0, 0, 0], "trigger": )" +
                      std::to_string(trigger) + R"(, "grip": )" + std::to_string(grip) + "}"));
     EXPECT_TRUE(line);
-    std::array<bool, 5> is_bent{};  // the tip comes nearer to the wrist
-    const auto open = landmarks_of(model::HumanHand(1), model::HumanHand::open_posture());
+    // Its first bone and its last turn against each other.
+    std::array<bool, 5> is_bent{};
+    const auto bone = [&](std::size_t from, std::size_t to) {
+      return (line->points[to] - line->points[from]).normalized();
+    };
     for (std::size_t f = 0; f < 5; ++f)
-      is_bent[f] = (line->points[4 * f + 4] - line->points[0]).norm() <
-                   (open[4 * f + 4] - open[0]).norm() - 0.02;
+      is_bent[f] = bone(4 * f + 1, 4 * f + 2).dot(bone(4 * f + 3, 4 * f + 4)) < 0.8;
     return is_bent;
   };
   EXPECT_EQ(bent(0, 0), (std::array{false, false, false, false, false}));

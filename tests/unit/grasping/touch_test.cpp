@@ -21,7 +21,7 @@ void run(World& world, double time) {
   for (double t = 0; t < time; t += world.time_step()) world.step();
 }
 
-/// From the side, closed and squeezing, without a table.
+/// From the side, closed and squeezing, without a table; it has borne the body for a second.
 std::unique_ptr<World> holding(const Body& body) {
   Eigen::Matrix3d R;
   R.col(0) = Vector3d::UnitZ();
@@ -72,14 +72,17 @@ TEST(Touch, IsTheContactSeenFromTheHand) {
 }
 
 TEST(Touch, SlipIsHowFastTheObjectSlides) {
-  Body slippery = talc;
-  slippery.friction = 0.02;
-  auto world = holding(slippery);
+  auto world = holding(talc);
+  world->set_gravity(Vector3d(0, 0, -400));  // more than the fingers' friction bears
+  double falls = 0;
+  for (int i = 0; i < 50 && falls > -0.1; ++i) {
+    world->step();
+    falls = world->body_motion(0).velocity.z();
+  }
+  ASSERT_LE(falls, -0.1);
   const auto touches = world->touches();
   ASSERT_FALSE(touches.empty());
-  const double falls = world->body_motion(0).velocity.z();
-  ASSERT_LT(falls, -0.02);
-  for (const Touch& touch : touches) EXPECT_NEAR(touch.slip_W.z(), falls, 0.1 * std::abs(falls));
+  for (const Touch& touch : touches) EXPECT_NEAR(touch.slip_W.z(), falls, 0.3 * std::abs(falls));
 }
 
 /// A link's velocity is how its place changes: held against an object that stands still, slip is
