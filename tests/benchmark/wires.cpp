@@ -1,6 +1,8 @@
 // What real hands' drivers do at the end of a wire.
 //
-//   benchmark_wires [--json] [--rates] [--faults] [--seconds S]     without: both tables
+//   benchmark_wires [--json] [--rates [--driver NAME] [--seconds S]] [--faults]
+//
+// Without a word: both tables.
 //
 // Rates: how many rounds a second each driver makes at each baud that its device may be set to: a
 // round tells what the hand shall do and reads all joints. The driver is that of prehend-robot in
@@ -37,7 +39,7 @@ std::vector<Speeds> all_speeds() {
           {{"inspire_rh56", "inspire_rh56"}, {9600, 19200, 57600, 115200, 921600}}};
 }
 
-nlohmann::json measure_rates(bool json, double seconds) {
+nlohmann::json measure_rates(bool json, double seconds, std::string_view driver) {
   constexpr double as_fast_as_it_can = 500;  // Hz
   nlohmann::json rows = nlohmann::json::array();
   if (!json)
@@ -46,6 +48,7 @@ nlohmann::json measure_rates(bool json, double seconds) {
         "|\n|---|---|---|---|---|---|---|\n");
   for (const auto& [wired, bauds] : all_speeds())
     for (const int baud : bauds) {
+      if (!driver.empty() && wired.driver != driver) continue;
       const test::Cycle cycle = test::measure_cycle(wired, baud, as_fast_as_it_can, seconds);
       const double floor = cycle.bytes > 0 ? baud / 10.0 / cycle.bytes : 0;
       rows.push_back({{"driver", wired.driver},
@@ -113,16 +116,18 @@ int main(int argc, char** argv) {
   using namespace prehend;
   bool json = false, rates = false, faults = false;
   double seconds = 3;
+  std::string_view driver;
   for (int i = 1; i < argc; ++i) {
     const std::string_view word = argv[i];
     json |= word == "--json";
     rates |= word == "--rates";
     faults |= word == "--faults";
     if (word == "--seconds" && i + 1 < argc) seconds = std::atof(argv[++i]);
+    if (word == "--driver" && i + 1 < argc) driver = argv[++i];
   }
   const bool all = !rates && !faults;
   nlohmann::json made;
-  if (rates || all) made["rates"] = measure_rates(json, seconds);
+  if (rates || all) made["rates"] = measure_rates(json, seconds, driver);
   if (faults || all) made["faults"] = play_faults(json);
   if (json) std::cout << made.dump() << "\n";
 }

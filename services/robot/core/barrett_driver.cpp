@@ -21,13 +21,13 @@ constexpr double press_speed = 0.4;  // rad/s, of a motor that is kept from movi
 constexpr int max_strain = 240;      // above it nothing closes any more
 constexpr double cool = 3;           // °C below the limit, after it was passed
 
-constexpr Duration patience = milliseconds(1000);  // with an answer to a line
+constexpr Duration patience = milliseconds(1000);  // with an answer to a line, when it is there
+constexpr std::size_t reply_bytes = 64;
 constexpr Duration homing_patience = std::chrono::seconds(40);
 constexpr Duration quiet = milliseconds(60);  // after which nothing more comes
 constexpr Duration wake_period = milliseconds(100);
 constexpr std::size_t wake_bytes = 24;  // there and back
 constexpr double late = 0.55;           // of lost_after, that an answer may come too late
-constexpr double max_speed = 40000;     // counts/s
 constexpr double max_gap = 0.03;        // s, after which a jump has to be seen twice
 constexpr Duration heat_period = milliseconds(1000);
 constexpr std::size_t max_heard = 4096;
@@ -38,6 +38,11 @@ constexpr std::array settings{"1234FSET LCV 1 LCPG 0 LFV 0 LFS 1 LFAP 1 LFDP 0",
 
 Duration time_on_line(std::size_t bytes, int baud) {
   return seconds(static_cast<double>(bytes) * 10 / baud);
+}
+
+/// Further no joint is after so many s.
+double max_way(std::size_t motor, double s) {
+  return (0.03 + 5.5 * s) * counts_per_radian(motor);
 }
 
 }  // namespace
@@ -128,7 +133,7 @@ std::string Driver::ask(Talk talk, const std::string& line, Duration how_long, T
   line_ = line;
   heard_.clear();
   asked_ = now;
-  patience_ = how_long;
+  patience_ = how_long + time_on_line(line.size() + reply_bytes, options_.baud);
   gives_up_ = false;
   return line + end_of_line;
 }
@@ -352,10 +357,8 @@ bool Driver::take_block(Time now) {
 /// not believed the more the longer nothing sound has come.
 bool Driver::plausible(const Feedback& feedback, Time now) const {
   const double dt = std::min(to_seconds(now - good_), max_gap);
-  for (std::size_t i = 0; i < motors; ++i) {
-    const double most = 200 + max_speed * dt;  // counts
-    if (std::abs(feedback.position[i] - control_[i].position()) > most) return false;
-  }
+  for (std::size_t i = 0; i < motors; ++i)
+    if (std::abs(feedback.position[i] - control_[i].position()) > max_way(i, dt)) return false;
   return true;
 }
 
@@ -364,7 +367,7 @@ bool Driver::is_confirmed(const Feedback& feedback) {
   doubted_ = feedback;
   if (!doubted_before_) return false;
   for (std::size_t i = 0; i < motors; ++i)
-    if (std::abs(feedback.position[i] - doubted_before_->position[i]) > 200 + max_speed * max_gap)
+    if (std::abs(feedback.position[i] - doubted_before_->position[i]) > max_way(i, max_gap))
       return false;
   return true;
 }
