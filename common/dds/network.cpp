@@ -30,6 +30,8 @@ namespace prehend::dds {
 
 namespace {
 
+constexpr std::uint32_t participants_of_a_host = 32;  // that are asked, as ROS 2 does
+
 /// Every variable by which Fast DDS lets itself be changed.
 constexpr std::pair<const char*, const char*> variables[] = {
     {profiles_variable, "names profiles that Fast DDS takes as its defaults"},
@@ -137,6 +139,23 @@ Expected<void> use_servers(fdds::DomainParticipantQos& qos, const Network& netwo
   return {};
 }
 
+/// Fast DDS asks hosts that are named instead of the group, at the ports of its first participants.
+Expected<void> ask_hosts(fdds::DomainParticipantQos& qos, const std::vector<std::string>& hosts) {
+  auto& asked = qos.wire_protocol().builtin.initialPeersList;
+  asked.push_back(locator_of({{239, 255, 0, 1}, 0}));
+  for (const std::string& host : hosts) {
+    if (host.find(':') != std::string::npos)
+      return fail("is no name or address of a host", host, "ports follow from the domain");
+    auto address = resolve(host, std::uint16_t{0});
+    if (!address) return tl::unexpected(address.error());
+    asked.push_back(locator_of(*address));
+  }
+  for (auto& given : qos.transport().user_transports)
+    if (auto* udp = dynamic_cast<transport::UDPv4TransportDescriptor*>(given.get()))
+      udp->maxInitialPeersRange = participants_of_a_host;
+  return {};
+}
+
 }  // namespace
 
 Expected<Address> resolve(const std::string& text, std::optional<std::uint16_t> port) {
@@ -206,6 +225,9 @@ Expected<fdds::DomainParticipantQos> participant_qos(const Network& network,
   if (network.profile == "wan")
     if (const auto joined = join_sites(*qos, network); !joined)
       return tl::unexpected(joined.error());
+  if (network.profile == "lan" && !network.hosts.empty())
+    if (const auto asked = ask_hosts(*qos, network.hosts); !asked)
+      return tl::unexpected(asked.error());
   if (network.profile == "server")
     if (const auto used = use_servers(*qos, network, discovery); !used)
       return tl::unexpected(used.error());

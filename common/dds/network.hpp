@@ -21,6 +21,7 @@ struct Network {
   std::vector<std::string> peers;    // wan: HOST or HOST:PORT to dial; empty: this site listens
   std::string listen;                // wan: HOST:PORT where others dial this process; empty: at
                                      // its own address
+  std::vector<std::string> hosts;    // lan: those that multicast does not reach, each asked as well
   std::filesystem::path keys;        // of this process, see security.hpp; empty: not secured
   bool insecure = false;             // wan: may do without keys
 };

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <deque>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -15,19 +16,27 @@ class Wire {
   explicit Wire(int baud) : byte_(baud > 0 ? seconds(10.0 / baud) : Duration::zero()) {}
 
   bool busy(Duration now) const { return free_ > now; }
-  /// late: so much longer than the line takes.
+  /// late: so much longer than the line takes, as where an adapter keeps it back; what comes after
+  /// it does not overtake it.
   void send(std::string bytes, Duration now, Duration late = {}) {
     if (bytes.empty()) return;
-    free_ = std::max(free_, now) + byte_ * static_cast<std::int64_t>(bytes.size()) + late;
-    on_it_.push_back({free_, std::move(bytes)});
+    free_ = std::max(free_, now) + byte_ * static_cast<std::int64_t>(bytes.size());
+    last_ = std::max(last_, free_ + late);
+    on_it_.push_back({last_, std::move(bytes)});
   }
   /// When the next record will have arrived; none on its way: `otherwise`.
   Duration next(Duration otherwise) const {
     return on_it_.empty() ? otherwise : std::min(otherwise, on_it_.front().arrival);
   }
+  /// The next record that has arrived; nothing: none has.
+  std::optional<std::string> take(Duration now) {
+    if (on_it_.empty() || on_it_.front().arrival > now) return std::nullopt;
+    std::string bytes = std::move(on_it_.front().bytes);
+    on_it_.pop_front();
+    return bytes;
+  }
   void deliver(Duration now, Plug& plug) {
-    for (; !on_it_.empty() && on_it_.front().arrival <= now; on_it_.pop_front())
-      plug.write(on_it_.front().bytes);
+    while (const auto bytes = take(now)) plug.write(*bytes);
   }
 
  private:
@@ -35,7 +44,7 @@ class Wire {
     Duration arrival;  // of the last byte
     std::string bytes;
   };
-  Duration byte_, free_{};
+  Duration byte_, free_{}, last_{};  // last_: arrival of what was sent last
   std::deque<Sent> on_it_;
 };
 

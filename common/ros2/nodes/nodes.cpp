@@ -1,9 +1,11 @@
 #include "common/ros2/nodes/nodes.hpp"
 
+#include <algorithm>
 #include <charconv>
 #include <cstdlib>
 #include <string_view>
 
+#include "common/base/log.hpp"
 #include "common/ros2/nodes/type_hash.hpp"
 
 namespace prehend::ros2 {
@@ -44,10 +46,26 @@ Expected<std::string> network_of_leaders(const std::string& said, bool secured) 
   return network;
 }
 
+std::vector<std::string> hosts_of_nodes(const std::string& network) {
+  const char* peers = std::getenv("ROS_STATIC_PEERS");
+  std::vector<std::string> hosts;
+  for (std::string_view rest = peers ? peers : ""; !rest.empty();) {
+    const std::string_view host = rest.substr(0, rest.find(';'));
+    if (!host.empty()) hosts.emplace_back(host);
+    rest.remove_prefix(std::min(host.size() + 1, rest.size()));
+  }
+  if (hosts.empty() || network == "lan") return hosts;
+  log::warning(
+      "ROS_STATIC_PEERS has no effect: nodes of this machine alone are told; --network lan");
+  return {};
+}
+
 Expected<dds::Participant> join_nodes(const std::string& name, int domain,
-                                      const std::string& network) {
+                                      const std::string& network,
+                                      const std::vector<std::string>& hosts) {
   dds::ParticipantOptions options{.name = name, .domain = domain};
   options.network.profile = network;
+  options.network.hosts = hosts;
   return dds::Participant::create(options);
 }
 

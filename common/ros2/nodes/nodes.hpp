@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "common/base/error.hpp"
 #include "common/dds/participant.hpp"
@@ -22,9 +23,16 @@ Expected<std::string> network_of_nodes(const std::string& said);
 /// empty is laptop. Refused: lan in a lab with keys (`secured`), since anybody may be a node there.
 Expected<std::string> network_of_leaders(const std::string& said, bool secured);
 
-/// network: laptop (nodes of this machine) or lan (of the network).
+/// The hosts of ROS_STATIC_PEERS, a list with ; between them, that are to be asked beside those
+/// that multicast reaches. Only for what is told to nodes: no variable lets others lead. On a
+/// laptop none, and a line in the log says so.
+std::vector<std::string> hosts_of_nodes(const std::string& network);
+
+/// network: laptop (nodes of this machine) or lan (of the network); hosts: that are asked there as
+/// well. Fails when one of them has no such name.
 Expected<dds::Participant> join_nodes(const std::string& name, int domain,
-                                      const std::string& network);
+                                      const std::string& network,
+                                      const std::vector<std::string>& hosts = {});
 
 /// The topic /name of nodes. type: as «sensor_msgs/JointState». kept: who comes late gets the
 /// last one. Readers and writers of nodes match it.

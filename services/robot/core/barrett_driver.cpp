@@ -21,10 +21,14 @@ constexpr double press_speed = 0.4;  // rad/s, of a motor that is kept from movi
 constexpr int max_strain = 240;      // above it nothing closes any more
 constexpr double cool = 3;           // °C below the limit, after it was passed
 
-constexpr Duration patience = milliseconds(1000);  // with an answer to a line
+constexpr Duration patience = milliseconds(1000);  // with an answer to a line, when it is there
+constexpr std::size_t reply_bytes = 64;
 constexpr Duration homing_patience = std::chrono::seconds(40);
 constexpr Duration quiet = milliseconds(60);  // after which nothing more comes
-constexpr Duration wake_period = milliseconds(500);
+constexpr Duration wake_period = milliseconds(100);
+constexpr std::size_t wake_bytes = 24;  // there and back
+constexpr double late = 0.55;           // of lost_after, that an answer may come too late
+constexpr double max_gap = 0.03;        // s, after which a jump has to be seen twice
 constexpr Duration heat_period = milliseconds(1000);
 constexpr std::size_t max_heard = 4096;
 
@@ -34,6 +38,11 @@ constexpr std::array settings{"1234FSET LCV 1 LCPG 0 LFV 0 LFS 1 LFAP 1 LFDP 0",
 
 Duration time_on_line(std::size_t bytes, int baud) {
   return seconds(static_cast<double>(bytes) * 10 / baud);
+}
+
+/// Further no joint is after so many s.
+double max_way(std::size_t motor, double s) {
+  return (0.03 + 5.5 * s) * counts_per_radian(motor);
 }
 
 }  // namespace
@@ -124,7 +133,7 @@ std::string Driver::ask(Talk talk, const std::string& line, Duration how_long, T
   line_ = line;
   heard_.clear();
   asked_ = now;
-  patience_ = how_long;
+  patience_ = how_long + time_on_line(line.size() + reply_bytes, options_.baud);
   gives_up_ = false;
   return line + end_of_line;
 }
@@ -141,7 +150,8 @@ std::string Driver::interrupt(Time now) {
 std::string Driver::wake(Time now) {
   const bool prompted = heard_.find(prompt) != std::string::npos;
   if (prompted && now - heard_at_ > quiet) return ask(Talk::version, "VERS", patience, now);
-  if (now - asked_ < wake_period) return {};
+  // Often, for until it hears this its motors run on.
+  if (now - asked_ < wake_period + time_on_line(wake_bytes, options_.baud)) return {};
   asked_ = now;
   heard_.clear();
   return std::string(abort_surely) + end_of_line;
@@ -274,6 +284,7 @@ std::string Driver::probe(Time now) {
     talk_ = Talk::looping;
     heard_.clear();
     waiting_ = false;
+    deaf_until_ = now;
     phase_ = Phase::ready;
     good_ = now - milliseconds(1);
     for (MotorControl& motor : control_) motor.forget();
@@ -292,17 +303,28 @@ std::string Driver::loop(Time now) {
   // An error ends RealTime mode: the hand says so and waits for lines again.
   if (heard_.find("ERR ") != std::string::npos && heard_.ends_with(prompt))
     return lose(explain(parse_reply(heard_).error), now);
-  if (waiting_ && !take_block(now)) {
+  if (now < deaf_until_) {
+    heard_.clear();
+  } else if (waiting_ && !take_block(now)) {
     const Duration due =
         milliseconds(40) + 2 * time_on_line(5 + 1 + feedback_size(2), options_.baud);
     if (now - asked_ > due && now - heard_at_ > quiet / 2)
-      reject(heard_.empty() ? "no answer" : "garbled answer", now);
+      return heard_.empty() ? miss(now) : (reject("garbled answer", now), std::string());
   }
   if (now - good_ > options_.lost_after) return lose("the wire is lost", now);
   for (std::size_t i = 0; i < motors; ++i)
     if (control_[i].stuck(now)) return lose(std::string(names[i]) + " is stuck", now);
   if (temperature_ && *temperature_ > options_.max_temperature) return lose(too_hot(), now);
-  return exchange_block(now);
+  return now < deaf_until_ ? std::string() : exchange_block(now);
+}
+
+/// An answer that comes too late would be taken for the one to the next question, and say where the
+/// hand was. So its motors stand still, and nothing is asked, until none can come any more.
+std::string Driver::miss(Time now) {
+  reject("no answer", now);
+  deaf_until_ = now + seconds(late * to_seconds(options_.lost_after));
+  for (MotorControl& motor : control_) motor.rest();
+  return control_block({});
 }
 
 std::string Driver::exchange_block(Time now) {
@@ -323,20 +345,30 @@ bool Driver::take_block(Time now) {
   const std::size_t size = 1 + feedback_size(temperature_bytes_);
   if (heard_.size() < size || heard_[0] != acknowledgement) return false;
   const auto feedback = decode(std::string_view(heard_).substr(1), temperature_bytes_);
-  if (heard_.size() > size || !feedback || !plausible(*feedback, now)) return false;
+  if (heard_.size() > size || !feedback) return false;
+  if (!plausible(*feedback, now) && !is_confirmed(*feedback)) return false;
   heard_.clear();
   waiting_ = false;
   accept(*feedback, now);
   return true;
 }
 
-/// No joint is faster than its motor.
+/// No joint is faster than its motor. A block has no sum, so what bytes that changed places say is
+/// not believed the more the longer nothing sound has come.
 bool Driver::plausible(const Feedback& feedback, Time now) const {
-  const double dt = to_seconds(now - good_);
-  for (std::size_t i = 0; i < motors; ++i) {
-    const double most = 200 + 40000 * dt;  // counts
-    if (std::abs(feedback.position[i] - control_[i].position()) > most) return false;
-  }
+  const double dt = std::min(to_seconds(now - good_), max_gap);
+  for (std::size_t i = 0; i < motors; ++i)
+    if (std::abs(feedback.position[i] - control_[i].position()) > max_way(i, dt)) return false;
+  return true;
+}
+
+/// The answer before has said nearly the same.
+bool Driver::is_confirmed(const Feedback& feedback) {
+  doubted_ = feedback;
+  if (!doubted_before_) return false;
+  for (std::size_t i = 0; i < motors; ++i)
+    if (std::abs(feedback.position[i] - doubted_before_->position[i]) > max_way(i, max_gap))
+      return false;
   return true;
 }
 
@@ -344,6 +376,7 @@ void Driver::reject(const char* why, Time now) {
   count_reject(why);
   heard_.clear();
   waiting_ = false;
+  doubted_before_ = std::exchange(doubted_, std::nullopt);
   asked_ = now - seconds(1 / options_.rate);
 }
 
@@ -354,6 +387,8 @@ void Driver::accept(const Feedback& feedback, Time now) {
       control_[i].close_no_further();
   }
   if (feedback.temperature) temperature_ = feedback.temperature;
+  doubted_.reset();
+  doubted_before_.reset();
   good_ = now;
   publish(now);
 }

@@ -37,6 +37,8 @@ class MotorControl {
   /// Where it shall be; share: of the full effort.
   void follow(double target, double share, Time now);
   void hold();
+  /// It is told to stand still for once, whatever its target is.
+  void rest() { commanded_ = 0; }
   void close_no_further() { target_ = std::min(target_, position_); }
   /// The velocity to command, counts/s.
   double command(Time now);
@@ -105,6 +107,8 @@ class Driver final : public robot::Driver {
   bool take_block(Time now);
   void accept(const Feedback& feedback, Time now);
   bool plausible(const Feedback& feedback, Time now) const;
+  bool is_confirmed(const Feedback& feedback);
+  std::string miss(Time now);
   void reject(const char* why, Time now);
   std::string lose(const std::string& why, Time now);
   void publish(Time now);
@@ -117,6 +121,8 @@ class Driver final : public robot::Driver {
   std::string heard_, line_;
   std::optional<double> temperature_;
   Time asked_{}, heard_at_{}, good_{};
+  Time deaf_until_{};  // what comes before is an answer that was given up
+  std::optional<Feedback> doubted_, doubted_before_;  // in this answer, in the one before
   Duration patience_{};
   std::size_t setting_ = 0;
   int temperature_bytes_ = 0;

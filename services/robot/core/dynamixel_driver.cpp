@@ -13,8 +13,8 @@ using std::chrono::milliseconds;
 
 constexpr int max_tries = 3;
 constexpr Duration rest = milliseconds(500);
-constexpr Duration heat_period = milliseconds(1000);
-constexpr double cool = 3;        // °C below the limit, after it was passed
+constexpr Duration check_period = milliseconds(500);  // of heat and torque in turn
+constexpr double cool = 3;                            // °C below the limit, after it was passed
 constexpr double margin = 0.1;    // rad, that a joint may be past its range when it is found
 constexpr double near = 0.02;     // rad: there
 constexpr double still = 0.03;    // rad/s
@@ -22,11 +22,6 @@ constexpr double far = 0.5;       // rad, but at most a third of the range
 constexpr double speed_up = 1.2;  // how much faster than the hand may be a servo goes to its goal
 constexpr Duration stalls_after = milliseconds(150);
 constexpr Duration stuck_after = milliseconds(1200);
-constexpr std::size_t status_bytes = 11;  // without parameters
-
-double pulses_per_second(int velocity) {
-  return velocity * velocity_unit / 60 * pulses_per_turn;
-}
 
 }  // namespace
 
@@ -250,11 +245,11 @@ std::string Driver::next_step(Time now) {
   if (!all) return ask(now);
   talk_ = Talk::looping;
   armed_ = true;
-  waiting_ = asks_heat_ = false;
+  waiting_ = false;
   tells_current_ = true;
   hot_ = false;
   phase_ = Phase::ready;
-  good_ = heated_ = now;
+  good_ = checked_ = now;
   for (Motion& motion : motions_) motion.free = now;
   publish(now);
   return cycle(now);
@@ -283,9 +278,12 @@ std::string Driver::cycle(Time now) {
   if (std::exchange(tells_current_, false))
     said += sync_write(table::goal_current, &Motion::allowed);
   said += sync_write(table::goal_position, &Motion::goal);
-  asks_heat_ = now - heated_ > heat_period;
-  if (asks_heat_) heated_ = now;
-  said += sync_read(asks_heat_ ? table::temperature : table::motion);
+  asks_ = table::motion;
+  if (now - checked_ > check_period) {
+    checked_ = now;
+    asks_ = check_ = check_ == table::temperature ? table::torque_enable : table::temperature;
+  }
+  said += sync_read(asks_);
   parser_.clear();
   for (std::string& answer : answers_) answer.clear();
   waiting_ = true;
@@ -295,7 +293,7 @@ std::string Driver::cycle(Time now) {
 
 /// The servos' answers, as they come.
 std::string Driver::take(Time now) {
-  const std::size_t size = asks_heat_ ? table::temperature.size : table::motion.size;
+  const std::size_t size = asks_.size;
   while (const auto packet = parser_.next()) {
     if (packet->instruction != Instruction::status) continue;
     for (std::size_t i = 0; i < motions_.size(); ++i) {
@@ -320,7 +318,14 @@ std::string Driver::take(Time now) {
 /// All have answered.
 std::string Driver::accept(Time now) {
   waiting_ = false;
-  if (asks_heat_) {
+  if (asks_ == table::torque_enable) {
+    good_ = now;
+    for (std::size_t i = 0; i < motions_.size(); ++i)
+      if (number(answers_[i]) == 0)
+        return lose(named(motions_[i]) + " has lost its torque; was it switched off and on?", now);
+    return {};
+  }
+  if (asks_ == table::temperature) {
     int hottest = 0;
     for (const std::string& answer : answers_) hottest = std::max(hottest, number(answer));
     good_ = now;

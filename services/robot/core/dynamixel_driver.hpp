@@ -102,9 +102,11 @@ class Driver final : public robot::Driver {
   int tries_ = 0;
   std::vector<std::string> answers_;  // of the motions, as they came
   std::optional<double> temperature_;
-  Time asked_{}, good_{}, heated_{};
+  Time asked_{}, good_{}, checked_{};
+  Item asks_ = table::motion;   // all servos, in this cycle
+  Item check_ = table::motion;  // that was asked last beside motions
   bool armed_ = false, waiting_ = false, wants_home_ = false;
-  bool hot_ = false, asks_heat_ = false, tells_current_ = true;
+  bool hot_ = false, tells_current_ = true;
 };
 
 }  // namespace prehend::robot::dynamixel

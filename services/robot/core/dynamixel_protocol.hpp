@@ -58,6 +58,8 @@ class Parser {
 
 // --- status
 
+inline constexpr std::size_t status_bytes = 11;  // of one without parameters
+
 /// Of a status' error: something is wrong with the hardware, whatever was asked.
 inline constexpr std::uint8_t alert = 0x80;
 enum Refusal : std::uint8_t {
@@ -78,6 +80,8 @@ std::string explain_hardware(std::uint8_t bits);
 struct Item {
   std::uint16_t address;
   std::uint8_t size;  // bytes
+
+  bool operator==(const Item&) const = default;
 };
 namespace table {
 inline constexpr Item operating_mode{11, 1}, temperature_limit{31, 1}, current_limit{38, 2},
@@ -93,7 +97,10 @@ inline constexpr int current_based_position =
     5;                                          // operating mode: to a place, by at most a current
 inline constexpr int pulses_per_turn = 4096;    // of a position
 inline constexpr double velocity_unit = 0.229;  // rev/min
-inline constexpr int watchdog_unit_ms = 20;     // of the bus watchdog, 1 to 127 of them
+inline constexpr double pulses_per_second(int velocity) {
+  return velocity * velocity_unit / 60 * pulses_per_turn;
+}
+inline constexpr int watchdog_unit_ms = 20;        // of the bus watchdog, 1 to 127 of them
 inline constexpr std::uint8_t watchdog_bit = 255;  // what it says when nobody spoke for so long
 inline constexpr int max_pulses = 1048575;         // either way, of this operating mode
 

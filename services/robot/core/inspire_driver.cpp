@@ -52,7 +52,8 @@ void Driver::begin(Time now) {
   temperature_.reset();
   told_at_.fill({});
   next_block_ = 0;
-  reads_angle_ = clears_ = cleared_ = false;
+  reads_angle_ = clears_ = false;
+  cleared_ = {};
   read_ = now - seconds(1 / options_.rate);
 }
 
@@ -96,8 +97,18 @@ bool Driver::presses(std::size_t motor) const {
 Values Driver::halt() const {
   Values goals{};
   for (std::size_t i = 0; i < motors; ++i)
-    goals[i] = presses(i) ? wanted_[angle][i] : std::clamp((*angle_)[i], 0, open_count);
+    goals[i] = presses(i) ? pressing(i) : std::clamp((*angle_)[i], 0, open_count);
   return goals;
+}
+
+/// No further ahead than it presses: what gave way would let it go to where it was led before.
+int Driver::pressing(std::size_t motor) const {
+  const int goal = wanted_[angle][motor];
+  if (goal == leave) return leave;
+  const model::HandDof& dof = hand_.dofs()[motor];
+  const double squeeze = std::abs(open_count * dof.squeeze / (dof.upper - dof.lower));
+  const int ahead = static_cast<int>(std::ceil(squeeze)), here = (*angle_)[motor];
+  return std::clamp(std::clamp(goal, here - ahead, here + ahead), 0, open_count);
 }
 
 /// In steps, so that it need not be told each time.
@@ -222,11 +233,14 @@ void Driver::judge(Time now) {
   if (!angle_ || !error_ || !status_ || !temperature_) return;
   for (std::size_t i = 0; i < motors; ++i) {
     if ((*error_)[i] == 0) continue;
-    // What has passed is forgotten when the hand is told so.
-    if (!std::exchange(cleared_, true)) clears_ = true;
+    // What has passed is forgotten when the hand is told so; what has not is said again.
+    if (now - cleared_ > tells_again) {
+      clears_ = true;
+      cleared_ = now;
+    }
     return fault(std::string(dof_names[i]) + " " + explain_error((*error_)[i]));
   }
-  cleared_ = false;
+  cleared_ = {};
   const int hottest = *std::max_element(temperature_->begin(), temperature_->end());
   is_hot_ = hottest > options_.max_temperature - (is_hot_ ? cool : 0);
   if (is_hot_)

@@ -52,6 +52,7 @@ class Driver final : public PolledDriver {
   void publish(Time now);
   bool presses(std::size_t motor) const;
   Values halt() const;
+  int pressing(std::size_t motor) const;
   int speed_to(std::size_t motor, int goal) const;
 
   std::uint8_t id_;
@@ -62,7 +63,8 @@ class Driver final : public PolledDriver {
   std::size_t telling_ = 0;
   std::optional<Values> angle_, force_, error_, status_, temperature_;
   std::size_t next_block_ = 0;
-  bool reads_angle_ = false, clears_ = false, cleared_ = false, is_hot_ = false;
+  bool reads_angle_ = false, clears_ = false, is_hot_ = false;
+  Time cleared_{};          // when it was told last to forget its errors
   bool commanded_ = false;  // ever: before, nothing is said that could move it
   std::array<double, motors> velocity_{};
   std::array<Time, motors> free_{};  // when it was last where it shall be, or moved, or pressed

@@ -96,11 +96,19 @@ void Driver::hold() {
   }
 }
 
+void Driver::suspect(std::string why, Time now) {
+  suspicion_ = std::move(why);
+  suspected_ = now;
+}
+
 /// Others may tell of other joints on the same topic: those messages are theirs.
 void Driver::hear(std::string_view message, Time now) {
   const auto state = ros2::parse_joint_state(
       {reinterpret_cast<const std::uint8_t*>(message.data()), message.size()});
-  if (!state) return count_reject("joint state " + state.error().what);
+  if (!state) {
+    suspect("its joint states are damaged", now);
+    return count_reject("joint state " + state.error().what);
+  }
   std::vector<std::size_t> at;
   std::string missing;
   for (const Motion& motion : motions_) {
@@ -109,12 +117,18 @@ void Driver::hear(std::string_view message, Time now) {
     at.push_back(static_cast<std::size_t>(found - state->names.begin()));
   }
   if (!missing.empty()) {
-    if (phase_ == Phase::offline) trouble_ = "its joint states do not name " + missing;
+    suspect("its joint states do not name " + missing, now);
+    if (phase_ == Phase::offline) trouble_ = suspicion_;
     return;
   }
   std::vector<double> positions;
   for (const std::size_t i : at) positions.push_back(state->positions[i]);
-  if (known_ && !is_plausible(positions, now)) return count_reject("joint state jumps");
+  if (known_ && !is_plausible(positions, now)) {
+    suspect("its joint states jump", now);
+    // What it was known by was perhaps no sound state itself.
+    if (phase_ == Phase::faulted && now - good_ > options_.lost_after) known_ = false;
+    return count_reject("joint state jumps");
+  }
   for (std::size_t i = 0; i < motions_.size(); ++i) {
     std::optional<double> velocity;
     if (!state->velocities.empty()) velocity = state->velocities[at[i]];
@@ -167,7 +181,9 @@ std::optional<std::string> Driver::out_of_range() const {
 }
 
 std::optional<std::string> Driver::what_is_wrong(Time now) const {
-  if (now - good_ > options_.lost_after) return "its joint states have fallen silent";
+  if (now - good_ > options_.lost_after)
+    return now - suspected_ > options_.lost_after / 2 ? "its joint states have fallen silent"
+                                                      : suspicion_;
   for (const Motion& motion : motions_) {
     const model::HandDof& dof = dof_of(motion);
     const double most = std::min(far * model::radian_of(dof), (dof.upper - dof.lower) / 3);

@@ -36,6 +36,7 @@ class Driver final : public robot::Driver {
     double goal = 0, share = 1;  // of the effort that it may press with
     Time free{};                 // when it was last where it shall be, or moved
   };
+  void suspect(std::string why, Time now);
   void hear(std::string_view message, Time now);
   bool is_plausible(const std::vector<double>& positions, Time now) const;
   void observe(Motion& motion, double position, std::optional<double> velocity, Time now);
@@ -49,6 +50,8 @@ class Driver final : public robot::Driver {
   const model::HandModel& hand_;
   DriverOptions options_;
   std::vector<Motion> motions_;  // a DoF each
+  std::string suspicion_;        // why the last one was not sound,
+  Time suspected_{};             // and when that was
   Time good_{}, told_{};
   bool joined_ = false, known_ = false;  // known: it has been heard since it was lost
   bool commanded_ = false;

@@ -82,7 +82,8 @@ Expected<void> Teller::join_nodes(const service::Config& config) {
   lens_ = lens_of(config);
   const auto network = ros2::network_of_nodes(options_.network);
   if (!network) return tl::unexpected(network.error());
-  auto joined = ros2::join_nodes("prehend_ros", options_.domain, *network);
+  auto joined =
+      ros2::join_nodes("prehend_ros", options_.domain, *network, ros2::hosts_of_nodes(*network));
   if (!joined) return tl::unexpected(joined.error());
   nodes_.emplace(std::move(*joined));
   for (const auto& [name, type, kept] : told_topics) {

@@ -5,23 +5,15 @@
 
 #include "common/base/random.hpp"
 #include "services/robot/core/dynamixel_emulator.hpp"
+#include "tests/support/wires/wired_hands.hpp"
 #include "tests/unit/robot/computed_wire.hpp"
 #include "tests/unit/robot/hand_of_twelve.hpp"
 
 namespace prehend::robot::dynamixel {
 namespace {
 
-/// Every second servo is mounted the other way round.
-std::string wiring() {
-  std::string toml = "[servos]\ntorque_per_ampere = 0.5\nmax_current = 900\n";
-  for (std::size_t d = 0; d < hand().dofs().size(); ++d)
-    toml += "[[servo]]\nid = " + std::to_string(20 - d) + "\ndof = \"" + hand().dofs()[d].name +
-            "\"\nzero = 2000\nratio = " + (d % 2 == 0 ? "1" : "-2") + "\n";
-  return toml;
-}
-
 std::vector<Servo> servos() {
-  return *parse_wiring(wiring(), hand(), "w.toml");
+  return *parse_wiring(test::servo_wiring(hand()), hand(), "w.toml");
 }
 
 struct Wire : ComputedWire<Emulator, Driver> {
@@ -215,9 +207,9 @@ TEST(DynamixelDriver, AFarewellStopsTheServos) {
 }
 
 TEST(DynamixelDriver, ItRefusesWhatItCannotDrive) {
-  EXPECT_TRUE(create(hand(), {.baud = 57600, .wiring = wiring()}));
+  EXPECT_TRUE(create(hand(), {.baud = 57600, .wiring = test::servo_wiring(hand())}));
   EXPECT_FALSE(create(hand(), {.baud = 57600}));
-  EXPECT_FALSE(create(hand(), {.baud = 1234, .wiring = wiring()}));
+  EXPECT_FALSE(create(hand(), {.baud = 1234, .wiring = test::servo_wiring(hand())}));
 }
 
 }  // namespace

@@ -126,7 +126,7 @@ TEST(Ros2ControlDriver, GarbageNowAndThenIsLeftOut) {
   EXPECT_LT((wire.robot.measured() - *wire.tell).cwiseAbs().maxCoeff(), 0.005);
 }
 
-TEST(Ros2ControlDriver, NothingButGarbageIsSilence) {
+TEST(Ros2ControlDriver, NothingButGarbageIsNamed) {
   Wire wire;
   wire.run(0.5);
   wire.spoil = [](std::string answer) { return answer.empty() ? answer : answer + "more"; };
@@ -134,7 +134,7 @@ TEST(Ros2ControlDriver, NothingButGarbageIsSilence) {
   EXPECT_EQ(wire.first_trouble, "");  // what comes behind a message is nobody's
   wire.spoil = [](std::string answer) { return answer.substr(0, answer.size() / 2); };
   wire.run(1);
-  EXPECT_EQ(wire.first_trouble, "its joint states have fallen silent");
+  EXPECT_EQ(wire.first_trouble, "its joint states are damaged");
 }
 
 TEST(Ros2ControlDriver, AStuckJointIsNamed) {

@@ -5,13 +5,23 @@
 
 #include <cstdlib>
 
+#include "common/dds/network.hpp"
+
 namespace prehend::ros2 {
 namespace {
 
-class Range {
+class Variable {
  public:
-  explicit Range(const char* value) { ::setenv("ROS_AUTOMATIC_DISCOVERY_RANGE", value, 1); }
-  ~Range() { ::unsetenv("ROS_AUTOMATIC_DISCOVERY_RANGE"); }
+  Variable(const char* name, const char* value) : name_(name) { ::setenv(name, value, 1); }
+  ~Variable() { ::unsetenv(name_); }
+
+ private:
+  const char* name_;
+};
+
+class Range : Variable {
+ public:
+  explicit Range(const char* value) : Variable("ROS_AUTOMATIC_DISCOVERY_RANGE", value) {}
 };
 
 TEST(NetworkOfNodes, IsWhatIsSaidElseTheirRange) {
@@ -38,6 +48,27 @@ TEST(NetworkOfNodes, IsWhatIsSaidElseTheirRange) {
   const Range off("OFF");
   EXPECT_FALSE(network_of_nodes(""));
   EXPECT_EQ(network_of_nodes("lan").value(), "lan");
+}
+
+TEST(HostsOfNodes, AreThoseOfTheirListWhereTheNetworkIsTold) {
+  EXPECT_TRUE(hosts_of_nodes("lan").empty());
+  const Variable set("ROS_STATIC_PEERS", ";192.0.2.7;;robot.example;");
+  EXPECT_EQ(hosts_of_nodes("lan"), (std::vector<std::string>{"192.0.2.7", "robot.example"}));
+  EXPECT_TRUE(hosts_of_nodes("laptop").empty());
+}
+
+// Hosts that are named are asked beside the group, not instead of it.
+TEST(HostsOfNodes, AreAskedBesideTheGroup) {
+  const auto qos = dds::participant_qos({.profile = "lan", .hosts = {"192.0.2.7"}});
+  ASSERT_TRUE(qos) << qos.error().message();
+  std::vector<std::string> asked;
+  for (const auto& locator : qos->wire_protocol().builtin.initialPeersList)
+    asked.push_back(dds::rtps::IPLocator::toIPv4string(locator));
+  EXPECT_EQ(asked, (std::vector<std::string>{"239.255.0.1", "192.0.2.7"}));
+  const auto alone = dds::participant_qos({.profile = "lan"});
+  ASSERT_TRUE(alone);
+  EXPECT_TRUE(alone->wire_protocol().builtin.initialPeersList.empty());
+  EXPECT_FALSE(dds::participant_qos({.profile = "lan", .hosts = {"192.0.2.7:7400"}}));
 }
 
 }  // namespace

@@ -19,11 +19,17 @@ namespace prehend::ros {
 namespace {
 
 constexpr Duration period = std::chrono::milliseconds(10);  // of commands
+constexpr Duration apart = std::chrono::milliseconds(1);    // messages that are followed at once
 constexpr Duration silence = std::chrono::seconds(2);       // of the robot
 
 /// As the gate calls us, once it knows our name.
 std::string own_name() {
   return fmt::format("ros-lead@{}/{}", service::host_name(), ::getpid());
+}
+
+/// When a node wrote it; its clock may be another than ours.
+Time written(const dds::RawSample& sample) {
+  return std::clamp(sample.sent, sample.received - std::chrono::seconds(1), sample.received);
 }
 
 /// Whatever a node writes with has the same beginning.
@@ -145,21 +151,35 @@ void Leader::on_trajectory(const dds::RawSample& sample) {
           });
   if (taken && !leads && robot_) X_WB_ = robot_->X_WB;
   judged("trajectory", taken);
+  if (taken) follow_at_once(sample, now);
 }
 
 void Leader::on_wrist_pose(const dds::RawSample& sample) {
   const Time now = shell_.now();
-  judged("wrist pose",
-         ros2::parse_pose_stamped(sample.payload)
-             .and_then([&](const ros2::StampedPose& pose) { return wrist_goal(pose, now); })
-             .and_then([&](const Pose& X_WB) -> Expected<void> {
-               if (auto error = obstacle(now)) return tl::unexpected(*error);
-               const auto heard = nodes_heard_.hear(node_of(sample), now);
-               if (!heard) return heard;
-               follower_.hold(robot_->dof, now);
-               X_WB_ = X_WB;
-               return {};
-             }));
+  const auto taken =
+      ros2::parse_pose_stamped(sample.payload)
+          .and_then([&](const ros2::StampedPose& pose) { return wrist_goal(pose, now); })
+          .and_then([&](const Pose& X_WB) -> Expected<void> {
+            if (auto error = obstacle(now)) return tl::unexpected(*error);
+            const auto heard = nodes_heard_.hear(node_of(sample), now);
+            if (!heard) return heard;
+            follower_.hold(robot_->dof, now);
+            X_WB_ = X_WB;
+            return {};
+          });
+  judged("wrist pose", taken);
+  if (taken) follow_at_once(sample, now);
+}
+
+/// Who leads by a stream of messages waits for no tick; one that comes too soon after the last
+/// does.
+void Leader::follow_at_once(const dds::RawSample& sample, Time now) {
+  const auto goal = follower_.goal(now);
+  if (!goal) return;
+  origin_ns_ = to_ns(written(sample));
+  if (now - at_once_ < apart) return;
+  at_once_ = now;
+  command(*goal, now);
 }
 
 void Leader::judged(const std::string& what, const Expected<void>& taken) {
@@ -175,7 +195,7 @@ void Leader::on_tick(Time now) {
       follower_.stop();
       shell_.status().drop("trajectory ended");
       missed_ = "the lead of a node was ended: " + error->message();
-    } else {
+    } else if (now - commanded_ >= period / 2) {
       command(*goal, now);
     }
   }
@@ -188,10 +208,12 @@ void Leader::command(const Eigen::VectorXd& dof, Time now) {
   message.model(hand_.name());
   message.sequence_number(++sequence_);
   message.stamp_ns(to_ns(now));
+  message.origin_ns(std::exchange(origin_ns_, 0));
   message.dof(convert::to_message(dof));
   message.X_WB(convert::to_message(X_WB_));
   message.mode(v1::MODE_DIRECT);
   commands_.publish(message);
+  commanded_ = now;
 }
 
 void Leader::say(const std::string& trouble) {

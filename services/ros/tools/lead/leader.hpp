@@ -39,6 +39,7 @@ class Leader {
   void on_wrist_pose(const dds::RawSample& sample);
   /// Counts a message of nodes, and what was wrong with it.
   void judged(const std::string& what, const Expected<void>& taken);
+  void follow_at_once(const dds::RawSample& sample, Time now);
   void on_tick(Time now);
   /// What keeps the hand from being led.
   std::optional<Error> obstacle(Time now) const;
@@ -55,7 +56,9 @@ class Leader {
   OneSpeaker<dds::GuidPrefix> nodes_heard_;
   Pose X_WB_ = Pose::Identity();  // where the lead began, or a node wants the base
   std::uint64_t sequence_ = 0;
-  std::string missed_;                  // why the last message was not followed to its end
+  Time commanded_{}, at_once_{};
+  std::int64_t origin_ns_ = 0;  // of the next command: when a node wrote what it follows; 0: before
+  std::string missed_;          // why the last message was not followed to its end
   std::optional<std::string> trouble_;  // as was said
   std::optional<dds::Participant> nodes_;
   std::unique_ptr<dds::RawReader> trajectories_, wrist_poses_;
