@@ -105,8 +105,9 @@ TEST_F(Check, EachServiceAloneAnswersAsInCompany) {
   const std::vector<std::pair<std::string, std::vector<std::string>>> services{
       {"glove", {"hand/posture"}},
       {"recognition", {"object/detection"}},
-      {"mapping", {"robot/command"}},
-      {"simulation", {"grasp/report", "object/state", "robot/state", "scene/state"}}};
+      {"mapping", {"glove/feedback", "robot/command"}},
+      {"simulation",
+       {"grasp/report", "object/state", "robot/state", "robot/touch", "scene/state"}}};
   for (const auto& [service, topics] : services) {
     const Answer answer =
         check(samples + "/intelligent-grasp.mcap", {"--service", service, "--json"});

@@ -149,7 +149,7 @@ TEST(LabView, AGraspIsDrawnWholeAndEveryDocumentIsWhatItsSchemaSays) {
   for (const Feed feed : {Feed::tf, Feed::scene, Feed::image, Feed::annotations, Feed::report,
                           Feed::log, Feed::signals})
     EXPECT_GT(counts[feed], 0) << feeds[static_cast<std::size_t>(feed)].topic;
-  EXPECT_EQ(groups, (std::set<std::string>{"fingertips", "joints", "weight"}));
+  EXPECT_EQ(groups, (std::set<std::string>{"fingertips", "joints", "touch", "weight"}));
   EXPECT_TRUE(entities.contains("table"));
   EXPECT_TRUE(entities.contains("hand/" + barrett().links()[0].name));
   EXPECT_TRUE(entities.contains("glove/glove"));
