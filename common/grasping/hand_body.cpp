@@ -299,16 +299,19 @@ double HandBody::motor_velocity(int dof) const {
          hand_.joints()[static_cast<std::size_t>(clutch.follower)].multiplier;
 }
 
-Vector3d HandBody::velocity_at(int link, const Vector3d& p_W) const {
+std::vector<HandBody::LinkMotion> HandBody::link_motions() const {
   const auto count = static_cast<std::size_t>(multibody_->getNumLinks()) + 1;
   std::vector<btVector3> turning(count), velocity(count);  // of the base, then of each joint's link
   multibody_->compTreeLinkVelocities(turning.data(), velocity.data());
-  const auto k = static_cast<std::size_t>(link);
-  const auto moved = static_cast<std::size_t>(hand_.links()[k].joint + 1);
-  const btTransform& X_WC = colliders_[k]->getWorldTransform();
-  const btVector3 arm = to_bullet(p_W) - X_WC.getOrigin();
-  return from_bullet(X_WC.getBasis() * velocity[moved] +
-                     (X_WC.getBasis() * turning[moved]).cross(arm));
+  std::vector<LinkMotion> motions;
+  for (std::size_t i = 0; i < colliders_.size(); ++i) {
+    const auto moved = static_cast<std::size_t>(hand_.links()[i].joint + 1);
+    const btTransform& X_WC = colliders_[i]->getWorldTransform();
+    motions.push_back({from_bullet(X_WC.getOrigin()),
+                       from_bullet(X_WC.getBasis() * velocity[moved]),
+                       from_bullet(X_WC.getBasis() * turning[moved])});
+  }
+  return motions;
 }
 
 void HandBody::move_base(const Vector3d& velocity, const Vector3d& turning) {

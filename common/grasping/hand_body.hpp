@@ -74,8 +74,15 @@ class HandBody {
   /// go, with the joint coupled to it.
   double motor(int dof) const;
   double motor_velocity(int dof) const;
-  /// Of each link, in W: of its point that is at p_W.
-  Eigen::Vector3d velocity_at(int link, const Eigen::Vector3d& p_W) const;
+  /// How a link moves, in W: m/s at its centre of mass C, rad/s.
+  struct LinkMotion {
+    Eigen::Vector3d p_WC, velocity, turning;
+
+    Eigen::Vector3d velocity_at(const Eigen::Vector3d& p_W) const {
+      return velocity + turning.cross(p_W - p_WC);
+    }
+  };
+  std::vector<LinkMotion> link_motions() const;
   /// False for links that overlap when the hand rests.
   bool may_touch(int link, int other) const;
   const std::vector<std::unique_ptr<btMultiBodyLinkCollider>>& colliders() const {

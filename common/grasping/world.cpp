@@ -381,6 +381,7 @@ std::vector<analysis::Contact> World::contacts(int body) const {
 
 std::vector<Touch> World::touches() const {
   std::vector<Touch> found;
+  std::vector<HandBody::LinkMotion> moving;  // only of a hand that is touched
   const auto velocity = [&](const Surface& surface, const Vector3d& p_W) -> Vector3d {
     if (surface.body < 0) return Vector3d::Zero();
     const btRigidBody& rigid = *state_->bodies[static_cast<std::size_t>(surface.body)].rigid;
@@ -398,7 +399,9 @@ std::vector<Touch> World::touches() const {
     const auto pressed = [&](const Surface& link, const Surface& other, const Vector3d& p_W,
                              double sign) {
       if (link.link < 0 || other.link >= 0) return;
-      const Vector3d apart = velocity(other, p_W) - state_->fingers->velocity_at(link.link, p_W);
+      if (moving.empty()) moving = state_->fingers->link_motions();
+      const Vector3d apart =
+          velocity(other, p_W) - moving[static_cast<std::size_t>(link.link)].velocity_at(p_W);
       found.push_back({link.link, other.body, p_W, sign * normal_W, sign * force_W,
                        apart - apart.dot(normal_W) * normal_W, point.m_combinedFriction});
     };

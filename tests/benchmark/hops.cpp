@@ -8,6 +8,7 @@
 #include <cstdlib>
 #include <iostream>
 #include <mutex>
+#include <nlohmann/json.hpp>
 #include <thread>
 #include <utility>
 
@@ -119,8 +120,32 @@ stage::Process Case::start_service(const std::string& name, const Place& place,
   return start(name, command, std::filesystem::temp_directory_path() / (place.rig + name));
 }
 
-Stats measure_floor(const Place& place, double rate, std::size_t wanted,
-                    const std::function<std::vector<stage::Process>()>& start) {
+Plan plan_of(int argc, char** argv, const Plan& defaults) {
+  Plan plan{.seconds = defaults.seconds};
+  for (int i = 1; i < argc; ++i) {
+    const std::string_view option = argv[i];
+    if (option == "--json") plan.json = true;
+    if (i + 1 == argc) continue;
+    if (option == "--seconds") plan.seconds = std::atof(argv[++i]);
+    if (option == "--rate") plan.rates.push_back(std::atof(argv[++i]));
+    if (option == "--case") plan.cases.emplace_back(argv[++i]);
+  }
+  if (plan.rates.empty()) plan.rates = defaults.rates;
+  if (plan.cases.empty()) plan.cases = defaults.cases;
+  return plan;
+}
+
+namespace {
+
+struct Stats {
+  double p50 = 0, p99 = 0;  // µs
+  std::size_t count = 0;
+};
+using Started = std::function<std::vector<stage::Process>()>;
+
+/// Its last process is this one: from the origin of so many robot/command until each has come
+/// here, after a second of them.
+Stats measure_floor(const Place& place, double rate, std::size_t wanted, const Started& start) {
   auto participant = join(place, "floor-sink", "viewer");
   auto reader = *participant.reader(dds::robot_command);
   std::mutex mutex;
@@ -141,8 +166,9 @@ Stats measure_floor(const Place& place, double rate, std::size_t wanted,
   return {window.quantile_us(0.5), window.quantile_us(0.99), window.count()};
 }
 
-Stats measure_lab(const Place& place, std::uint64_t accepted,
-                  const std::function<std::vector<stage::Process>()>& start) {
+/// Its own measure, from its status: from the origin of a command until the gate of the simulation
+/// has accepted it, once that has accepted so many.
+Stats measure_lab(const Place& place, std::uint64_t accepted, const Started& start) {
   auto participant = join(place, "watcher", "viewer");
   auto statuses = *participant.reader(dds::service_status);
   auto services = start();
@@ -168,38 +194,7 @@ Stats measure_lab(const Place& place, std::uint64_t accepted,
   return stats;
 }
 
-Table::Table(bool json) : json_(json) {
-  if (!json)
-    fmt::print(
-        "| case | rate, Hz | raw p50, ms | raw p99 | lab p50, ms | lab p99 | lab / raw, p50 |\n"
-        "|---|---|---|---|---|---|---|\n");
-}
-
-void Table::measure(const std::string& name, double rate, double seconds, const Measure& floor,
-                    const Measure& lab) {
-  const auto wanted = static_cast<std::size_t>(std::min(1024.0, rate * seconds));
-  const Stats before = floor(rate, wanted), ours = lab(rate, wanted), after = floor(rate, wanted);
-  const double p50 = 0.5 * (before.p50 + after.p50), p99 = 0.5 * (before.p99 + after.p99);
-  rows_.push_back({{"case", name},
-                   {"rate_hz", rate},
-                   {"floor_us", {{"p50", p50}, {"p99", p99}}},
-                   {"lab_us", {{"p50", ours.p50}, {"p99", ours.p99}}},
-                   {"ratio_of_medians", ours.p50 / p50},
-                   {"samples", ours.count}});
-  if (json_) return;
-  fmt::print("| {} | {:.0f} | {:.3f} | {:.3f} | {:.3f} | {:.3f} | {:.2f} |\n", name, rate,
-             1e-3 * p50, 1e-3 * p99, 1e-3 * ours.p50, 1e-3 * ours.p99, ours.p50 / p50);
-  std::cout.flush();
-}
-
-void Table::end() const {
-  if (json_) std::cout << rows_.dump() << "\n";
-}
-
-stage::TemporaryFolder made_folder() {
-  return need(stage::TemporaryFolder::create(false));
-}
-
+/// Keys of all roles, of any lab.
 std::filesystem::path made_keys(const stage::TemporaryFolder& folder) {
   std::filesystem::path keys = folder.path() / "keys";
   auto making =
@@ -209,6 +204,57 @@ std::filesystem::path made_keys(const stage::TemporaryFolder& folder) {
   if (making.wait(30s)) return keys;
   std::cerr << "prehend keys does not work\n";
   std::exit(3);
+}
+
+nlohmann::json row_of(const std::string& name, double rate, const Stats& before, const Stats& lab,
+                      const Stats& after, bool printed) {
+  const double p50 = 0.5 * (before.p50 + after.p50), p99 = 0.5 * (before.p99 + after.p99);
+  if (printed)
+    fmt::print("| {} | {:.0f} | {:.3f} | {:.3f} | {:.3f} | {:.3f} | {:.2f} |\n", name, rate,
+               1e-3 * p50, 1e-3 * p99, 1e-3 * lab.p50, 1e-3 * lab.p99, lab.p50 / p50);
+  std::fflush(stdout);
+  return {{"case", name},
+          {"rate_hz", rate},
+          {"floor_us", {{"p50", p50}, {"p99", p99}}},
+          {"lab_us", {{"p50", lab.p50}, {"p99", lab.p99}}},
+          {"ratio_of_medians", lab.p50 / p50},
+          {"samples", lab.count}};
+}
+
+}  // namespace
+
+void measure(const Plan& plan, const Start& floor, const Start& lab, const Accepted& accepted) {
+  const auto folder = need(stage::TemporaryFolder::create(false));
+  const auto keys = made_keys(folder);
+  if (!plan.json)
+    fmt::print(
+        "| case | rate, Hz | raw p50, ms | raw p99 | lab p50, ms | lab p99 | lab / raw, p50 |\n"
+        "|---|---|---|---|---|---|---|\n");
+  nlohmann::json rows = nlohmann::json::array();
+  for (const std::string& name : plan.cases) {
+    const Case at(name, keys);
+    for (const double rate : plan.rates) {
+      const auto wanted = static_cast<std::size_t>(std::min(1024.0, rate * plan.seconds));
+      const auto of_floor = [&] {
+        const Place place = at.place(fmt::format("floor-{}-{}", getpid(), rate));
+        return measure_floor(place, rate, wanted, [&] { return floor(at, place, rate); });
+      };
+      const auto of_lab = [&] {
+        const Place place = at.place(fmt::format("lab-{}-{}", getpid(), rate));
+        return measure_lab(place, accepted(rate, wanted), [&] {
+          std::vector<stage::Process> started;
+          // Its gate is always there; it also writes down who leads, and what is refused.
+          started.push_back(at.start_service(
+              "simulation", place, {"safety.audit=" + (folder.path() / "audit").string()}));
+          for (stage::Process& other : lab(at, place, rate)) started.push_back(std::move(other));
+          return started;
+        });
+      };
+      const Stats before = of_floor(), ours = of_lab(), after = of_floor();
+      rows.push_back(row_of(name, rate, before, ours, after, !plan.json));
+    }
+  }
+  if (plan.json) std::cout << rows.dump() << "\n";
 }
 
 }  // namespace prehend::hops

@@ -5,7 +5,6 @@
 #include <fastdds/dds/subscriber/DataReaderListener.hpp>
 #include <filesystem>
 #include <functional>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -84,40 +83,27 @@ class Case {
   std::optional<stage::Process> server_;
 };
 
-struct Stats {
-  double p50 = 0, p99 = 0;  // µs
-  std::size_t count = 0;
+/// What is measured, by the arguments of a program: [--json] [--seconds S] [--rate HZ]...
+/// [--case NAME]...
+struct Plan {
+  double seconds = 0;  // of each measurement
+  std::vector<double> rates;
+  std::vector<std::string> cases;
+  bool json = false;
 };
+/// Over these defaults.
+Plan plan_of(int argc, char** argv, const Plan& defaults);
 
-/// A floor's last process is this one: from the origin of so many robot/command until each has come
-/// here, after a second of them. `start` starts the others.
-Stats measure_floor(const Place& place, double rate, std::size_t wanted,
-                    const std::function<std::vector<stage::Process>()>& start);
+/// The processes of a floor, or of the lab, at that place.
+using Start =
+    std::function<std::vector<stage::Process>(const Case& at, const Place& place, double rate)>;
+/// How many accepted commands of the lab are as many messages as a floor passes: `wanted`, after a
+/// second of them.
+using Accepted = std::function<std::uint64_t(double rate, std::size_t wanted)>;
 
-/// The lab's own measure, from its status: from the origin of a command until the gate of the
-/// simulation has accepted it, once that has accepted so many. `start` starts the services.
-Stats measure_lab(const Place& place, std::uint64_t accepted,
-                  const std::function<std::vector<stage::Process>()>& start);
-
-/// A table of what was measured, printed row by row as it grows, or as JSON at its end.
-class Table {
- public:
-  using Measure = std::function<Stats(double rate, std::size_t wanted)>;
-
-  explicit Table(bool json);
-  /// Floor, lab and floor again, each of so many seconds' messages: a machine that changes its
-  /// speed changes both.
-  void measure(const std::string& name, double rate, double seconds, const Measure& floor,
-               const Measure& lab);
-  void end() const;
-
- private:
-  bool json_;
-  nlohmann::json rows_ = nlohmann::json::array();
-};
-
-/// Keys of all roles, of any lab, in a folder of that one.
-std::filesystem::path made_keys(const stage::TemporaryFolder& folder);
-stage::TemporaryFolder made_folder();
+/// Floor, lab and floor again, for each case and rate: a machine that changes its speed changes
+/// both. A table, row by row as it grows, or JSON at its end. The lab's simulation writes its audit
+/// as everywhere; `lab` starts the services beside it.
+void measure(const Plan& plan, const Start& floor, const Start& lab, const Accepted& accepted);
 
 }  // namespace prehend::hops

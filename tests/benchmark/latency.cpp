@@ -25,7 +25,6 @@ namespace {
 
 using hops::Case;
 using hops::Place;
-using hops::Stats;
 
 /// First of the floor's processes: a posture at the given rate, stamped when it is made.
 int floor_source(const Place& place, double rate) {
@@ -59,46 +58,24 @@ int floor_relay(const Place& place) {
   return 0;
 }
 
-Stats measure_floor(double rate, std::size_t wanted, const Case& at) {
-  const Place place = at.place(fmt::format("floor-{}-{}", getpid(), rate));
-  return hops::measure_floor(place, rate, wanted, [&] {
-    std::vector<stage::Process> started;
-    started.push_back(at.start("mapping", hops::floor_command("relay", rate, place)));
-    started.push_back(at.start("glove", hops::floor_command("source", rate, place)));
-    return started;
-  });
+std::vector<stage::Process> start_floor(const Case& at, const Place& place, double rate) {
+  std::vector<stage::Process> started;
+  started.push_back(at.start("mapping", hops::floor_command("relay", rate, place)));
+  started.push_back(at.start("glove", hops::floor_command("source", rate, place)));
+  return started;
 }
 
-/// The real chain. The world keeps the last 1024 latencies: a full window, begun after the start.
-Stats measure_lab(double rate, std::size_t wanted, const Case& at,
-                  const std::filesystem::path& audit) {
-  const Place place = at.place(fmt::format("lab-{}-{}", getpid(), rate));
-  return hops::measure_lab(place, static_cast<std::uint64_t>(rate) + wanted, [&] {
-    std::vector<stage::Process> started;
-    // Its gate is always there; it also writes down who leads, and what is refused.
-    started.push_back(at.start_service("simulation", place, {"safety.audit=" + audit.string()}));
-    started.push_back(at.start_service("mapping", place, {}));
-    started.push_back(at.start_service("glove", place, {fmt::format("glove.rate={}", rate)}));
-    return started;
-  });
+/// The real chain.
+std::vector<stage::Process> start_lab(const Case& at, const Place& place, double rate) {
+  std::vector<stage::Process> started;
+  started.push_back(at.start_service("mapping", place, {}));
+  started.push_back(at.start_service("glove", place, {fmt::format("glove.rate={}", rate)}));
+  return started;
 }
 
-int run(bool json, double seconds, const std::vector<std::string>& cases) {
-  const auto folder = hops::made_folder();
-  const auto keys = hops::made_keys(folder);
-  hops::Table table(json);
-  for (const std::string& name : cases) {
-    const Case at(name, keys);
-    for (const double rate : {30.0, 500.0})
-      table.measure(
-          name, rate, seconds,
-          [&](double hz, std::size_t wanted) { return measure_floor(hz, wanted, at); },
-          [&](double hz, std::size_t wanted) {
-            return measure_lab(hz, wanted, at, folder.path() / "audit");
-          });
-  }
-  table.end();
-  return 0;
+/// The world keeps the last 1024 latencies: a full window, begun after the start.
+std::uint64_t accepted(double rate, std::size_t wanted) {
+  return static_cast<std::uint64_t>(rate) + wanted;
 }
 
 }  // namespace
@@ -109,19 +86,10 @@ int main(int argc, char** argv) {
   if (const auto floor = hops::floor_of(argc, argv))
     return floor->role == "source" ? floor_source(floor->place, floor->rate)
                                    : floor_relay(floor->place);
-  bool json = false;
-  double seconds = 8;
-  std::vector<std::string> cases;
-  for (int i = 1; i < argc; ++i) {
-    if (std::string_view(argv[i]) == "--json") json = true;
-    if (std::string_view(argv[i]) == "--seconds" && i + 1 < argc) seconds = std::atof(argv[++i]);
-    if (std::string_view(argv[i]) == "--case" && i + 1 < argc) cases.emplace_back(argv[++i]);
-  }
-  if (cases.empty()) cases = {"laptop", "containers", "server", "secure", "far"};
-  try {
-    return run(json, seconds, cases);
-  } catch (const std::exception& trouble) {
-    std::cerr << trouble.what() << "\n";
-    return 3;
-  }
+  hops::measure(hops::plan_of(argc, argv,
+                              {.seconds = 8,
+                               .rates = {30, 500},
+                               .cases = {"laptop", "containers", "server", "secure", "far"}}),
+                start_floor, start_lab, accepted);
+  return 0;
 }

@@ -27,7 +27,6 @@ namespace {
 
 using hops::Case;
 using hops::Place;
-using hops::Stats;
 
 /// The domain of nodes is that of the environment, as ROS 2 has it.
 dds::Participant join_nodes(const char* name) {
@@ -82,49 +81,23 @@ int floor_relay(const Place& place) {
   return 0;
 }
 
-Stats measure_floor(double rate, std::size_t wanted, const Case& at) {
-  const Place place = at.place(fmt::format("floor-{}-{}", getpid(), rate));
-  return hops::measure_floor(place, rate, wanted, [&] {
-    std::vector<stage::Process> started;
-    started.push_back(at.start("", hops::floor_command("relay", rate, place)));
-    started.push_back(at.start("", hops::floor_command("node", rate, place)));
-    return started;
-  });
+std::vector<stage::Process> start_floor(const Case& at, const Place& place, double rate) {
+  std::vector<stage::Process> started;
+  started.push_back(at.start("", hops::floor_command("relay", rate, place)));
+  started.push_back(at.start("", hops::floor_command("node", rate, place)));
+  return started;
+}
+
+std::vector<stage::Process> start_lab(const Case& at, const Place& place, double rate) {
+  std::vector<stage::Process> started;
+  started.push_back(at.start_service("ros-lead", place, {}));
+  started.push_back(at.start("", hops::floor_command("node", rate, place)));
+  return started;
 }
 
 /// Between two trajectories a tick may command, too, so twice as many commands are enough.
-Stats measure_lab(double rate, std::size_t wanted, const Case& at,
-                  const std::filesystem::path& audit) {
-  const Place place = at.place(fmt::format("lab-{}-{}", getpid(), rate));
-  const auto accepted = static_cast<std::uint64_t>(2 * (rate + static_cast<double>(wanted)));
-  return hops::measure_lab(place, accepted, [&] {
-    std::vector<stage::Process> started;
-    started.push_back(at.start_service("simulation", place, {"safety.audit=" + audit.string()}));
-    started.push_back(at.start_service("ros-lead", place, {}));
-    started.push_back(at.start("", hops::floor_command("node", rate, place)));
-    return started;
-  });
-}
-
-int run(bool json, double seconds, const std::vector<double>& rates,
-        const std::vector<std::string>& cases) {
-  const test::DomainLease nodes;
-  ::setenv("ROS_DOMAIN_ID", std::to_string(nodes.domain()).c_str(), 1);
-  const auto folder = hops::made_folder();
-  const auto keys = hops::made_keys(folder);
-  hops::Table table(json);
-  for (const std::string& name : cases) {
-    const Case at(name, keys);
-    for (const double rate : rates)
-      table.measure(
-          name, rate, seconds,
-          [&](double hz, std::size_t wanted) { return measure_floor(hz, wanted, at); },
-          [&](double hz, std::size_t wanted) {
-            return measure_lab(hz, wanted, at, folder.path() / "audit");
-          });
-  }
-  table.end();
-  return 0;
+std::uint64_t accepted(double rate, std::size_t wanted) {
+  return static_cast<std::uint64_t>(2 * (rate + static_cast<double>(wanted)));
 }
 
 }  // namespace
@@ -134,18 +107,10 @@ int main(int argc, char** argv) {
   using namespace prehend;
   if (const auto floor = hops::floor_of(argc, argv))
     return floor->role == "node" ? node(floor->rate) : floor_relay(floor->place);
-  bool json = false;
-  double seconds = 10;
-  std::vector<double> rates;
-  std::vector<std::string> cases;
-  for (int i = 1; i < argc; ++i) {
-    if (std::string_view(argv[i]) == "--json") json = true;
-    if (std::string_view(argv[i]) == "--seconds" && i + 1 < argc) seconds = std::atof(argv[++i]);
-    if (std::string_view(argv[i]) == "--rate" && i + 1 < argc)
-      rates.push_back(std::atof(argv[++i]));
-    if (std::string_view(argv[i]) == "--case" && i + 1 < argc) cases.emplace_back(argv[++i]);
-  }
-  if (cases.empty()) cases = {"laptop", "secure"};
-  if (rates.empty()) rates = {100};
-  return run(json, seconds, rates, cases);
+  const test::DomainLease nodes;
+  ::setenv("ROS_DOMAIN_ID", std::to_string(nodes.domain()).c_str(), 1);
+  hops::measure(
+      hops::plan_of(argc, argv, {.seconds = 10, .rates = {100}, .cases = {"laptop", "secure"}}),
+      start_floor, start_lab, accepted);
+  return 0;
 }

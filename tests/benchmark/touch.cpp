@@ -1,11 +1,13 @@
 // What the touch of a simulated hand is worth: against the weight that it bears, against the mean
-// of the solver's forces, and how far an object has slid when that is noticed. Every hand grasps
-// every shape from the side as it is placed by its reach; what it does not hold is left out.
+// of the solver's forces, how far an object has slid when that is noticed, and what sensing costs
+// beside a step of the world. Every hand grasps every shape from the side as it is placed by its
+// reach; what it does not hold is left out.
 //
 //   benchmark_touch [SECONDS]     of each measurement, 1
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <cstdlib>
 #include <vector>
@@ -58,7 +60,10 @@ std::unique_ptr<grasping::World> holding(const model::HandModel& hand, const gra
   return std::move(*made);
 }
 
+using Clock = std::chrono::steady_clock;
+
 struct Tally {
+  Clock::duration stepping{}, sensing{};
   std::vector<double> weight, noise, slid;
   int grasps = 0, slips = 0, unnoticed = 0;
 };
@@ -75,8 +80,12 @@ void rest(grasping::World& world, simulation::TouchSense& sense, double time, Ta
   const double weight = world.body(0).mass * 9.81;
   std::vector<std::vector<double>> told(sense.pads().size());
   for (std::size_t i = 0; i < steps; ++i) {
+    const auto begin = Clock::now();
     world.step();
+    const auto stepped = Clock::now();
     sense.update(world.touches(), world.base());
+    tally.stepping += stepped - begin;
+    tally.sensing += Clock::now() - stepped;
     if (i < steps / 10) continue;  // until the filter has filled
     Vector3d sum = Vector3d::Zero();
     for (std::size_t k = 0; k < told.size(); ++k) {
@@ -122,10 +131,14 @@ int main(int argc, char** argv) {
     fmt::print(
         "{:14} {:2} grasps; force against weight: p50 {:4.1f} %, p99 {:5.1f} %; pad against its "
         "mean, rms: p50 {:4.1f} %, worst {:5.1f} %; slid when noticed: p50 {:4.1f} mm, worst "
-        "{:5.1f} mm, {} of {} not noticed\n",
+        "{:5.1f} mm, {} of {} within 5 mm, {} not noticed; sensing {:.1f} % of a step\n",
         name, tally.grasps, 100 * at(tally.weight, 0.5), 100 * at(tally.weight, 0.99),
         100 * at(tally.noise, 0.5), 100 * at(tally.noise, 1), 1000 * at(tally.slid, 0.5),
-        1000 * at(tally.slid, 1), tally.unnoticed, tally.slips);
+        1000 * at(tally.slid, 1),
+        std::count_if(tally.slid.begin(), tally.slid.end(), [](double m) { return m < 0.005; }),
+        tally.slips, tally.unnoticed,
+        100.0 * static_cast<double>(tally.sensing.count()) /
+            static_cast<double>(std::max<Clock::rep>(1, tally.stepping.count())));
   };
   for (const std::string& name : test::hand_names()) {
     Tally tally;
@@ -142,6 +155,7 @@ int main(int argc, char** argv) {
                             {&all.noise, &tally.noise},
                             {&all.slid, &tally.slid}})
       to->insert(to->end(), from->begin(), from->end());
+    all.stepping += tally.stepping, all.sensing += tally.sensing;
     all.grasps += tally.grasps, all.slips += tally.slips, all.unnoticed += tally.unnoticed;
   }
   tell("all", all);

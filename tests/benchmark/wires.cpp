@@ -65,7 +65,7 @@ nlohmann::json measure_rates(bool json, double seconds, std::string_view driver)
       else
         fmt::print("| {} | {} | {} | | | 0 | «{}» |\n", wired.driver, wired.hand, baud,
                    cycle.trouble);
-      std::cout.flush();
+      std::fflush(stdout);
     }
   return rows;
 }

@@ -21,10 +21,7 @@ const Strings with_arm{"robot.arm=puma560", "robot.bracket=0.6",
 
 /// Level and away from the arm, the palm's x axis up.
 v2::HandCommand wished(v2::HandCommand command, const Vector3d& p_WG) {
-  Eigen::Matrix3d R;
-  R.col(0) = Vector3d::UnitZ();
-  R.col(2) = Vector3d::UnitY();
-  R.col(1) = R.col(2).cross(R.col(0));
+  const Eigen::Matrix3d R = model::grasp_axes(Eigen::Vector3d::UnitY(), Eigen::Vector3d::UnitX());
   const Pose X_WG = make_pose(p_WG, R);
   command.X_WB(convert::to_message(X_WG * test::hand("barrett").X_BG().inverse()));
   return command;

@@ -28,8 +28,9 @@ bool stands_at_its_end(const model::HandModel& hand, int finger, const Eigen::Ve
 
 }  // namespace
 
-Expected<HandFeedback> feel(const model::HandModel& hand, const std::vector<LinkTouch>& touch,
-                            const Eigen::VectorXd& dof) {
+Expected<model::HandFeedback> feel(const model::HandModel& hand,
+                                   const std::vector<LinkTouch>& touch,
+                                   const Eigen::VectorXd& dof) {
   if (touch.size() != hand.links().size() ||
       dof.size() != static_cast<Eigen::Index>(hand.dofs().size()))
     return fail("touch of another hand");
@@ -37,13 +38,13 @@ Expected<HandFeedback> feel(const model::HandModel& hand, const std::vector<Link
         return std::isfinite(link.pressure);
       }))
     return fail("touch not finite");
-  HandFeedback feedback;
+  model::HandFeedback feedback;
   for (std::size_t i = 0; i < touch.size(); ++i) {
     const int finger = hand.links()[i].finger;
     if (finger < 0) continue;
     const auto human = hand.fingertips()[static_cast<std::size_t>(finger)].human;
     if (!human) continue;
-    FingerFeedback& felt = feedback[static_cast<std::size_t>(*human)];
+    model::FingerFeedback& felt = feedback[static_cast<std::size_t>(*human)];
     felt.force += std::max(0.0, touch[i].pressure);
     felt.contact |= touch[i].touching;
     felt.slip |= touch[i].slipping;

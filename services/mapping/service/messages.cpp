@@ -44,7 +44,7 @@ std::vector<LinkTouch> touch_from_message(const v1::HandTouch& message) {
   return links;
 }
 
-v1::GloveFeedback to_message(const HandFeedback& feedback) {
+v1::GloveFeedback to_message(const model::HandFeedback& feedback) {
   v1::GloveFeedback message;
   for (std::size_t f = 0; f < feedback.size(); ++f) {
     v1::FingerFeedback& finger = message.fingers()[f];

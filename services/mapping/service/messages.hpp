@@ -14,6 +14,6 @@ Expected<RobotState> state_from_message(const v1::HandState& message);
 /// The same of robot/touch: what each link feels.
 std::vector<LinkTouch> touch_from_message(const v1::HandTouch& message);
 
-v1::GloveFeedback to_message(const HandFeedback& feedback);
+v1::GloveFeedback to_message(const model::HandFeedback& feedback);
 
 }  // namespace prehend::mapping

@@ -8,6 +8,8 @@
 #include <filesystem>
 
 #include "common/base/clock.hpp"
+#include "common/serial/pseudo_terminal.hpp"
+#include "services/glove/devices/open_glove_line.hpp"
 #include "services/glove/devices/paced.hpp"
 #include "tests/unit/glove_devices/listener.hpp"
 
@@ -92,6 +94,26 @@ TEST_F(OpenGloveFeels, TheFingerThatFeelsIsHeldBackTheOthersAreNotAndAllAreLetGo
   EXPECT_NE(felt_.load(), Time{});
   presses_ = false;  // nobody says what is felt
   EXPECT_TRUE(until([this] { return index_ > closed; })) << "it is still held";
+}
+
+// Servos keep what they were told last.
+TEST_F(OpenGloveFeels, AllAreLetGoAtTheEnd) {
+  auto glove = std::move(*serial::PseudoTerminal::open(options_.port));
+  device_ = std::move(*create_open_glove(options_));
+  device_->start(listener_.sink());
+  std::string told;
+  for (int n = 0; n < 1000 && told.find("B1000") == std::string::npos; ++n) {
+    Feedback feedback{.stamp = process_now()};
+    feedback.fingers[1].force = full_force;
+    device_->feel(feedback);
+    glove.write("A0B0C0D0E0F2048G2048P0\n");
+    told += glove.read(std::chrono::milliseconds(10));
+  }
+  ASSERT_NE(told.find("B1000"), std::string::npos);
+  device_.reset();
+  for (std::string more = "?"; !more.empty(); told += more)
+    more = glove.read(std::chrono::milliseconds(50));
+  EXPECT_TRUE(told.ends_with(open_glove::to_line(open_glove::HeldBack{}))) << told;
 }
 
 TEST_F(OpenGloveFeels, WhoWantsNoForceFeelsNone) {

@@ -23,10 +23,7 @@ Body cylinder(double radius, double height, double mass) {
 
 /// A cylinder that stands on the table, gripped from the side.
 std::unique_ptr<World> gripped(const Body& body) {
-  Eigen::Matrix3d R;
-  R.col(0) = Vector3d::UnitZ();
-  R.col(2) = Vector3d::UnitY();
-  R.col(1) = R.col(2).cross(R.col(0));
+  const Eigen::Matrix3d R = model::grasp_axes(Eigen::Vector3d::UnitY(), Eigen::Vector3d::UnitX());
   const Pose X_WB = make_pose(Vector3d(0, 0, 0.06), R) * barrett().X_BG().inverse();
   auto world = std::move(*World::create(barrett(), X_WB, VectorXd::Zero(4)));
   const double half = model::half_extents(body.shape).z();

@@ -23,10 +23,7 @@ void run(World& world, double time) {
 
 /// From the side, closed and squeezing, without a table; it has borne the body for a second.
 std::unique_ptr<World> holding(const Body& body) {
-  Eigen::Matrix3d R;
-  R.col(0) = Vector3d::UnitZ();
-  R.col(2) = Vector3d::UnitY();
-  R.col(1) = R.col(2).cross(R.col(0));
+  const Eigen::Matrix3d R = model::grasp_axes(Eigen::Vector3d::UnitY(), Eigen::Vector3d::UnitX());
   const Pose X_WB = make_pose(Vector3d(0, 0, 0.36), R) * barrett().X_BG().inverse();
   auto world = std::move(*World::create(barrett(), X_WB, VectorXd::Zero(4),
                                         {.table = false, .gravity_W = Vector3d::Zero()}));

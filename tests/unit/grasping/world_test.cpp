@@ -30,10 +30,7 @@ Pose standing(const Body& body, double x = 0, double y = 0) {
 
 /// From the side: the palm looks along y of W and its x axis points up, as does the object's axis.
 Pose side_grasp(const Vector3d& p_WG) {
-  Eigen::Matrix3d R;
-  R.col(0) = Vector3d::UnitZ();
-  R.col(2) = Vector3d::UnitY();
-  R.col(1) = R.col(2).cross(R.col(0));
+  const Eigen::Matrix3d R = model::grasp_axes(Eigen::Vector3d::UnitY(), Eigen::Vector3d::UnitX());
   return make_pose(p_WG, R) * barrett().X_BG().inverse();
 }
 

@@ -72,7 +72,7 @@ TEST_P(EveryHand, WhatIsOfAnotherHandOrNotFiniteIsRefused) {
   for (LinkTouch& link : unmeasured) link = {.touching = true, .pressure = -1};
   const auto felt = feel(hand_, unmeasured, open_);
   ASSERT_TRUE(felt);
-  for (const FingerFeedback& finger : *felt) EXPECT_EQ(finger.force, 0);
+  for (const model::FingerFeedback& finger : *felt) EXPECT_EQ(finger.force, 0);
 }
 
 INSTANTIATE_TEST_SUITE_P(Hands, EveryHand, ::testing::ValuesIn(test::mappable_hands()));

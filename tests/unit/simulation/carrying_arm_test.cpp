@@ -162,10 +162,7 @@ ArmMotion follow(Simulation& simulation, Time& now, double duration,
 /// G at p, the palm along y and its x axis up: as a person before the table reaches.
 Command reach(const Vector3d& p, double closure) {
   const model::HandModel& hand = test::hand("barrett");
-  Eigen::Matrix3d R;
-  R.col(0) = Vector3d::UnitZ();
-  R.col(2) = Vector3d::UnitY();
-  R.col(1) = R.col(2).cross(R.col(0));
+  const Eigen::Matrix3d R = model::grasp_axes(Eigen::Vector3d::UnitY(), Eigen::Vector3d::UnitX());
   Command told = command(hand, make_pose(p, R) * hand.X_BG().inverse());
   told.dof = VectorXd::Constant(4, closure);
   told.dof[0] = 0;

@@ -37,10 +37,7 @@ std::unique_ptr<Simulation> made(const Options& options = {}) {
 
 /// The hand beside an object at the origin, G at p, palm along y, its x axis up.
 Command command(const Vector3d& p_WG, double closure) {
-  Eigen::Matrix3d R;
-  R.col(0) = Vector3d::UnitZ();
-  R.col(2) = Vector3d::UnitY();
-  R.col(1) = R.col(2).cross(R.col(0));
+  const Eigen::Matrix3d R = model::grasp_axes(Eigen::Vector3d::UnitY(), Eigen::Vector3d::UnitX());
   Command made;
   made.model = "barrett";
   made.X_WB = make_pose(p_WG, R) * barrett().X_BG().inverse();
