@@ -10,12 +10,10 @@ constexpr int base_rows = 6;  // velocities of a multibody's base come before th
 
 }  // namespace
 
-Gear::Gear(btMultiBody* body, int follower, int leader, double ratio, double offset, double most)
+Gear::Gear(btMultiBody* body, int follower, int leader, double ratio, double offset)
     : btMultiBodyConstraint(body, body, follower, leader, 1, false, MULTIBODY_CONSTRAINT_GEAR),
       ratio_(ratio),
-      offset_(offset) {
-  m_maxAppliedImpulse = most;
-}
+      offset_(offset) {}
 
 void Gear::finalizeMultiDof() {
   allocateJacobiansMultiDof();
@@ -38,7 +36,7 @@ void Gear::createConstraintRows(btMultiBodyConstraintArray& rows, btMultiBodyJac
       m_bodyA->getJointPos(m_linkA) - ratio_ * m_bodyA->getJointPos(m_linkB) - offset_;
   const btVector3 none(0, 0, 0);
   fillMultiBodyConstraint(row, data, jacobianA(0), jacobianB(0), none, none, none, none, 0, info,
-                          -m_maxAppliedImpulse, m_maxAppliedImpulse, false, 1, false,
+                          -SIMD_INFINITY, SIMD_INFINITY, false, 1, false,
                           -gear_gain * apart / info.m_timeStep);
   row.m_orgConstraint = this;
   row.m_orgDofIndex = 0;

@@ -9,9 +9,8 @@ namespace prehend::grasping {
 /// (btMultiBodyGearConstraint of Bullet 3 takes them for parts of two bodies).
 class Gear final : public btMultiBodyConstraint {
  public:
-  /// ratio: rad or m of the follower per rad or m of the leader. most: N m s or
-  /// N s that it carries in a step, of the follower.
-  Gear(btMultiBody* body, int follower, int leader, double ratio, double offset, double most);
+  /// ratio: rad or m of the follower per rad or m of the leader.
+  Gear(btMultiBody* body, int follower, int leader, double ratio, double offset);
 
   void finalizeMultiDof() override;
   int getIslandIdA() const override { return island_of(m_linkA); }

@@ -24,7 +24,6 @@ constexpr double slips_after = 0.02;  // s, that a joint must be blocked before 
 constexpr double give = 0.13, yield = 0.07, blocked_speed = 0.33;
 constexpr double goes_back = 0.1;      // share of a squeeze behind where its motor was: it opens
 constexpr double resting_gap = 0.002;  // m: links that are closer at rest never collide
-constexpr double gear_strength = 10;   // of the torque that its drive can ask of it
 
 /// What the drive of each joint has: with what is geared to it, which it moves as well.
 std::vector<double> drive_torques(const model::HandModel& hand) {
@@ -149,10 +148,8 @@ void HandBody::build_gear(int i) {
   const model::HandJoint& joint = hand_.joints()[static_cast<std::size_t>(i)];
   const model::HandJoint& to = hand_.joints()[static_cast<std::size_t>(joint.geared_to)];
   const double ratio = joint.multiplier / to.multiplier;
-  const double most =
-      gear_strength * max_torque_[static_cast<std::size_t>(joint.geared_to)] / std::abs(ratio);
   gears_.push_back(std::make_unique<Gear>(multibody_.get(), i, joint.geared_to, ratio,
-                                          joint.offset - ratio * to.offset, most * time_step_));
+                                          joint.offset - ratio * to.offset));
   gears_.back()->finalizeMultiDof();
   world_.addMultiBodyConstraint(gears_.back().get());
 }
@@ -208,8 +205,6 @@ void HandBody::copy_state(const HandBody& other) {
     if (motors_[k])
       motors_[k]->internalSetAppliedImpulse(0, other.motors_[k]->getAppliedImpulse(0));
   }
-  for (std::size_t i = 0; i < gears_.size(); ++i)
-    gears_[i]->internalSetAppliedImpulse(0, other.gears_[i]->getAppliedImpulse(0));
   clutches_ = other.clutches_;
   move_colliders();
 }

@@ -1,6 +1,5 @@
 #include "common/grasping/world.hpp"
 
-#include <BulletDynamics/Featherstone/btMultiBodyConstraintSolver.h>
 #include <BulletDynamics/Featherstone/btMultiBodyDynamicsWorld.h>
 #include <btBulletCollisionCommon.h>
 #include <btBulletDynamicsCommon.h>
@@ -16,6 +15,7 @@
 #include "common/grasping/bullet.hpp"
 #include "common/grasping/carrier.hpp"
 #include "common/grasping/closest.hpp"
+#include "common/grasping/geared_solver.hpp"
 #include "common/grasping/hand_body.hpp"
 #include "common/grasping/placed_body.hpp"
 #include "common/grasping/surface.hpp"
@@ -68,7 +68,7 @@ struct World::State {
   btDefaultCollisionConfiguration configuration;
   btCollisionDispatcher dispatcher{&configuration};
   btDbvtBroadphase broadphase;
-  btMultiBodyConstraintSolver solver;
+  GearedSolver solver;
   std::deque<Surface> surfaces;  // of table and bodies; stable addresses
   btMultiBodyDynamicsWorld bullet{&dispatcher, &broadphase, &solver, &configuration};
   btStaticPlaneShape plane{btVector3(0, 0, 1), 0.0};
