@@ -66,7 +66,7 @@ def check_robomimic():
                 assert values.shape == following.shape and values.shape[0] == count
                 assert values.dtype == following.dtype
                 np.testing.assert_array_equal(values[1:], following[:-1])
-            for key in ("state", "joint_position", "fingertips", "object"):
+            for key in ("state", "joint_position", "touch_force", "touch_slip", "fingertips", "object"):
                 assert key in demo["obs"], key
             pictures = demo["obs/camera_image"]
             assert pictures.dtype == np.uint8 and pictures.shape[1:] == (60, 84, 3)

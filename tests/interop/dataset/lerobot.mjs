@@ -82,7 +82,7 @@ for (const file of files) {
 }
 assert.equal(data.index.length, info.total_frames);
 data.index.forEach((number, i) => assert.equal(number, i));
-for (const name of ["observation.state", "action", "observation.fingertips", "timestamp"])
+for (const name of ["observation.state", "action", "observation.fingertips", "observation.touch_force", "timestamp"])
   assert.ok(data[name], `${name} is missing`);
 assert.deepEqual(info.features.action.names, info.features["observation.state"].names);
 

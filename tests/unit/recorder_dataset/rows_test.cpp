@@ -84,6 +84,31 @@ TEST(Rows, ShowTheNewestPicture) {
   EXPECT_THAT(rows->pictures.at("front"), ElementsAre(0, 0, 0, 1, 1, 1, 2, 2, 2, 3));
 }
 
+TEST(Rows, SayWhatTheHandFeels) {
+  RecordingLog log = lead_for(1000);
+  log.touch_links = {"thumb", "index"};
+  for (int t = 0; t <= 1000; t += 10) {
+    const double s = t * 1e-3;
+    log.touch_force.add(ms(t), Eigen::VectorXd{{s, 0, -1, 0, 2 * s, 0}});
+    log.touch_pressure.add(ms(t), Eigen::Vector2d(s, 1 - s));
+    log.touch_slip.add(ms(t), Eigen::Vector2d(0, 0.01));
+  }
+  const auto rows = make_rows(log, episode_of(0, 1000), {.rate = 30});
+  ASSERT_TRUE(rows);
+  const Feature* force = find(*rows, "touch_force");
+  ASSERT_NE(force, nullptr);
+  EXPECT_THAT(force->columns,
+              ElementsAre("thumb.x", "thumb.y", "thumb.z", "index.x", "index.y", "index.z"));
+  EXPECT_NEAR(force->values(15, 0), 0.5, 1e-7);
+  EXPECT_NEAR(force->values(15, 4), 1, 1e-7);
+  ASSERT_NE(find(*rows, "touch_pressure"), nullptr);
+  EXPECT_NEAR(find(*rows, "touch_pressure")->values(15, 1), 0.5, 1e-7);
+  ASSERT_NE(find(*rows, "touch_slip"), nullptr);
+  EXPECT_THAT(find(*rows, "touch_slip")->columns, ElementsAre("thumb", "index"));
+  EXPECT_EQ(find(*make_rows(lead_for(500), episode_of(0, 500), {.rate = 30}), "touch_force"),
+            nullptr);
+}
+
 TEST(Rows, SignsOfQuaternionsDoNotJump) {
   RecordingLog log = lead_for(4000);
   log.X_WB = {};

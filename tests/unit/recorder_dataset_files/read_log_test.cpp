@@ -66,6 +66,40 @@ TEST_F(ReadLogTest, CommandsAndStates) {
   EXPECT_TRUE(log.X_WB.values[0].linear().isIdentity());
 }
 
+// A sensor that fails, or measures no pressure, must not read as a link that is not touched.
+TEST_F(ReadLogTest, TouchOfTheLinksThatMeasureIt) {
+  command(0, "hand", {0.1});
+  const auto touch = [&](int t, const std::string& hand, bool thumb_valid) {
+    v1::HandTouch message;
+    message.hand(hand);
+    message.model("barrett");
+    for (const char* link : {"palm", "thumb", "index"}) {
+      v1::PadTouch pad;
+      pad.link(link);
+      pad.valid(std::string(link) != "thumb" || thumb_valid);
+      pad.force_B().x(t);
+      pad.force_B().z(-1);
+      pad.pressure(std::string(link) == "palm" ? -1 : 2);
+      pad.slip(0.01);
+      message.pads().push_back(pad);
+    }
+    write(dds::robot_touch, t, message);
+  };
+  touch(10, "another", true);
+  touch(20, "hand", true);
+  touch(30, "hand", false);
+  touch(40, "hand", true);
+  const auto read = this->read("hand");
+  ASSERT_TRUE(read) << read.error().message();
+  EXPECT_TRUE(read->damage.empty());
+  const RecordingLog& log = read->log;
+  EXPECT_THAT(log.touch_links, ElementsAre("thumb", "index"));
+  EXPECT_THAT(log.touch_force.times, ElementsAre(ms(20), ms(40)));
+  EXPECT_THAT(log.touch_force.values[1], ElementsAre(40, 0, -1, 40, 0, -1));
+  EXPECT_THAT(log.touch_pressure.values[0], ElementsAre(2, 2));
+  EXPECT_THAT(log.touch_slip.values[0], ElementsAre(0.01, 0.01));
+}
+
 TEST_F(ReadLogTest, SeveralHandsMustBeChosenFrom) {
   command(0, "left", {0.1});
   command(0, "right", {0.2, 0.2});

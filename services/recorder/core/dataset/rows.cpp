@@ -18,6 +18,13 @@ Columns with_prefix(const std::string& prefix, const Columns& columns) {
   return all;
 }
 
+Columns with_axes(const Columns& points) {
+  Columns all;
+  for (const std::string& point : points)
+    for (const char* axis : {".x", ".y", ".z"}) all.push_back(point + axis);
+  return all;
+}
+
 /// Rows of one episode, feature by feature.
 class RowMaker {
  public:
@@ -67,7 +74,8 @@ class RowMaker {
     const auto wait = [&](const std::vector<Time>& times) {
       begin_ = std::max(begin_, known_from(times).value_or(begin_));
     };
-    for (const Numbers* series : {&log_.human_fingertips, &log_.arm_joint}) wait(series->times);
+    for (const Numbers* series : {&log_.human_fingertips, &log_.arm_joint, &log_.touch_force})
+      wait(series->times);
     for (const auto& [name, poses] : log_.objects) wait(poses.times);
     for (const auto& [name, camera] : log_.cameras) wait(camera.times);
   }
@@ -119,6 +127,9 @@ class RowMaker {
     add("joint_position", About::robot, names("joint", width(log_.joint)), log_.joint);
     add("joint_velocity", About::robot, names("joint", width(log_.velocity)), log_.velocity);
     add("joint_torque", About::robot, names("joint", width(log_.torque)), log_.torque);
+    add("touch_force", About::robot, with_axes(log_.touch_links), log_.touch_force);
+    add("touch_pressure", About::robot, log_.touch_links, log_.touch_pressure);
+    add("touch_slip", About::robot, log_.touch_links, log_.touch_slip);
     fingertips();
     drives(dofs);
   }
@@ -137,9 +148,9 @@ class RowMaker {
   void fingertips() {
     const auto* hand = options_.hand;
     if (!hand || width(log_.joint) != static_cast<Eigen::Index>(hand->joints().size())) return;
-    Columns columns;
-    for (const auto& tip : hand->fingertips())
-      for (const char* axis : {".x", ".y", ".z"}) columns.push_back(tip.name + axis);
+    Columns tips;
+    for (const auto& tip : hand->fingertips()) tips.push_back(tip.name);
+    const Columns columns = with_axes(tips);
     rows_.others.push_back({"fingertips", About::robot, columns, table([&](Time t) {
                               const auto X_BL = hand->link_poses(at(log_.joint, t));
                               const Pose X_WB = at(log_.X_WB, t);
@@ -196,10 +207,7 @@ class RowMaker {
   void around() {
     add("arm_position", About::arm, names("arm", width(log_.arm_joint)), log_.arm_joint);
     add("arm_velocity", About::arm, names("arm", width(log_.arm_velocity)), log_.arm_velocity);
-    Columns tips;
-    for (const std::string& finger : log_.human_fingers)
-      for (const char* axis : {".x", ".y", ".z"}) tips.push_back(finger + axis);
-    add("human_fingertips", About::human, tips, log_.human_fingertips);
+    add("human_fingertips", About::human, with_axes(log_.human_fingers), log_.human_fingertips);
     if (const auto found = log_.objects.find(episode_.object); found != log_.objects.end())
       add_object("object", found->second);
     for (const auto& [name, poses] : log_.objects) add_object("object_" + name, poses);

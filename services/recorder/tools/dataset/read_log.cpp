@@ -23,6 +23,16 @@ bool fits(const Numbers& series, const Eigen::VectorXd& values) {
   return series.empty() || series.values.front().size() == values.size();
 }
 
+Eigen::VectorXd as_vector(const std::vector<double>& numbers) {
+  return Eigen::Map<const Eigen::VectorXd>(numbers.data(),
+                                           static_cast<Eigen::Index>(numbers.size()));
+}
+
+const Value::List* list(const Value& message, std::string_view field) {
+  const Value* value = message.find(field);
+  return value ? std::get_if<Value::List>(&value->content) : nullptr;
+}
+
 /// Takes the messages that count. Each take_...() says whether the message could be used.
 class LogTaker {
  public:
@@ -32,7 +42,8 @@ class LogTaker {
   static const std::map<std::string, Take, std::less<>>& topics() {
     static const std::map<std::string, Take, std::less<>> table{
         {"robot/command", &LogTaker::command},  {"robot/state", &LogTaker::state},
-        {"arm/state", &LogTaker::arm},          {"hand/posture", &LogTaker::posture},
+        {"robot/touch", &LogTaker::touch},      {"arm/state", &LogTaker::arm},
+        {"hand/posture", &LogTaker::posture},
         {"object/state", &LogTaker::body},      {"object/detection", &LogTaker::detection},
         {"camera/image", &LogTaker::image},     {"grasp/report", &LogTaker::report},
         {"task/progress", &LogTaker::progress}, {"operator/command", &LogTaker::order}};
@@ -82,6 +93,30 @@ class LogTaker {
     return true;
   }
 
+  /// The links that feel something at first, whenever they do: what is not measured is not 0.
+  bool touch(const Value& message, Time time) {
+    if (!of_hand(message)) return true;
+    const auto* pads = list(message, "pads");
+    if (!pads || !of_model(message)) return false;
+    std::vector<std::string> links;
+    std::vector<double> force, pressure, slip;
+    for (const Value& pad : *pads) {
+      const auto force_B = vector(pad, "force_B");
+      const auto pressed = number(pad, "pressure"), slid = number(pad, "slip");
+      if (!flag(pad, "valid") || !force_B || !pressed || *pressed < 0 || !slid) continue;
+      links.push_back(text(pad, "link"));
+      force.insert(force.end(), force_B->begin(), force_B->end());
+      pressure.push_back(*pressed);
+      slip.push_back(*slid);
+    }
+    if (log_.touch_force.empty()) log_.touch_links = links;
+    if (links != log_.touch_links || links.empty()) return true;
+    log_.touch_force.add(time, as_vector(force));
+    log_.touch_pressure.add(time, as_vector(pressure));
+    log_.touch_slip.add(time, as_vector(slip));
+    return true;
+  }
+
   /// Of the first arm that is heard.
   bool arm(const Value& message, Time time) {
     const std::string name = text(message, "arm");
@@ -100,24 +135,21 @@ class LogTaker {
     const std::string glove = text(message, "glove");
     if (glove_.empty()) glove_ = glove;
     const auto X_WH = pose(message, "X_WH");
-    const Value* tips = message.find("fingertips");
-    const auto* list = tips ? std::get_if<Value::List>(&tips->content) : nullptr;
-    if (!X_WH || !list || list->size() != model::finger_count) return false;
+    const auto* tips = list(message, "fingertips");
+    if (!X_WH || !tips || tips->size() != model::finger_count) return false;
     if (glove_ != glove) return true;
     std::vector<std::string> fingers;
     std::vector<double> numbers;
-    for (std::size_t i = 0; i < list->size(); ++i) {
-      const auto p_HF = vector((*list)[i], "p_HF");
-      if (!flag((*list)[i], "valid") || !p_HF) continue;
+    for (std::size_t i = 0; i < tips->size(); ++i) {
+      const auto p_HF = vector((*tips)[i], "p_HF");
+      if (!flag((*tips)[i], "valid") || !p_HF) continue;
       fingers.emplace_back(model::finger_names.name(static_cast<model::Finger>(i)));
       const Eigen::Vector3d p_WF = *X_WH * *p_HF;
       numbers.insert(numbers.end(), p_WF.begin(), p_WF.end());
     }
     if (log_.human_fingertips.empty()) log_.human_fingers = fingers;
     if (fingers == log_.human_fingers && !fingers.empty())
-      log_.human_fingertips.add(
-          time, Eigen::Map<const Eigen::VectorXd>(numbers.data(),
-                                                  static_cast<Eigen::Index>(numbers.size())));
+      log_.human_fingertips.add(time, as_vector(numbers));
     return true;
   }
 
