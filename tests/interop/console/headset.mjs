@@ -1,5 +1,5 @@
-// headset.mjs BIN CHROMIUM SCRATCH: an emulated headset moves and closes its hand; hand/posture, which the glove
-// makes of it, follows.
+// headset.mjs BIN SAMPLE CHROMIUM SCRATCH: an emulated headset moves and closes its hand; hand/posture, which the glove
+// makes of it, follows. What the robot felt in a recording shakes its controllers.
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { createRequire } from "node:module";
@@ -10,7 +10,7 @@ import protocol from "@foxglove/ws-protocol";
 import WebSocket from "ws";
 import { browse, start } from "./chromium.mjs";
 
-const [bin, chromium, scratch] = process.argv.slice(2);
+const [bin, sample, chromium, scratch] = process.argv.slice(2);
 setTimeout(() => { throw new Error("it takes more than two minutes"); }, 120000).unref();
 
 const lab = ["--set", `lab.rig=headset-${process.pid}`, "--set", "glove.device=landmarks", "--set", `glove.port=127.0.0.1:${process.env.LEASED_PORT}`];
@@ -20,7 +20,9 @@ const emulator = readFileSync(join(dirname(createRequire(import.meta.url).resolv
 const page = await browse(chromium, `${scratch}/browser`, address, "1000,700", [], `${emulator};
   window.headset = new IWER.XRDevice(IWER.metaQuest3);
   headset.installRuntime({ forceInstall: true });
-  headset.primaryInputMode = "hand";`);
+  headset.primaryInputMode = "hand";
+  const request = navigator.xr.requestSession.bind(navigator.xr);
+  navigator.xr.requestSession = async (...all) => (window.session = await request(...all));`);
 await page.until("document.getElementById('link').textContent === 'connected'", "it is connected");
 await page.until("!document.getElementById('headset').hidden", "the headset is seen");
 
@@ -99,6 +101,19 @@ const own = await page.evaluate(`new Promise((told) => {
   };
 })`);
 assert.ok(Math.abs(gap - own) < 5e-3 && gap < open - 0.02, `thumb and index: ${gap} m apart, in the headset ${own} m, open ${open} m`);
+// Controllers in place of hands.
+await page.evaluate(`headset.primaryInputMode = "controller"`);
+await page.until("[...session.inputSources].some(({ gamepad }) => gamepad.hapticActuators.length)", "controllers are seen");
+await page.evaluate(`{
+  window.pulses = [];
+  const source = [...session.inputSources].find(({ gamepad }) => gamepad.hapticActuators.length);
+  const actuator = Object.getPrototypeOf(source.gamepad.hapticActuators[0]), { pulse } = actuator;
+  actuator.pulse = function (...all) { return pulses.push(all), pulse.apply(this, all); };
+}`);
+await start(`${bin}/prehend-replay`, [sample, "--topics", "glove/feedback", "--loop", ...lab.slice(0, 2)], "stderr", /./);
+await page.until("pulses.length > 10", "what presses on the robot's fingers is felt");
+for (const [strength, ms] of JSON.parse(await page.evaluate("JSON.stringify(pulses)")))
+  assert.ok(strength > 0 && strength <= 1 && ms === 100, `${strength} for ${ms} ms`);
 assert.deepEqual(page.complaints, [], "the browser complains");
 await page.evaluate("document.getElementById('headset-switch').click()");
 await page.until("document.getElementById('headset-switch').textContent === 'Start the headset'", "it has ended");

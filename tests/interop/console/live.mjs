@@ -1,5 +1,6 @@
-// live.mjs BIN CHROMIUM SCRATCH: a demonstration is watched and led from the page: it shows the grasp
-// that the demonstration tells, and every order is answered by who executes it.
+// live.mjs BIN CHROMIUM SCRATCH: a demonstration is watched, heard and led from the page: it shows the grasp
+// that the demonstration tells, sounds while something presses on a finger that leads, and every order is
+// answered by who executes it.
 import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
 import { browse, start } from "./chromium.mjs";
@@ -14,7 +15,11 @@ const outcome = new Promise((told) => child.stdout.on("data", (bytes) => {
   const text = String(bytes);
   if (text.startsWith("{")) told(JSON.parse(text));
 }));
-const page = await browse(chromium, `${scratch}/browser`, line);
+const page = await browse(chromium, `${scratch}/browser`, line, "1280,800", ["--autoplay-policy=no-user-gesture-required"],
+  "window.GainNode = class extends GainNode { constructor(...all) { super(...all); window.volume = this.gain; } }");
+await page.until("document.getElementById('link').textContent === 'connected'", "it is connected");
+await page.evaluate("document.getElementById('sound').click()");
+await page.until("volume.value > 0.001", "what presses on a finger is heard");
 const { grasp, object } = await outcome;
 const rows = "[...document.querySelectorAll('#grasps tbody tr')].map((row) => row.innerText)";
 await page.until(`${rows}.length > 0`, "the grasp is shown");
@@ -39,11 +44,12 @@ await page.until(answer("mode (direct): mapping"), "the mode is answered");
 await submit("record", "pause");
 await page.until(answer("record (pause): recorder"), "the recorder answers");
 assert.deepEqual(page.complaints, [], "the browser complains");
-await page.close();
 
 const ended = new Promise((done) => child.removeAllListeners("exit").on("exit", done));
 child.kill("SIGINT");
 await ended;
+await page.until("volume.value < 1e-6", "it falls silent");
+await page.close();
 execFileSync(`${bin}/prehend`, ["recording", "verify", recording]);
 console.log(`${last.replaceAll("\t", ", ")}; four orders were answered`);
 process.exit(0);

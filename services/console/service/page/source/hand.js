@@ -164,8 +164,8 @@ async function startWebcam(tracker) {
   next();
 }
 
-// where: asked for the place of a frame of the scene.
-export function setUpHand(where) {
+// where: asked for the place of a frame of the scene. touch: shakes a headset's controllers.
+export function setUpHand(where, touch) {
   if (!token) return;
   const section = byId("hand");
   section.hidden = false;
@@ -200,7 +200,7 @@ export function setUpHand(where) {
   };
   const startBy = {
     webcam: () => startWebcam(tracker),
-    headset: () => startHeadset(tracker, (seen) => section.take(seen), over),
+    headset: () => startHeadset(tracker, (seen) => section.take(seen), over, touch),
   };
   for (const [source, begin] of Object.entries(startBy))
     byId(`${source}-switch`).onclick = async ({ target }) => {

@@ -27,14 +27,18 @@ async function emptyPicture(session) {
   };
 }
 
-// take: as of the webcam. over: called at its end, which the headset may choose.
-export async function startHeadset(tracker, take, over) {
+// take: as of the webcam. over: called at its end, which the headset may choose. touch: told what could vibrate.
+export async function startHeadset(tracker, take, over, touch) {
   const session = await navigator.xr.requestSession(await hasHeadset(), { requiredFeatures: ["hand-tracking", "local"] });
   const clear = await emptyPicture(session), space = await session.requestReferenceSpace("local");
   const leads = (source) => source.handedness === byId("headset-hand").value;
   session.onselectstart = ({ inputSource }) => leads(inputSource) || tracker.lead(true);
   session.onselectend = ({ inputSource }) => leads(inputSource) || tracker.lead(false);
-  session.onend = over;
+  session.onend = () => {
+    touch.sources = undefined;
+    over();
+  };
+  touch.sources = () => session.inputSources;
   const next = (time, frame) => {
     session.requestAnimationFrame(next);
     clear();

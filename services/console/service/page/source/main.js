@@ -8,6 +8,7 @@ import { Picture } from "./picture.js";
 import { Playback } from "./playback.js";
 import { Plots } from "./plots.js";
 import { keepReport, setUpSaving } from "./save.js";
+import { Touch } from "./touch.js";
 import { World } from "./world.js";
 
 let world;
@@ -20,6 +21,7 @@ try {
 }
 const picture = new Picture(document.getElementById("camera"));
 const plots = new Plots(document.getElementById("plots"));
+const touch = new Touch(document.getElementById("sound"));
 
 // Kept until the page is drawn, which a hidden one is not: the newest of each frame and entity.
 const transforms = new Map();
@@ -84,7 +86,10 @@ const topics = {
     showLatency(message);
     plots.latency(message);
   },
-  "/signals": (message) => plots.show(message),
+  "/signals": (message) => {
+    plots.show(message);
+    touch.show(message);
+  },
   "/training": showTraining,
   "/log": showLog,
   "/operator/reply": showReply,
@@ -101,5 +106,5 @@ setUpOrders();
 setUpSaving(world && (() => world.draw()));
 for (const [id, look] of [["near", "lookNear"], ["all", "lookAtAll"]])
   document.getElementById(id).onclick = () => world?.[look]();
-setUpHand(() => world?.anObject());
+setUpHand(() => world?.anObject(), touch);
 requestAnimationFrame(draw);
