@@ -32,10 +32,10 @@ btScalar GearedSolver::solveGroupCacheFriendlySetup(
       bodies, body_count, manifolds, manifold_count, constraints, constraint_count, info, drawer);
   for (const Gears& gears : find_gears()) {
     solve(gears);
-    for (auto* rows : {&m_multiBodyNonContactConstraints, &m_multiBodyNormalContactConstraints,
-                       &m_multiBodyFrictionContactConstraints,
-                       &m_multiBodyTorsionalFrictionContactConstraints,
-                       &m_multiBodySpinningFrictionContactConstraints})
+    for (auto* rows :
+         {&m_multiBodyNonContactConstraints, &m_multiBodyNormalContactConstraints,
+          &m_multiBodyFrictionContactConstraints, &m_multiBodyTorsionalFrictionContactConstraints,
+          &m_multiBodySpinningFrictionContactConstraints})
       for (int i = 0; i < rows->size(); ++i) project(gears, (*rows)[i]);
   }
   return residual;

@@ -1,28 +1,15 @@
 #pragma once
 
-#include <Eigen/Core>
 #include <cstdint>
 #include <map>
-#include <string>
 
 #include "common/base/error.hpp"
-#include "common/base/pose.hpp"
 #include "common/base/time.hpp"
-#include "common/model/shape.hpp"
+#include "common/model/detection.hpp"
 
 namespace prehend::mapping {
 
-/// An object as object/detection says it.
-struct Detection {
-  std::uint32_t track = 0;
-  std::string name;
-  model::Shape shape;
-  Pose X_WO = Pose::Identity();
-  double probability = 0;
-  Time stamp;
-  /// Of x, y, z (m) and the turn about z (rad); zero: exact.
-  Eigen::Matrix4d covariance = Eigen::Matrix4d::Zero();
-};
+using model::Detection;
 
 struct ObjectTrackOptions {
   /// A detection that is less probable than this, from 0 to 1, is refused.

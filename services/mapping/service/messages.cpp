@@ -16,18 +16,6 @@ Expected<Posture> posture_from_message(const v1::HandPosture& message) {
   return posture;
 }
 
-Expected<Detection> detection_from_message(const v1::ObjectDetection& message) {
-  auto X_WO = convert::from_message(message.X_WO());
-  if (!X_WO) return fail("pose of a detection not usable");
-  return Detection{message.track(),
-                   message.name().to_string(),
-                   {convert::from_message(message.shape()), convert::from_message(message.size())},
-                   *X_WO,
-                   message.probability(),
-                   from_ns(message.stamp_ns()),
-                   Eigen::Matrix4d::Map(message.covariance().data())};
-}
-
 Expected<RobotState> state_from_message(const v1::HandState& message) {
   auto X_WB = convert::from_message(message.X_WB());
   if (!X_WB) return fail("pose of the robot not usable");

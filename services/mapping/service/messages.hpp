@@ -8,8 +8,7 @@ namespace prehend::mapping {
 
 /// A hand/posture as the mapping takes it; fails on a pose that is none.
 Expected<Posture> posture_from_message(const v1::HandPosture& message);
-/// The same of object/detection and robot/state.
-Expected<Detection> detection_from_message(const v1::ObjectDetection& message);
+/// The same of robot/state.
 Expected<RobotState> state_from_message(const v1::HandState& message);
 /// The same of robot/touch: what each link feels.
 std::vector<LinkTouch> touch_from_message(const v1::HandTouch& message);

@@ -6,6 +6,7 @@
 
 #include "common/base/log.hpp"
 #include "common/convert/convert.hpp"
+#include "common/convert/detection.hpp"
 #include "common/convert/grasp_candidates.hpp"
 #include "common/dds/topics.hpp"
 #include "common/service/order_book.hpp"
@@ -144,7 +145,7 @@ class Service::Topics {
       return;
     }
     if (seen_.size() < max_tracks) seen_[message.track()] = shell_.now();
-    const auto taken = detection_from_message(message).and_then(
+    const auto taken = convert::from_message(message).and_then(
         [&](const Detection& detection) { return mapping_.on_detection(detection); });
     if (!taken) shell_.status().drop(taken.error().what);
   }

@@ -37,7 +37,7 @@ PlanBook::PlanBook(const model::HandModel& hand, const grasping::CatalogueBodies
                    PlanStore store, const PlanBookOptions& options)
     : hand_(hand), catalogue_(catalogue), store_(std::move(store)), options_(options) {}
 
-grasping::Body PlanBook::body_of(const SeenObject& seen) const {
+grasping::Body PlanBook::body_of(const model::Detection& seen) const {
   return catalogue_.seen(seen.name, grasping::shape_to_plan(seen.shape));
 }
 
@@ -55,7 +55,7 @@ void PlanBook::forget_one() {
     }
 }
 
-Expected<void> PlanBook::observe(const SeenObject& seen) {
+Expected<void> PlanBook::observe(const model::Detection& seen) {
   if (!is_finite(seen.X_WO)) return fail("pose of a detection not finite");
   if (!is_valid(seen.shape) || model::half_extents(seen.shape).minCoeff() < min_size)
     return fail("detection without a shape");

@@ -9,24 +9,12 @@
 #include <vector>
 
 #include "common/base/error.hpp"
-#include "common/base/pose.hpp"
-#include "common/base/time.hpp"
 #include "common/grasping/catalogue_bodies.hpp"
 #include "common/grasping/table_grasps.hpp"
+#include "common/model/detection.hpp"
 #include "common/model/hand_model.hpp"
-#include "common/model/shape.hpp"
 
 namespace prehend::planner {
-
-/// An object as object/detection says it.
-struct SeenObject {
-  std::uint32_t track = 0;
-  std::string name;
-  model::Shape shape;
-  Pose X_WO = Pose::Identity();
-  double probability = 0;
-  Time stamp;
-};
 
 /// What was found for a hand and an object.
 struct Plan {
@@ -38,7 +26,7 @@ struct Plan {
 
 /// The same for something that is seen.
 struct TrackPlan {
-  SeenObject seen;  // as it was when it was planned for
+  model::Detection seen;  // as it was when it was planned for
   Plan plan;
 };
 
@@ -67,7 +55,7 @@ class PlanBook {
 
   /// Refuses what is not finite, has no shape, is not probable enough, does not stand, or is older
   /// than what is known of this track. The error's `what` is a short reason to count.
-  Expected<void> observe(const SeenObject& seen);
+  Expected<void> observe(const model::Detection& seen);
   void remove(std::uint32_t track);
 
   /// What is searched next: a round for the object of which least has been searched. Nothing: all
@@ -94,16 +82,16 @@ class PlanBook {
   /// Makes room for one more that is not seen now.
   void forget_one();
   /// What is planned for: from the catalogue where it is there, else estimated.
-  grasping::Body body_of(const SeenObject& seen) const;
+  grasping::Body body_of(const model::Detection& seen) const;
 
   const model::HandModel& hand_;
   const grasping::CatalogueBodies& catalogue_;
   PlanStore store_;
   PlanBookOptions options_;
-  std::map<std::string, Entry> entries_;         // by key
-  std::map<std::uint32_t, SeenObject> seen_;     // newest
-  std::map<std::uint32_t, std::string> key_of_;  // what each track was planned as
-  std::map<std::uint32_t, int> told_;            // version of the entry that was told
+  std::map<std::string, Entry> entries_;            // by key
+  std::map<std::uint32_t, model::Detection> seen_;  // newest
+  std::map<std::uint32_t, std::string> key_of_;     // what each track was planned as
+  std::map<std::uint32_t, int> told_;               // version of the entry that was told
 };
 
 }  // namespace prehend::planner

@@ -33,17 +33,6 @@ v1::GraspCandidate to_message(const grasping::SureGrasp& grasp, const model::Han
 
 }  // namespace
 
-Expected<SeenObject> seen_from_message(const v1::ObjectDetection& message) {
-  auto X_WO = convert::from_message(message.X_WO());
-  if (!X_WO) return fail("pose of a detection not usable");
-  return SeenObject{message.track(),
-                    message.name().to_string(),
-                    {convert::from_message(message.shape()), convert::from_message(message.size())},
-                    *X_WO,
-                    message.probability(),
-                    from_ns(message.stamp_ns())};
-}
-
 v1::GraspCandidates to_message(const TrackPlan& planned, const std::string& hand_name,
                                const model::HandModel& hand) {
   v1::GraspCandidates message;

@@ -8,9 +8,6 @@
 
 namespace prehend::planner {
 
-/// An object/detection as the planner takes it; fails on a pose that is none.
-Expected<SeenObject> seen_from_message(const v1::ObjectDetection& message);
-
 /// A plan for this hand as grasp/candidates, without sequence number. hand_name: key of
 /// robot/command.
 v1::GraspCandidates to_message(const TrackPlan& planned, const std::string& hand_name,

@@ -15,6 +15,7 @@
 #include "common/base/log.hpp"
 #include "common/base/paths.hpp"
 #include "common/base/workers.hpp"
+#include "common/convert/detection.hpp"
 #include "common/dds/topics.hpp"
 #include "services/planner/core/plan_book.hpp"
 #include "services/planner/files/plan_store.hpp"
@@ -111,7 +112,7 @@ class Service::Topics {
  private:
   void on_detection(const v1::ObjectDetection& message, const dds::SampleInfo& info) {
     if (info.gone) return forget(message.track());
-    const auto seen = seen_from_message(message);
+    const auto seen = convert::from_message(message);
     if (!seen) return shell_.status().drop(seen.error().what);
     const auto taken = book_.observe(*seen);
     if (!taken) shell_.status().drop(taken.error().what);
@@ -120,7 +121,7 @@ class Service::Topics {
 
   /// Who waits for grasps hears that none are looked for, and that they are after all. What is
   /// planned for stays so while it is seen: the hand that takes it hides and tilts it.
-  void tell_whether(const SeenObject& seen, const std::string& refusal) {
+  void tell_whether(const model::Detection& seen, const std::string& refusal) {
     const auto told = refusals_.find(seen.track);
     const bool is_new = told == refusals_.end();
     if (is_new ? refusals_.size() >= max_told : told->second.empty() || told->second == refusal)

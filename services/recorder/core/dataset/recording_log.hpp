@@ -39,9 +39,9 @@ struct RecordingLog {
   Series<std::string> command_object;  // that the commands are for; empty: none
   Numbers dof, joint, velocity, torque;
   Poses X_WB;
-  std::vector<std::string> touch_links;       // that feel something
-  Numbers touch_force;                        // N, in B: x, y, z of each of them
-  Numbers touch_pressure, touch_slip;         // N and m/s of each of them
+  std::vector<std::string> touch_links;  // that feel something
+  Numbers touch_force;                   // N, in B: x, y, z of each of them
+  Numbers touch_pressure, touch_slip;    // N and m/s of each of them
   Numbers arm_joint, arm_velocity;
   std::vector<std::string> human_fingers;  // that the glove measures
   Numbers human_fingertips;                // m, in W: x, y, z of each of them

@@ -41,12 +41,12 @@ class LogTaker {
   using Take = bool (LogTaker::*)(const Value&, Time);
   static const std::map<std::string, Take, std::less<>>& topics() {
     static const std::map<std::string, Take, std::less<>> table{
-        {"robot/command", &LogTaker::command},  {"robot/state", &LogTaker::state},
-        {"robot/touch", &LogTaker::touch},      {"arm/state", &LogTaker::arm},
-        {"hand/posture", &LogTaker::posture},
-        {"object/state", &LogTaker::body},      {"object/detection", &LogTaker::detection},
-        {"camera/image", &LogTaker::image},     {"grasp/report", &LogTaker::report},
-        {"task/progress", &LogTaker::progress}, {"operator/command", &LogTaker::order}};
+        {"robot/command", &LogTaker::command},      {"robot/state", &LogTaker::state},
+        {"robot/touch", &LogTaker::touch},          {"arm/state", &LogTaker::arm},
+        {"hand/posture", &LogTaker::posture},       {"object/state", &LogTaker::body},
+        {"object/detection", &LogTaker::detection}, {"camera/image", &LogTaker::image},
+        {"grasp/report", &LogTaker::report},        {"task/progress", &LogTaker::progress},
+        {"operator/command", &LogTaker::order}};
     return table;
   }
 

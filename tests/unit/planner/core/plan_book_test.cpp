@@ -26,8 +26,8 @@ const grasping::CatalogueBodies& bodies() {
   return made;
 }
 
-SeenObject seen(std::uint32_t track, const std::string& name, double larger = 1) {
-  SeenObject made;
+model::Detection seen(std::uint32_t track, const std::string& name, double larger = 1) {
+  model::Detection made;
   made.track = track;
   made.name = name;
   made.shape = objects().find(name)->shape;
@@ -121,12 +121,12 @@ TEST_F(PlanBookTest, WhatIsGoneIsNeitherSearchedNorTold) {
 }
 
 TEST_F(PlanBookTest, RefusesWhatCannotBePlannedFor) {
-  const auto refused = [&](SeenObject object) {
+  const auto refused = [&](model::Detection object) {
     const auto taken = book.observe(object);
     return taken ? std::string("taken") : taken.error().what;
   };
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  SeenObject object = seen(1, "Wood cube");
+  model::Detection object = seen(1, "Wood cube");
   object.X_WO.translation().x() = nan;
   EXPECT_EQ(refused(object), "pose of a detection not finite");
   object = seen(1, "Wood cube");
@@ -151,7 +151,7 @@ TEST_F(PlanBookTest, RefusesWhatCannotBePlannedFor) {
 }
 
 TEST_F(PlanBookTest, WhatNeverFitsIsSaid) {
-  SeenObject wall = seen(1, "Wood cube");
+  model::Detection wall = seen(1, "Wood cube");
   wall.name = "wall";
   wall.shape.size.setConstant(0.6);
   ASSERT_TRUE(book.observe(wall));
@@ -191,13 +191,13 @@ TEST(PlanBookStore, APlanThatIsKeptIsNotSearchedAgain) {
 // A lab may run for weeks, and a camera see anything.
 TEST_F(PlanBookTest, DoesNotGrowWithoutEnd) {
   for (std::uint32_t i = 0; i < 1000; ++i) {
-    SeenObject object = seen(i, "Wood cube");
+    model::Detection object = seen(i, "Wood cube");
     object.name = "thing";
     object.shape.size = Eigen::Vector3d(0.01 + 1e-3 * (i % 90), 0.02 + 1e-3 * (i / 90), 0.05);
     ASSERT_TRUE(book.observe(object));
     if (i % 2 == 0) book.remove(i);
   }
-  SeenObject late = seen(5000, "Wood cube");
+  model::Detection late = seen(5000, "Wood cube");
   for (std::uint32_t track = 5000; track < 5600; ++track) {
     late.track = track;
     (void)book.observe(late);
