@@ -6,7 +6,7 @@
 
 namespace prehend::analysis {
 
-/// A touch between hand and object. O: the object's frame, whose origin is its centre of mass.
+/// A touch between a hand and an object. O: the object's frame, whose origin is its centre of mass.
 /// Its forces fill the friction cone: |tangential| <= friction * normal; without friction, a ray.
 /// A soft finger (torsion > 0) also bears a moment about the normal, in the ellipsoid
 /// |tangential|² / friction² + moment² / torsion² <= normal².
@@ -20,6 +20,7 @@ struct Contact {
   double torsion = 0;        // m, greatest moment about the normal per unit of normal force
   Eigen::Vector3d tangent_O =
       Eigen::Vector3d::Zero();  // towards the first friction edge; zero: any
+  int hand = 0;                 // whose link, where several hands hold the object
 };
 
 /// So many contacts of a grasp count, as in GraspIt!.

@@ -38,4 +38,9 @@ void Arm::step(const Pose& X_WC, const Pose& X_WC_goal, const Vector3d& goal_vel
                     limits.turn_acceleration, dt);
 }
 
+void Arm::feel(const Vector3d& velocity, const Vector3d& turning) {
+  velocity_ = velocity;
+  turning_ = turning;
+}
+
 }  // namespace prehend::grasping

@@ -44,6 +44,8 @@ class Arm {
   void step(const Pose& X_WC, const Pose& X_WC_goal, const Eigen::Vector3d& goal_velocity,
             const ArmLimits& limits, double dt);
   void stop() { *this = {}; }
+  /// So the base moves now, whatever it was told: something holds it up.
+  void feel(const Eigen::Vector3d& velocity, const Eigen::Vector3d& turning);
 
   const Eigen::Vector3d& velocity() const { return velocity_; }  // m/s, in W
   const Eigen::Vector3d& turning() const { return turning_; }    // rad/s, in W

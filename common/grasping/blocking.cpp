@@ -29,7 +29,7 @@ class Fingers {
         open_(hand.joint_angles(hand.postures().at("open"))),
         body_(hand,
               std::vector<analysis::Material>(hand.links().size(), analysis::Material::plastic),
-              bullet_, 0.002) {}
+              bullet_, filter_, 0.002) {}
 
   int count() const { return static_cast<int>(hand_.fingertips().size()); }
 
@@ -100,6 +100,7 @@ class Fingers {
   btDbvtBroadphase broadphase_;
   btMultiBodyConstraintSolver solver_;
   btMultiBodyDynamicsWorld bullet_{&dispatcher_, &broadphase_, &solver_, &configuration_};
+  LinkPairFilter filter_;
   HandBody body_;
 };
 

@@ -42,25 +42,27 @@ std::vector<double> drive_torques(const model::HandModel& hand) {
 bool LinkPairFilter::needBroadphaseCollision(btBroadphaseProxy* a, btBroadphaseProxy* b) const {
   const auto* first = static_cast<const btCollisionObject*>(a->m_clientObject);
   const auto* second = static_cast<const btCollisionObject*>(b->m_clientObject);
-  const int i = surface_of(first).link, j = surface_of(second).link;
-  if (i < 0 && j < 0) return !(first->isStaticObject() && second->isStaticObject());
-  if (i < 0 || j < 0) return true;
-  return !ignores(i, j);
+  const Surface &one = surface_of(first), &other = surface_of(second);
+  if (one.hand < 0 && other.hand < 0) return !(first->isStaticObject() && second->isStaticObject());
+  return one.hand != other.hand || !ignores(one.hand, one.link, other.link);
 }
 
-bool LinkPairFilter::ignores(int a, int b) const {
-  return std::find(ignored.begin(), ignored.end(), std::pair(std::min(a, b), std::max(a, b))) !=
-         ignored.end();
+bool LinkPairFilter::ignores(int hand, int a, int b) const {
+  const auto& pairs = ignored.at(hand);
+  return std::find(pairs.begin(), pairs.end(), std::pair(std::min(a, b), std::max(a, b))) !=
+         pairs.end();
 }
 
 HandBody::HandBody(const model::HandModel& hand, const std::vector<analysis::Material>& materials,
-                   btMultiBodyDynamicsWorld& world, double time_step, const BaseBody& base)
+                   btMultiBodyDynamicsWorld& world, LinkPairFilter& filter, double time_step,
+                   const BaseBody& base, int number)
     : hand_(hand),
       world_(world),
+      filter_(filter),
       time_step_(time_step),
+      number_(number),
       max_effort_(model::max_effort(hand)),
       max_torque_(drive_torques(hand)) {
-  world_.getPairCache()->setOverlapFilterCallback(&filter_);
   build_links(base);
   world_.addMultiBody(multibody_.get());
   build_colliders(materials);
@@ -78,7 +80,6 @@ HandBody::~HandBody() {
   for (auto& limit : limits_) world_.removeMultiBodyConstraint(limit.get());
   for (auto& collider : colliders_) world_.removeCollisionObject(collider.get());
   world_.removeMultiBody(multibody_.get());
-  world_.getPairCache()->setOverlapFilterCallback(nullptr);
 }
 
 void HandBody::build_links(const BaseBody& base) {
@@ -119,7 +120,7 @@ void HandBody::build_colliders(const std::vector<analysis::Material>& materials)
     auto collider = std::make_unique<btMultiBodyLinkCollider>(multibody_.get(), link.joint);
     collider->setCollisionShape(compound.get());
     shapes_.push_back(std::move(compound));
-    surfaces_.push_back({materials[static_cast<std::size_t>(i)], std::nullopt, -1, i});
+    surfaces_.push_back({materials[static_cast<std::size_t>(i)], std::nullopt, -1, number_, i});
     make_touchable(*collider, surfaces_.back());
     if (link.joint < 0)
       multibody_->setBaseCollider(collider.get());
@@ -132,6 +133,7 @@ void HandBody::build_colliders(const std::vector<analysis::Material>& materials)
 void HandBody::ignore_overlaps() {
   place(Pose::Identity(), hand_.joint_angles(hand_.postures().at("open")),
         VectorXd::Zero(static_cast<Eigen::Index>(hand_.joints().size())));
+  auto& ignored = filter_.ignored[number_];
   for (std::size_t i = 0; i < colliders_.size(); ++i)
     for (std::size_t j = i + 1; j < colliders_.size(); ++j) {
       const int a = static_cast<int>(i), b = static_cast<int>(j);
@@ -140,7 +142,7 @@ void HandBody::ignore_overlaps() {
           joint >= 0 && hand_.joints()[static_cast<std::size_t>(joint)].parent == a;
       ClosestDistance closest(resting_gap);
       world_.contactPairTest(colliders_[i].get(), colliders_[j].get(), closest);
-      if (neighbours || closest.distance < resting_gap) filter_.ignored.emplace_back(a, b);
+      if (neighbours || closest.distance < resting_gap) ignored.emplace_back(a, b);
     }
 }
 
@@ -339,7 +341,7 @@ Pose HandBody::X_WC_of(const Pose& X_WB) const {
 }
 
 bool HandBody::may_touch(int link, int other) const {
-  return !filter_.ignores(link, other);
+  return !filter_.ignores(number_, link, other);
 }
 
 double HandBody::torque(int i) const {

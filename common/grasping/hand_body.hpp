@@ -7,6 +7,7 @@
 #include <BulletDynamics/Featherstone/btMultiBodyLinkCollider.h>
 
 #include <deque>
+#include <map>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -22,11 +23,12 @@ class btMultiBodyDynamicsWorld;
 
 namespace prehend::grasping {
 
-/// Pairs of links that overlap when the hand rests, as neighbours do, never collide.
+/// Pairs of links of one hand that overlap when it rests, as neighbours do, never collide. One of a
+/// world, for all its hands.
 struct LinkPairFilter : btOverlapFilterCallback {
-  std::vector<std::pair<int, int>> ignored;  // the smaller number first
+  std::map<int, std::vector<std::pair<int, int>>> ignored;  // of each hand, smaller number first
 
-  bool ignores(int a, int b) const;
+  bool ignores(int hand, int a, int b) const;
   bool needBroadphaseCollision(btBroadphaseProxy* a, btBroadphaseProxy* b) const override;
 };
 
@@ -44,9 +46,11 @@ struct LinkPairFilter : btOverlapFilterCallback {
 /// presses the joint on; driven back to where it let go, the motor takes it again.
 class HandBody {
  public:
-  /// materials: of each link. The world must outlive the hand and gets its pair filter.
+  /// materials: of each link. number: of the hand in its world. World and filter must outlive the
+  /// hand.
   HandBody(const model::HandModel& hand, const std::vector<analysis::Material>& materials,
-           btMultiBodyDynamicsWorld& world, double time_step, const BaseBody& base = {});
+           btMultiBodyDynamicsWorld& world, LinkPairFilter& filter, double time_step,
+           const BaseBody& base = {}, int number = 0);
   ~HandBody();
   HandBody(const HandBody&) = delete;
   HandBody& operator=(const HandBody&) = delete;
@@ -109,11 +113,12 @@ class HandBody {
 
   const model::HandModel& hand_;
   btMultiBodyDynamicsWorld& world_;
+  LinkPairFilter& filter_;
   double time_step_;
+  int number_;
   Eigen::VectorXd max_effort_;      // of each DoF
   std::vector<double> max_torque_;  // of each joint's drive, for itself and what is geared to it
-  LinkPairFilter filter_;
-  std::deque<Surface> surfaces_;  // stable addresses
+  std::deque<Surface> surfaces_;    // stable addresses
   std::vector<std::unique_ptr<btCollisionShape>> shapes_;
   std::unique_ptr<btMultiBody> multibody_;
   std::vector<std::unique_ptr<btMultiBodyLinkCollider>> colliders_;

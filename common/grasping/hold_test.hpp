@@ -12,9 +12,10 @@ struct HoldOptions {
   double lift = 0.10;                // m, by which the hand is lifted
   double lift_speed = 0.1;           // m/s, at which it is lifted
   double hold = 3.0;                 // s, that the object is held up there
-  double max_slip = 0.020;           // m, relative to the palm
+  double max_slip = 0.020;           // m, relative to each palm
   double max_turn = 0.261799387799;  // rad (15°)
-  /// The long form: shaken along ±x, ±y, ±z of B, then turned upside down and held there.
+  /// The long form: shaken along ±x, ±y, ±z of B of the first hand, then turned upside down and
+  /// held there.
   bool shake = false;
   double shake_acceleration = 0.5 * 9.81;  // m/s², at most the arm's
   double shake_stroke = 0.02;              // m: there and back, once in each direction
@@ -27,16 +28,17 @@ struct HoldOptions {
 
 struct HoldResult {
   bool held = false;   // survived all that was asked
-  double slip = 0;     // m, largest displacement relative to the palm from the start of the test
+  double slip = 0;     // m, largest displacement relative to a palm from the start of the test
   double turn = 0;     // rad, the same
-  double drift = 0;    // m/s, relative to the palm, in the last half second of the last hold
+  double drift = 0;    // m/s, relative to the first palm, in the last half second of the last hold
   std::string reason;  // why it was not held; empty when it was
   /// Each phase: survived or not; none when it was not asked for or not reached.
   std::optional<bool> lift, shake, turned_over;
 };
 
-/// Lifts the hand as it is driven now, holds, and looks where the object is; then the long form, if
-/// it is asked for. Uses up the world: give it a clone(). Ends early once the answer is no.
+/// Lifts all hands of the world together as they are driven now, holds, and looks where the object
+/// is; then the long form, if it is asked for. Uses up the world: give it a clone(). Ends early
+/// once the answer is no.
 HoldResult hold_test(World& world, int object, const HoldOptions& options = {});
 
 }  // namespace prehend::grasping

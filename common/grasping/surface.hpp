@@ -17,8 +17,9 @@ namespace prehend::grasping {
 struct Surface {
   analysis::Material material = analysis::Material::wood;
   std::optional<double> friction;  // against everything, instead of the material's
-  int body = -1;                   // number of the body; -1: table or hand
-  int link = -1;                   // of the hand; -1: not the hand
+  int body = -1;                   // number of the body; -1: table or a hand
+  int hand = -1;                   // number of the hand; -1: none
+  int link = -1;                   // of the hand; -1: not a hand
 };
 
 /// m, that Bullet adds to what is made of corners; its default of 0.04 is far too much here.

@@ -25,7 +25,7 @@ struct SolidMesh {
   double radius = 0;          // of the vertex that is farthest from C, m
 };
 
-/// A rigid body besides the hand.
+/// A rigid body besides the hands.
 struct Body {
   std::string name;
   model::Shape shape;
@@ -56,6 +56,9 @@ struct WorldOptions {
   ArmLimits arm;      // how fast the hand's base is moved
   BrakeLimits brake;  // how hard it is braked at a stop
   BaseBody base;      // heavy as it is by itself, the base gives way to nothing
+  /// How hard each base is pushed on its way, instead of going there whatever it touches: hands
+  /// that hold one object do not press each other through it. Wants a base that is not so heavy.
+  std::optional<Push> push;
 };
 
 /// rad and N m; m and N of what slides.
@@ -76,10 +79,11 @@ struct BodyMotion {
   Eigen::Vector3d angular_velocity = Eigen::Vector3d::Zero();  // rad/s, in W
 };
 
-/// What pressed on a link of the hand in the last step, at one point.
+/// What pressed on a link of a hand in the last step, at one point.
 struct Touch {
+  int hand = 0;
   int link = 0;   // of the hand
-  int body = -1;  // that presses; -1: the table
+  int body = -1;  // that presses; -1: the table, or another hand
   Eigen::Vector3d p_W;
   Eigen::Vector3d normal_W;  // unit, into the link
   Eigen::Vector3d force_W;   // N, on the link: pressure and friction
@@ -87,11 +91,12 @@ struct Touch {
   double friction = 0;       // coefficient
 };
 
-/// A physical world with one hand, a table and objects, stepped by Bullet (double). The base of the
-/// hand follows its command within the arm's limits. Each joint is driven by a spring that reaches
-/// its torque limit when the command is its DoF's squeeze ahead, no faster than its velocity limit.
-/// A clutch lets go of a joint that is blocked (see hand_body.hpp). Deterministic: same calls, same
-/// bits. Not thread-safe; worlds are independent of each other. Keeps a reference to the hand.
+/// A physical world with hands, a table and objects, stepped by Bullet (double). The base of a hand
+/// follows its command within the arm's limits. Each joint is driven by a spring that reaches its
+/// torque limit when the command is its DoF's squeeze ahead, no faster than its velocity limit. A
+/// clutch lets go of a joint that is blocked (see hand_body.hpp). Deterministic: same calls, same
+/// bits. Not thread-safe; worlds are independent of each other. Keeps references to the hands.
+/// hand: the number of one; that of create() is 0.
 class World {
  public:
   /// Fails on what cannot be simulated: invalid shapes, negative masses, unknown materials.
@@ -102,12 +107,15 @@ class World {
   World(const World&) = delete;
   World& operator=(const World&) = delete;
 
-  /// A new world in the same state, to the bit, and with the same commands; its base is not
-  /// carried, but gives way to nothing and goes where it is commanded. What Bullet remembers of the
-  /// last step's contacts does not go with it, so that the two move apart, by micrometres where
-  /// things rest; two clones of the same world stay the same.
+  /// A new world in the same state, to the bit, and with the same commands; no base is carried as
+  /// by carry(): it goes where it is commanded, and without a push gives way to nothing. What
+  /// Bullet remembers of the last step's contacts does not go with it, so that the two move apart,
+  /// by micrometres where things rest; two clones of the same world stay the same.
   std::unique_ptr<World> clone() const;
 
+  /// Adds a hand and returns its number, 1, 2, ... Fails as create().
+  Expected<int> add_hand(const model::HandModel& hand, const Pose& X_WB,
+                         const Eigen::VectorXd& dof);
   /// Adds a body and returns its number, 0, 1, ...
   Expected<int> add_body(const Body& body, const Pose& X_WO);
   void move_body(int body, const Pose& X_WO);  // puts it there, at rest
@@ -116,46 +124,50 @@ class World {
   void set_object_damping(double per_second);
 
   /// Puts the hand there, at rest, without passing through what lies between. Fails as command().
-  Expected<void> place_hand(const Pose& X_WB, const Eigen::VectorXd& dof);
+  Expected<void> place_hand(const Pose& X_WB, const Eigen::VectorXd& dof, int hand = 0);
   /// Where base and DoFs shall go from now on. velocity: m/s, in W, of a base that is to be at X_WB
   /// in passing; the next command replaces it. Fails, and leaves the last command in force, on
   /// values that are not finite, of the wrong number, or outside the DoFs' limits by more than
   /// rounding (1 % of the range).
   Expected<void> command(const Pose& X_WB, const Eigen::VectorXd& dof,
-                         const Eigen::Vector3d& velocity = Eigen::Vector3d::Zero());
+                         const Eigen::Vector3d& velocity = Eigen::Vector3d::Zero(), int hand = 0);
   /// What the drives of each DoF may use from now on, N m or N; empty: all they have, as at first.
   /// Fails, and changes nothing, on values that are negative, not finite, or of the wrong number.
-  Expected<void> limit_effort(const Eigen::VectorXd& effort);
-  void hold_still();  // commands base and fingers to stay where they are; a grip keeps its squeeze
-  void brake();       // the same, and until the next command the arm brakes as hard as it can
+  Expected<void> limit_effort(const Eigen::VectorXd& effort, int hand = 0);
+  /// Commands base and fingers to stay where they are; a grip keeps its squeeze.
+  void hold_still(int hand = 0);
+  /// The same, and until the next command the arm brakes as hard as it can.
+  void brake(int hand = 0);
   /// From the next step on an arm carries the base and is here, whatever was commanded before. It
   /// pushes no harder than this; base.mass says how heavy it is. place_hand() takes it away again.
-  void carry(const Pose& X_WB, const Push& most);
+  void carry(const Pose& X_WB, const Push& most, int hand = 0);
   /// What pushed against the carried base in the last step; before the first: nothing.
-  BaseLoad base_load() const;
+  BaseLoad base_load(int hand = 0) const;
 
   void step();
   double time_step() const;
 
-  const model::HandModel& hand() const;
-  HandMotion hand_motion() const;
-  Pose base() const;
-  const Pose& commanded_base() const;
-  const Eigen::VectorXd& commanded_dof() const;
+  int hand_count() const;
+  const model::HandModel& hand(int hand = 0) const;
+  HandMotion hand_motion(int hand = 0) const;
+  Pose base(int hand = 0) const;
+  const Pose& commanded_base(int hand = 0) const;
+  const Eigen::VectorXd& commanded_dof(int hand = 0) const;
   bool has_table() const;
   int body_count() const;
   const Body& body(int index) const;
   BodyMotion body_motion(int index) const;
 
-  /// Touches of the hand on a body in the last step.
+  /// Touches of all hands on a body in the last step.
   std::vector<analysis::Contact> contacts(int body) const;
-  /// All that pressed on the hand in the last step, but for its own links.
+  /// All that pressed on the hands in the last step, but for their own links.
   std::vector<Touch> touches() const;
-  /// True if the body touches anything but the hand.
+  /// True if the body touches anything but hands.
   bool touches_others(int body) const;
-  bool hand_touches_anything() const;
+  /// But for its own links.
+  bool hand_touches_anything(int hand = 0) const;
   /// Distance between hand and body, m, negative when they penetrate; capped at `most`.
-  double distance_to_hand(int body, double most = 1.0) const;
+  double distance_to_hand(int body, double most = 1.0, int hand = 0) const;
 
  private:
   struct State;
