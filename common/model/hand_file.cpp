@@ -4,7 +4,6 @@
 #include <initializer_list>
 
 #include "common/base/file_text.hpp"
-#include "common/base/paths.hpp"
 #include "common/base/toml_document.hpp"
 #include "common/model/hand_coupling.hpp"
 #include "common/model/hand_effort.hpp"
@@ -46,6 +45,7 @@ class HandLoader {
     const auto name = text_of(root, "name", {});
     if (!name) return tl::unexpected(name.error());
     hand.name_ = *name;
+    hand.mirror_name_ = mirror_name(*name);
     for (const auto& step :
          {&HandLoader::read_dofs, &HandLoader::couple, &HandLoader::read_torques,
           &HandLoader::read_breakaways, &HandLoader::read_materials, &HandLoader::read_fingertips,
@@ -363,85 +363,15 @@ Expected<HandModel> HandModel::parse(std::string_view urdf, std::string_view tom
   return std::move(loader.hand);
 }
 
-namespace {
-
-/// Folders of hands: those that come with us first, then those that the user keeps.
-std::vector<std::filesystem::path> hand_folders() {
-  std::vector<std::filesystem::path> folders{share_directory() / "models" / "hands"};
-  if (const auto own = data_directory(); !own.empty()) folders.push_back(own / "models" / "hands");
-  return folders;
-}
-
-bool is_hand(const std::filesystem::path& folder) {
-  std::error_code none;
-  return std::filesystem::exists(folder / "hand.toml", none);
-}
-
-std::vector<std::string> names_in(const std::filesystem::path& folder) {
-  std::vector<std::string> names;
-  std::error_code none;
-  for (const auto& entry : std::filesystem::directory_iterator(folder, none))
-    if (is_hand(entry.path())) names.push_back(entry.path().filename().string());
-  std::sort(names.begin(), names.end());
-  return names;
-}
-
-}  // namespace
-
-std::filesystem::path hand_directory(const std::string& hand) {
-  if (hand.find('/') != std::string::npos) return hand;
-  for (const auto& folder : hand_folders())
-    if (is_hand(folder / hand)) return folder / hand;
-  std::error_code none;
-  if (!hand.empty() && is_hand(hand)) return std::filesystem::absolute(hand, none);
-  return hand_folders().front() / hand;
-}
-
-std::vector<std::string> hand_names() {
-  return names_in(hand_folders().front());
-}
-
-Expected<std::filesystem::path> named_hand(const std::string& name) {
-  for (const auto& folder : hand_folders()) {
-    const auto names = names_in(folder);
-    if (std::find(names.begin(), names.end(), name) != names.end()) return folder / name;
-  }
-  return fail("no hand of this name comes with us or is the user's", "'" + name + "'");
-}
-
-Expected<std::filesystem::path> named_hand(const std::string& name,
-                                           const std::vector<std::string>& told) {
-  for (const std::string& one : told) {
-    if (one.empty()) continue;
-    const auto folder = hand_directory(one);
-    if (const auto hand = HandModel::load(folder); hand && hand->name() == name) return folder;
-  }
-  return named_hand(name);
-}
-
-std::string lab_hand() {
-  try {
-    const toml::table lab = toml::parse_file((share_directory() / "lab.toml").string());
-    return lab["mapping"]["hand"].value_or(std::string());
-  } catch (const toml::parse_error&) {
-    return {};  // whoever needs a hand says that none is named
-  }
-}
-
-std::string hand_hint() {
-  std::string names;
-  for (const auto& folder : hand_folders())
-    for (const std::string& name : names_in(folder)) names += (names.empty() ? "" : ", ") + name;
-  return "choose one of " + names + ", or give the path of a folder";
-}
-
 Expected<HandModel> HandModel::load(const std::filesystem::path& directory) {
-  const auto urdf = read_file(directory / "hand.urdf", parts);
+  const std::filesystem::path files = hand_files(directory);
+  const auto urdf = read_file(files / "hand.urdf", parts);
   if (!urdf) return tl::unexpected(urdf.error());
-  const auto toml = read_file(directory / "hand.toml", parts);
+  const auto toml = read_file(files / "hand.toml", parts);
   if (!toml) return tl::unexpected(toml.error());
   auto hand = parse(*urdf, *toml);
-  if (!hand) hand.error().where = (directory / hand.error().where).string();
+  if (!hand) hand.error().where = (files / hand.error().where).string();
+  if (hand && files != directory) return hand->mirrored();
   return hand;
 }
 

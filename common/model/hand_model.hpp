@@ -97,8 +97,19 @@ struct HandGate {
   std::optional<Eigen::VectorXd> lower, upper, velocity, acceleration, effort;
 };
 
+/// What the mirror image of a hand of this name is called: NAME_left; of NAME_left NAME_right, and
+/// the other way round.
+std::string mirror_name(const std::string& name);
+
 /// What has a slash is a path; a name is of ours, of data_directory()/models/hands, or of ./NAME.
+/// Also of a mirror image, whose folder is not there: see hand_files().
 std::filesystem::path hand_directory(const std::string& hand);
+
+/// Where the files of the hand of this folder are: there, or, for a NAME_left or NAME_right that
+/// has none, in the folder beside it of the hand whose mirror image it is. None at all: that
+/// folder.
+std::filesystem::path hand_files(const std::filesystem::path& folder);
+bool is_hand(const std::filesystem::path& folder);  // there are such files
 
 /// The hands that come with us, sorted: the folders in models/hands.
 std::vector<std::string> hand_names();
@@ -120,10 +131,17 @@ std::string hand_hint();
 /// B: base frame (the root link). Values are checked when loaded, so users need not.
 class HandModel {
  public:
-  /// Loads models/hands/<name>/{hand.urdf,hand.toml}. Errors name the file and the element.
+  /// Loads models/hands/<name>/{hand.urdf,hand.toml}, or mirrors the hand of hand_files(). Errors
+  /// name the file and the element.
   static Expected<HandModel> load(const std::filesystem::path& directory);
   /// The same from the text of the two files.
   static Expected<HandModel> parse(std::string_view urdf, std::string_view toml);
+
+  /// The mirror image at the plane x = 0 of B, and of the frame of each link, joint and shape: the
+  /// pose X of a link there is that of the link here with x turned round on both sides, S X S with
+  /// S = diag(-1, 1, 1), at the same joint values. A right hand becomes a left one. The mirror
+  /// image of that is the same hand again, to the bit.
+  HandModel mirrored() const;
 
   const std::string& name() const { return name_; }
   const std::vector<HandDof>& dofs() const { return dofs_; }
@@ -146,7 +164,7 @@ class HandModel {
 
  private:
   friend class HandLoader;
-  std::string name_;
+  std::string name_, mirror_name_;
   std::vector<HandDof> dofs_;
   std::vector<HandJoint> joints_;
   std::vector<HandLink> links_;

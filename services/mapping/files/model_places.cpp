@@ -19,8 +19,9 @@ constexpr std::string_view maker = "2";
 
 std::string digest_of(const fs::path& folder) {
   std::string all(maker);
+  const fs::path files = model::hand_files(folder);
   for (const char* part : {"hand.urdf", "hand.toml", "scheme.toml"})
-    all += proto::digest(read_file(folder / part).value_or(""));
+    all += proto::digest(read_file(files / part).value_or(""));
   return proto::digest(all);
 }
 

@@ -36,8 +36,9 @@ std::string digest_of(const fs::path& hand_folder, const grasping::Body& object)
     for (const auto& part : object.mesh->parts.parts)
       for (const Eigen::Vector3d& corner : part)
         all += fmt::format("{:.5f} {:.5f} {:.5f}\n", corner.x(), corner.y(), corner.z());
+  const fs::path files = model::hand_files(hand_folder);
   for (const char* part : {"hand.urdf", "hand.toml"})
-    all += proto::digest(read_file(hand_folder / part).value_or(""));
+    all += proto::digest(read_file(files / part).value_or(""));
   return proto::digest(all);
 }
 

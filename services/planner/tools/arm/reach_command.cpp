@@ -3,7 +3,6 @@
 
 #include <CLI/CLI.hpp>
 #include <array>
-#include <filesystem>
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -38,8 +37,7 @@ Expected<arm::ReachTask> task_of(const model::ArmModel& arm, const ReachArgument
     return task;
   }
   const auto folder = model::hand_directory(arguments.hand);
-  std::error_code ignored;
-  if (!std::filesystem::exists(folder / "hand.toml", ignored))
+  if (!model::is_hand(folder))
     return wrong_use("there is no such hand", "'" + arguments.hand + "'", model::hand_hint());
   const auto hand = model::HandModel::load(folder);
   if (!hand) return tl::unexpected(hand.error());

@@ -17,8 +17,7 @@ using grasping::Body;
 
 Expected<model::HandModel> find_hand(const std::string& name) {
   const auto folder = model::hand_directory(name);
-  std::error_code none;
-  if (name.find('/') == std::string::npos && !std::filesystem::exists(folder / "hand.toml", none))
+  if (name.find('/') == std::string::npos && !model::is_hand(folder))
     return fail("there is no such hand", name, model::hand_hint());
   return model::HandModel::load(folder);
 }
