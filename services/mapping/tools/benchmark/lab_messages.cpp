@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "common/convert/convert.hpp"
+#include "common/convert/detection.hpp"
 #include "services/mapping/service/messages.hpp"
 #include "services/mapping/tools/judging/answerer.hpp"
 
@@ -58,7 +59,7 @@ Posture as_read(const Posture& posture) {
 }
 
 Detection as_read(const Detection& detection) {
-  return detection_from_message(to_message(detection)).value_or(detection);
+  return convert::from_message(to_message(detection)).value_or(detection);
 }
 
 RobotState as_read(const RobotState& state) {
