@@ -160,6 +160,7 @@ void read_demonstrator(TableReader& reader, Demonstrator& person) {
   reader.read("hand_scale", person.hand_scale);
   reader.read("grasp_yaw", person.grasp_yaw);
   reader.read("reach", person.reach);
+  reader.read("carry_W", person.carry_W);
   reader.read("approach_offset", person.approach_offset);
   reader.read("approach_turn", person.approach_turn);
   reader.read("position_noise", person.position_noise);
@@ -174,6 +175,7 @@ std::string contradiction(const Scene& scene) {
   if (!(scene.light.to_light_W.norm() > 1e-6)) return "light has no direction";
   if (!(scene.demonstrator.hand_scale >= 0.7 && scene.demonstrator.hand_scale <= 1.4))
     return "hand_scale must lie in 0.7 to 1.4";
+  if (!(scene.demonstrator.carry_W.norm() <= 1)) return "carry_W must be at most 1 m";
   const std::string& target = scene.demonstrator.target;
   if (!target.empty() &&
       std::none_of(scene.objects.begin(), scene.objects.end(),
@@ -354,6 +356,7 @@ std::string to_toml(const Scene& scene) {
       list(person.approach_offset), list(person.approach_turn), number(person.position_noise),
       number(person.angle_noise), number(person.extreme_rate),
       static_cast<std::int64_t>(person.seed));
+  if (!person.carry_W.isZero()) text += fmt::format("carry_W = {}\n", list(person.carry_W));
   for (const PlacedObject& object : scene.objects)
     text +=
         fmt::format("\n[[object]]\nname = {}\nX_WO = {}\n", quoted(object.name), list(object.X_WO));

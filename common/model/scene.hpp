@@ -31,7 +31,9 @@ struct Demonstrator {
   std::string target;       // object; empty: poses only
   double hand_scale = 1.0;  // 1 = average adult
   double grasp_yaw = 0;     // rad about z of W: from where a cylinder is approached
-  Reach reach;              // of the hand that is led: whoever leads it sees it and gives it room
+  /// m: both hands carry the target so far; zero: one grasps it and puts it back.
+  Eigen::Vector3d carry_W = {0, 0, 0};
+  Reach reach;  // of the hand that is led: whoever leads it sees it and gives it room
   Eigen::Vector3d approach_offset = {0, 0, 0};  // m, error of the palm in the hand's frame
   Eigen::Vector3d approach_turn = {0, 0, 0};    // rad, rotation vector of the same
   double position_noise = 0.0015;               // m, sigma a coordinate of each sensor

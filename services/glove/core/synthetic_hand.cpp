@@ -2,20 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "common/base/motion.hpp"
-#include "common/base/random.hpp"
 #include "common/model/human_grasp.hpp"
+#include "services/glove/core/mirrored_scene.hpp"
 
 namespace prehend::glove {
 namespace {
 
 using Eigen::AngleAxisd;
-using Eigen::Matrix3d;
 using Eigen::Vector3d;
-
-constexpr std::size_t sensor_count = 4;
 
 /// What the hand does and for how long, s.
 enum Phase {
@@ -38,14 +34,6 @@ constexpr double lift_height = 0.12;                   // m
 constexpr double approach_path = 0.12;                 // m, straight in
 constexpr double rest_back = 0.25, rest_above = 0.20;  // m
 
-Vector3d direction(Random& random) {
-  while (true) {
-    const double x = random.uniform(-1, 1), y = random.uniform(-1, 1), z = random.uniform(-1, 1);
-    const Vector3d v(x, y, z);
-    if (v.norm() > 0.1 && v.norm() <= 1) return v.normalized();
-  }
-}
-
 }  // namespace
 
 double SyntheticHand::cycle() {
@@ -54,25 +42,14 @@ double SyntheticHand::cycle() {
   return total;
 }
 
-SyntheticHand::SyntheticHand(const model::Scene& scene, const SyntheticOptions& options)
-    : options_(options), person_(scene.demonstrator), hand_(scene.demonstrator.hand_scale) {
-  Random random(person_.seed * 7919 + options_.seed);
-  for (std::size_t s = 0; s < sensor_count; ++s) {
-    const Vector3d offset = direction(random) * random.uniform(0, 0.005);
-    // The back of the hand is flat and wide: its sensor sits much straighter than those on fingers.
-    const double crooked = (s == 0 ? 1.5 : 10.0) * std::numbers::pi / 180;
-    const AngleAxisd turn(random.uniform(0, crooked), direction(random));
-    mounting_[s] = make_pose(offset, turn.toRotationMatrix());
-  }
-}
-
-Expected<SyntheticHand> SyntheticHand::create(const model::Scene& scene,
+Expected<SyntheticHand> SyntheticHand::create(const model::Scene& room,
                                               const model::Catalogue& catalogue,
                                               const SyntheticOptions& options) {
-  if (!(options.rate >= 1 && options.rate <= 1000))
-    return fail("the rate must be 1 to 1000 Hz", "synthetic hand", "set glove.rate");
-  SyntheticHand made(scene, options);
-  const model::Demonstrator& person = made.person_;
+  const model::Scene scene = options.left ? mirrored(room, options.X_WT) : room;
+  const model::Demonstrator& person = scene.demonstrator;
+  auto sensors = WornSensors::create(person, options);
+  if (!sensors) return tl::unexpected(sensors.error());
+  SyntheticHand made(std::move(*sensors), person.hand_scale);
   const Pose X_HG = made.hand_.X_HG();
   Pose X_WG =
       make_pose(Vector3d(0, 0, 0.10), model::grasp_axes(-Vector3d::UnitY(), Vector3d::UnitX()));
@@ -161,31 +138,7 @@ HandState SyntheticHand::hand(double time) const {
 }
 
 std::optional<Frame> SyntheticHand::frame(std::uint64_t n) const {
-  const double time = static_cast<double>(n) / options_.rate;
-  const HandState state = hand(time);
-  const auto tips = hand_.fingertip_poses(model::HumanHand::posture(state.closure));
-  const Pose X_TH = options_.X_WT.inverse() * state.X_WH;
-
-  Frame result;
-  result.sequence = n;
-  result.stamp = Time(seconds(time));
-  Random random((person_.seed * 1000003 + options_.seed) * 6364136223846793005ULL + n);
-  for (std::size_t s = 0; s < sensor_count; ++s) {
-    Reading reading;
-    reading.site = usual_sites()[s];
-    const auto finger = finger_of(reading.site);
-    const Pose X_HF = finger ? tips[static_cast<std::size_t>(*finger)] : Pose::Identity();
-    const Pose X_TS = X_TH * X_HF * mounting_[s];
-    const Vector3d turn = random.normal3(person_.angle_noise);
-    reading.p_TS = X_TS.translation() + random.normal3(person_.position_noise);
-    reading.q_TS = Eigen::Quaterniond(X_TS.linear());
-    if (turn.norm() > 0)
-      reading.q_TS = reading.q_TS * Eigen::Quaterniond(AngleAxisd(turn.norm(), turn.normalized()));
-    if (random.uniform() < person_.extreme_rate)
-      reading.p_TS += direction(random) * random.uniform(0.05, 0.5);
-    result.readings.push_back(reading);
-  }
-  return result;
+  return sensors_.frame(n, hand(sensors_.time(n)));
 }
 
 }  // namespace prehend::glove

@@ -1,29 +1,17 @@
 #pragma once
 
 #include <array>
+#include <utility>
 
 #include "common/model/catalogue.hpp"
 #include "common/model/scene.hpp"
 #include "services/glove/core/frame_source.hpp"
+#include "services/glove/core/worn_sensors.hpp"
 
 namespace prehend::glove {
 
-struct SyntheticOptions {
-  Pose X_WT = Pose::Identity();  // tracker on the table
-  double rate = 30;              // Hz, 1 to 1000
-  /// Numbers the sensors' noise and mounting beside the scene's own seed.
-  std::uint64_t seed = 0;
-};
-
-/// What a demonstrator's hand does at one moment.
-struct HandState {
-  Pose X_WH = Pose::Identity();
-  std::array<double, model::finger_count> closure{};  // for HumanHand::posture
-};
-
-/// A person who reaches for an object, grasps, lifts and puts it back, again and again, and the
-/// four sensors on that hand, with the noise, extreme points and crooked mounting of real ones. A
-/// value of the frame's number alone: the same frame comes out whenever it is asked for.
+/// A person who reaches for an object, grasps, lifts and puts it back, again and again. A value of
+/// the frame's number alone: the same frame comes out whenever it is asked for.
 class SyntheticHand final : public FrameSource {
  public:
   /// Fails if the scene's target is not there or no hand can grasp it.
@@ -42,14 +30,12 @@ class SyntheticHand final : public FrameSource {
   const model::HumanHand& model() const { return hand_; }
 
  private:
-  SyntheticHand(const model::Scene& scene, const SyntheticOptions& options);
+  SyntheticHand(WornSensors sensors, double scale) : sensors_(std::move(sensors)), hand_(scale) {}
 
-  SyntheticOptions options_;
-  model::Demonstrator person_;
+  WornSensors sensors_;
   model::HumanHand hand_;
   Pose X_WH_grasp_ = Pose::Identity(), X_WH_before_ = X_WH_grasp_, X_WH_rest_ = X_WH_grasp_;
   std::array<double, model::finger_count> closure_{};
-  std::array<Pose, 4> mounting_;  // X_FS of each sensor on its finger or on the back of the hand
 };
 
 }  // namespace prehend::glove

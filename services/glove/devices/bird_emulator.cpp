@@ -180,7 +180,7 @@ void Emulator::change(std::uint8_t parameter, std::string_view value) {
 
 std::vector<std::string> Emulator::measure(const Frame& frame, Duration now) {
   now_ = now;
-  readings_ = frame.readings;
+  readings_ = (frame.left ? mirrored(frame, options_.left_to_right_T) : frame).readings;
   held_ = frame.held.value_or(std::vector<std::uint8_t>());
   const bool due = measurements_++ % static_cast<std::uint64_t>(report_every_) == 0;
   if (!streaming() || !due || now_ < busy_until_) return {};

@@ -12,6 +12,8 @@ namespace prehend::glove::bird {
 struct EmulatorOptions {
   std::vector<Site> sites = usual_sites();  // of the units, in the order of their addresses
   bool extended = false;                    // has an extended range transmitter
+  /// Of the mirror in which the source's right hand is the left one that wears the sensors.
+  Eigen::Vector3d left_to_right_T = Eigen::Vector3d::UnitX();
 };
 
 /// A tracker. Starts as one does when it is switched on: only the first unit runs, point mode, 36

@@ -101,8 +101,6 @@ struct DeviceKind {
   std::string_view address{};
   /// It is the hand of the scene's demonstrator, whose measures are known: nobody calibrates it.
   bool synthetic = false;
-  /// It may be worn on a left hand, too.
-  bool left = true;
   /// It can hold fingers back.
   bool feels = false;
   /// The kind of tracker on its back, at glove.wrist_port, that says where the hand is, since the

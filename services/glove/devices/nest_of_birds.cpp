@@ -360,7 +360,9 @@ Expected<std::unique_ptr<Device>> create_nest_of_birds(const DeviceOptions& opti
 
 std::unique_ptr<Emulator> emulate_nest_of_birds(const DeviceOptions& options) {
   return std::make_unique<bird::Emulator>(
-      bird::EmulatorOptions{.sites = options.sites, .extended = options.range == 144});
+      bird::EmulatorOptions{.sites = options.sites,
+                            .extended = options.range == 144,
+                            .left_to_right_T = left_to_right(options.X_WT)});
 }
 
 }  // namespace prehend::glove

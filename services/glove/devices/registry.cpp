@@ -2,6 +2,7 @@
 
 #include "common/base/log.hpp"
 #include "common/serial/pseudo_terminal.hpp"
+#include "services/glove/core/carrying_hand.hpp"
 #include "services/glove/core/synthetic_hand.hpp"
 #include "services/glove/devices/datagrams.hpp"
 #include "services/glove/devices/device.hpp"
@@ -27,11 +28,15 @@ Expected<std::unique_ptr<Device>> create_topic(const DeviceOptions&) {
 }
 
 Expected<std::unique_ptr<FrameSource>> synthetic_source(const DeviceOptions& options) {
-  auto hand =
-      SyntheticHand::create(options.scene, options.catalogue,
-                            {.X_WT = options.X_WT, .rate = options.rate, .seed = options.seed});
-  if (!hand) return tl::unexpected(hand.error());
-  return std::make_unique<SyntheticHand>(std::move(*hand));
+  const auto made = [](auto hand) -> Expected<std::unique_ptr<FrameSource>> {
+    if (!hand) return tl::unexpected(hand.error());
+    return std::make_unique<typename decltype(hand)::value_type>(std::move(*hand));
+  };
+  const SyntheticOptions all{
+      .X_WT = options.X_WT, .rate = options.rate, .seed = options.seed, .left = options.left};
+  if (!options.scene.demonstrator.carry_W.isZero())
+    return made(CarryingHand::create(options.scene, options.catalogue, all));
+  return made(SyntheticHand::create(options.scene, options.catalogue, all));
 }
 
 Expected<std::unique_ptr<Device>> create_synthetic(const DeviceOptions& options) {
@@ -77,7 +82,6 @@ const std::vector<DeviceKind>& device_kinds() {
        .create = create_synthetic,
        .source = synthetic_source,
        .synthetic = true,
-       .left = false,
        .keys = {"glove.rate"}},
       {.name = "nest_of_birds",
        .help = "magnetic sensors on a serial port",

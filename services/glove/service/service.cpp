@@ -24,9 +24,6 @@ Expected<std::unique_ptr<Service>> Service::create(service::Shell& shell) {
   const std::string& side = shell.config().text("glove.hand");
   if (side != "right" && side != "left")
     return wrong_use("'" + side + "' is no hand", "glove.hand", "choose right or left");
-  if (side == "left" && !kind->left)
-    return wrong_use(fmt::format("the {} hand is a right one", kind->name), "glove.hand",
-                     "choose right");
   auto options = device_options(shell.config());
   if (!options) return tl::unexpected(options.error());
   const std::string& user = shell.config().text("glove.user");

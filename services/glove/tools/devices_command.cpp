@@ -15,14 +15,12 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 Json to_json(const DeviceKind& kind) {
-  Json hands{"right"};
-  if (kind.left) hands.push_back("left");
   return {{"name", kind.name},
           {"help", kind.help},
           {"line", line_names.name(kind.line)},
           {"emulator", kind.emulate != nullptr},
           {"from_scene", kind.synthetic},
-          {"hands", hands},
+          {"hands", {"right", "left"}},
           {"tracker", kind.tracker.empty() ? Json(nullptr) : Json(kind.tracker)},
           {"keys", kind.keys}};
 }

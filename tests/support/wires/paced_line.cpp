@@ -47,6 +47,7 @@ class FarEnd {
       if (!terminal) return tl::unexpected(terminal.error());
       path_ = terminal->path();
       plugged_ = true;
+      plugged_.notify_one();
       return std::make_unique<serial::PseudoTerminal>(std::move(*terminal));
     };
     thread_ = std::jthread([this](const std::stop_token& stop) {
@@ -89,7 +90,7 @@ Cycle measure_cycle(const WiredHand& wired, int baud, double rate, double second
     std::this_thread::sleep_until(next);
     line.exchange(std::chrono::time_point_cast<Duration>(std::chrono::system_clock::now()));
     if (driver->phase() != robot::Phase::ready) {
-      if (!ready && next < begin + gets_ready_in) continue;
+      if (!ready && std::chrono::steady_clock::now() < begin + gets_ready_in) continue;
       cycle.trouble = driver->trouble();
       return cycle;
     }

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "common/model/placement.hpp"
+#include "services/glove/core/mirrored_scene.hpp"
 #include "services/glove/core/processor.hpp"
 #include "tests/support/paths/paths.hpp"
 
@@ -68,10 +69,13 @@ TEST_F(EveryObject, GivesFiniteFramesInOrder) {
 
 TEST_F(EveryObject, GraspsWhereTheObjectStands) {
   for (const auto& object : known.objects())
-    for (const double yaw : {0.0, 0.4, 1.5, 3.0}) {
-      const model::Scene scene = scene_with(object, yaw);
-      const auto hand = SyntheticHand::create(scene, known, {.X_WT = X_WT});
+    for (const auto& [yaw, left] :
+         {std::pair(0.0, false), {0.4, false}, {0.4, true}, {1.5, false}, {3.0, false}}) {
+      const model::Scene room = scene_with(object, yaw);
+      const auto hand = SyntheticHand::create(room, known, {.X_WT = X_WT, .left = left});
       ASSERT_TRUE(hand) << hand.error().message();
+      // A left hand does there what a right one does in the mirror.
+      const model::Scene scene = left ? mirrored(room, X_WT) : room;
       const Pose X_OG = scene.objects[0].X_WO.inverse() * hand->grasp() * hand->model().X_HG();
       const auto nearest = model::nearest_grasp(object.shape, X_OG, model::Reach{});
       ASSERT_TRUE(nearest);

@@ -116,6 +116,28 @@ TEST(NestOfBirds, StreamsEveryFormatAndStartsQuickly) {
   }
 }
 
+// Whose frames say that their left hand was mirrored: the sensors are where the left one has them,
+// and the glove mirrors them again.
+TEST(NestOfBirds, ALeftHandWearsItsEmulator) {
+  Frame right = still_hand();
+  right.left = true;
+  const testing::StillHand hand(right);
+  DeviceOptions options;
+  options.port = link_path("left");
+  options.X_WT =
+      make_pose({0.1, 0.4, 0.3}, Eigen::Quaterniond(Eigen::AngleAxisd(0.3, Vector3d::UnitZ())));
+  const EmulationOptions line = emulation_of(*find_device("nest_of_birds"), options, options.port);
+  const testing::EmulatedDevice tracker(line, hand);
+  Listener listener;
+  const auto device = make(options);
+  device->start(listener.sink());
+  ASSERT_TRUE(listener.frames(1));
+  const Frame raw = listener.all().back();
+  EXPECT_FALSE(raw.left);
+  EXPECT_GT((raw.readings[0].p_TS - right.readings[0].p_TS).norm(), 0.1);
+  expect_still_hand(mirrored(raw, left_to_right(options.X_WT)));
+}
+
 TEST(NestOfBirds, CountsGarbageAndGoesOn) {
   const auto link = link_path("garbage");
   const Tracker tracker(link, {.garbage = 0.05, .drop_bytes = 0.05});

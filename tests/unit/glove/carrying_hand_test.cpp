@@ -1,0 +1,106 @@
+// A person who carries something between both palms: both press it all the way, from the side at
+// which they are, whatever its size and wherever it stands; smooth, and back again the next time.
+#include "services/glove/core/carrying_hand.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "services/glove/core/mirrored_scene.hpp"
+
+namespace prehend::glove {
+namespace {
+
+using Eigen::Vector3d;
+
+const Pose X_WT = make_pose(Vector3d(0.1, 0.45, 0.30));
+
+struct Room {
+  model::Catalogue catalogue;
+  model::Scene scene;
+};
+
+/// A crate of that width, m, which is to be carried.
+Room with_crate(double width, const Vector3d& carry_W) {
+  model::CatalogueObject crate;
+  crate.name = "Crate";
+  crate.shape = {model::ShapeKind::box, Vector3d(width, 0.2, 0.2)};
+  Room room{model::Catalogue({crate}), {}};
+  room.scene.objects.push_back({"Crate", make_pose(Vector3d(0.05, -0.04, 0.1))});
+  room.scene.demonstrator.target = "Crate";
+  room.scene.demonstrator.carry_W = carry_W;
+  return room;
+}
+
+CarryingHand hand_of(const Room& room, bool left) {
+  auto hand =
+      CarryingHand::create(room.scene, room.catalogue, {.X_WT = X_WT, .rate = 60, .left = left});
+  if (!hand) throw std::runtime_error(hand.error().message());
+  return std::move(*hand);
+}
+
+/// Where the palm's grasp frame is, m. A left hand is seen in the mirror.
+Vector3d palm(const CarryingHand& hand, double time, bool left) {
+  Vector3d p_W = (hand.hand(time).X_WH * model::HumanHand(1).X_HG()).translation();
+  if (left) p_W.x() = 2 * X_WT.translation().x() - p_W.x();
+  return p_W;
+}
+
+TEST(CarryingHand, PressesFromBothSidesAllTheWay) {
+  for (const double width : {0.25, 0.30, 0.45})
+    for (const Vector3d& carry_W : {Vector3d(0.3, 0, 0), Vector3d(0, 0.2, 0)}) {
+      const Room room = with_crate(width, carry_W);
+      const CarryingHand right = hand_of(room, false), left = hand_of(room, true);
+      const Vector3d stood = room.scene.objects[0].X_WO.translation();
+      const double apart = width - 2 * (room.scene.demonstrator.reach.engage + 0.03);
+      double highest = 0, farthest = 0;
+      for (double t = 4.5; t < 10.6; t += 0.01) {  // from held to set down
+        const Vector3d r = palm(right, t, false), l = palm(left, t, true);
+        EXPECT_NEAR(r.x() - l.x(), apart, 1e-9) << t;
+        EXPECT_NEAR((r - l).tail<2>().norm(), 0, 1e-9) << t;
+        const Vector3d middle = (r + l) / 2 - stood;
+        highest = std::max(highest, middle.z());
+        farthest = std::max(farthest, middle.head<2>().norm());
+      }
+      EXPECT_NEAR(highest, 0.12, 1e-9);
+      EXPECT_NEAR(farthest, carry_W.norm(), 1e-9);
+      // The palms look at each other, and thumbs up.
+      const Pose X_WH = right.hand(5).X_WH;
+      EXPECT_TRUE(X_WH.linear().col(2).isApprox(Vector3d::UnitX()));
+      EXPECT_TRUE(X_WH.linear().col(1).isApprox(Vector3d::UnitZ()));
+    }
+}
+
+TEST(CarryingHand, IsSmoothAndComesBack) {
+  const Room room = with_crate(0.3, {0.3, 0, 0});
+  const CarryingHand hand = hand_of(room, false);
+  const double cycle = CarryingHand::cycle();
+  for (double t = 0; t < 2 * cycle; t += 0.005)
+    EXPECT_LT((palm(hand, t + 0.005, false) - palm(hand, t, false)).norm(), 0.005 * 0.6) << t;
+  EXPECT_LT((palm(hand, 2 * cycle, false) - palm(hand, 0, false)).norm(), 1e-6);
+  EXPECT_NEAR((palm(hand, cycle, false) - palm(hand, 0, false)).x(), 0.3, 1e-6);
+}
+
+TEST(CarryingHand, FramesOfALeftHandSayThatTheyAreMirrored) {
+  const Room room = with_crate(0.3, {0.3, 0, 0});
+  EXPECT_TRUE(hand_of(room, true).frame(7)->left);
+  EXPECT_FALSE(hand_of(room, false).frame(7)->left);
+  Room empty = room;
+  empty.scene.objects.clear();
+  EXPECT_FALSE(CarryingHand::create(empty.scene, empty.catalogue, {.X_WT = X_WT}));
+}
+
+TEST(MirroredScene, IsTheSameAgainInTheMirror) {
+  model::Scene scene = with_crate(0.3, {0.3, 0.1, 0}).scene;
+  scene.objects[0].X_WO =
+      make_pose({0.2, 0.1, 0.1}, Eigen::Quaterniond(Eigen::AngleAxisd(0.4, Vector3d::UnitZ())));
+  const model::Scene once = mirrored(scene, X_WT), twice = mirrored(once, X_WT);
+  EXPECT_NEAR(once.objects[0].X_WO.translation().x(), 0, 1e-12);
+  EXPECT_NEAR(once.objects[0].X_WO.linear().determinant(), 1, 1e-12);
+  EXPECT_TRUE(twice.objects[0].X_WO.isApprox(scene.objects[0].X_WO));
+  EXPECT_TRUE(twice.demonstrator.carry_W.isApprox(scene.demonstrator.carry_W));
+  EXPECT_NEAR(twice.demonstrator.grasp_yaw, scene.demonstrator.grasp_yaw, 1e-12);
+}
+
+}  // namespace
+}  // namespace prehend::glove
