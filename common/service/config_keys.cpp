@@ -93,6 +93,8 @@ const std::vector<ConfigKey>& config_keys() {
 
       {"simulation.hand", Text(""), "kind of robot hand: the name of a folder, or its path"},
       {"simulation.hand_name", Text("hand"), "key of robot/command"},
+      {"simulation.hands", Names{},
+       "several hands in one world, each NAME:HAND, as left:barrett_left; none: hand and hand_name"},
       {"simulation.rate", 500.0, "Hz, physics steps"},
       {"simulation.state_rate", 100.0, "Hz, robot/state and object/state"},
       {"simulation.brake", 20.0, "m/s², by which the arm brakes at a stop; else 10"},

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
+#include <string_view>
 
 #include "common/grasping/blocking.hpp"
 
@@ -47,9 +49,12 @@ bool has_moved(const model::HandModel& hand, const VectorXd& joint, const Vector
   return false;
 }
 
-bool is_gripped(const std::vector<analysis::Contact>& contacts) {
-  return std::any_of(contacts.begin(), contacts.end(),
-                     [&](const auto& contact) { return contact.link != contacts.front().link; });
+/// By this hand, with two links at least.
+bool is_gripped(const std::vector<analysis::Contact>& contacts, int hand) {
+  std::set<std::string_view> links;
+  for (const analysis::Contact& contact : contacts)
+    if (contact.hand == hand) links.insert(contact.link);
+  return links.size() > 1;
 }
 
 }  // namespace
@@ -64,19 +69,21 @@ GraspVerdict judge(Closure& closure) {
     verdict.quality = std::move(*quality);
   for (const analysis::Contact& contact : closure.contacts)
     verdict.penetration = std::max(verdict.penetration, contact.depth);
-  const model::HandModel& hand = closure.world->hand();
-  if (const auto blocking = grasping::find_blocking(hand, closure.world->hand_motion().joint))
+  const model::HandModel& hand = closure.world->hand(closure.hand);
+  const auto joint = closure.world->hand_motion(closure.hand).joint;
+  if (const auto blocking = grasping::find_blocking(hand, joint))
     verdict.blocking = grasping::to_string(*blocking, hand);
   verdict.hold = grasping::hold_test(*closure.world, closure.body);
   return verdict;
 }
 
 std::optional<int> ClosureDetector::update(const grasping::World& world) {
-  const grasping::HandMotion motion = world.hand_motion();
-  const VectorXd& command = world.commanded_dof();
+  const model::HandModel& hand = world.hand(hand_);
+  const grasping::HandMotion motion = world.hand_motion(hand_);
+  const VectorXd& command = world.commanded_dof(hand_);
   if (judged_) {
     for (Index i = 0; i < motion.dof.size(); ++i) {
-      const model::HandDof& dof = world.hand().dofs()[static_cast<std::size_t>(i)];
+      const model::HandDof& dof = hand.dofs()[static_cast<std::size_t>(i)];
       if (dof.closing != 0 &&
           std::abs(motion.dof[i] - (*judged_)[i]) > anew * model::radian_of(dof)) {
         judged_.reset();
@@ -84,10 +91,10 @@ std::optional<int> ClosureDetector::update(const grasping::World& world) {
       }
     }
   }
-  const std::vector<bool> presses = ahead(world.hand(), command, motion.dof, pressing);
+  const std::vector<bool> presses = ahead(hand, command, motion.dof, pressing);
   const auto rested = [&](Rest& rest, double margin, double wanted) {
-    if (has_moved(world.hand(), motion.joint, rest.joint, presses, margin) || judged_ ||
-        any(ahead(world.hand(), command, rest.command, still_closing)) || !any(presses)) {
+    if (has_moved(hand, motion.joint, rest.joint, presses, margin) || judged_ ||
+        any(ahead(hand, command, rest.command, still_closing)) || !any(presses)) {
       rest = {0, motion.joint, command};
       return false;
     }
@@ -98,7 +105,7 @@ std::optional<int> ClosureDetector::update(const grasping::World& world) {
   const bool trembling = rested(trembling_, still_closing, long_window);
   if (!steady && !trembling) return std::nullopt;
   for (int body = 0; body < world.body_count(); ++body)
-    if (is_gripped(world.contacts(body))) {
+    if (is_gripped(world.contacts(body), hand_)) {
       judged_ = motion.dof;
       return body;
     }

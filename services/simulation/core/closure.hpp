@@ -19,13 +19,14 @@ namespace prehend::simulation {
 struct Closure {
   std::uint64_t number = 0;  // counts closures
   Time time{};               // of the world
+  int hand = 0;              // that has closed
   Command command;           // the last one before it
   int body = 0;
   grasping::Body object;
   Eigen::VectorXd dof;  // rad
   Pose X_BO = Pose::Identity();
-  std::vector<analysis::Contact> contacts;
-  std::unique_ptr<grasping::World> world;  // a copy, to be used up
+  std::vector<analysis::Contact> contacts;  // of all hands
+  std::unique_ptr<grasping::World> world;   // a copy, to be used up
 };
 
 struct GraspVerdict {
@@ -48,7 +49,8 @@ GraspVerdict judge(Closure& closure);
 /// rad.
 class ClosureDetector {
  public:
-  explicit ClosureDetector(double time_step) : time_step_(time_step) {}
+  /// hand: its number in the world.
+  explicit ClosureDetector(double time_step, int hand = 0) : time_step_(time_step), hand_(hand) {}
 
   /// The body that the hand has just closed on. Once a closure: not again until a closing DoF has
   /// moved by more than 0.1 rad.
@@ -63,6 +65,7 @@ class ClosureDetector {
   };
 
   double time_step_;
+  int hand_;
   Rest steady_, trembling_;
   std::optional<Eigen::VectorXd> judged_;  // DoFs at the last closure
 };

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "common/base/motion.hpp"
+
 namespace prehend::simulation {
 namespace {
 
@@ -19,6 +21,8 @@ const Duration max_jump = std::chrono::seconds(60);        // of the lockstep cl
 
 /// Behind and above the table's middle, where nothing stands.
 const Pose resting_place = make_pose(Vector3d(0, -0.4, 0.6));
+constexpr double apart = 0.4;                       // m, of hands that rest
+constexpr grasping::BaseBody pushed_base{10, 0.2};  // as an arm's last links: kg, kg m²
 
 bool differ(const Pose& a, const Pose& b) {
   return (a.translation() - b.translation()).norm() > noticed ||
@@ -41,23 +45,45 @@ Expected<std::unique_ptr<Simulation>> Simulation::create(
     std::unique_ptr<carrying::CarryingArm> arm) {
   grasping::WorldOptions how{.rate = options.rate, .brake = options.brake};
   if (arm) how.base = carrying::CarryingArm::base();
+  if (options.push) {
+    if (arm) return fail("an arm carries one hand alone", "simulation");
+    how.push = options.push;
+    how.base = pushed_base;
+  }
   auto world = grasping::World::create(hand, arm ? arm->home() : resting_place,
                                        hand.postures().at("open"), how);
   if (!world) return tl::unexpected(world.error());
-  return std::unique_ptr<Simulation>(
-      new Simulation(hand, options, std::move(*world), std::move(arm)));
+  return std::unique_ptr<Simulation>(new Simulation(options, std::move(*world), std::move(arm)));
 }
 
-Simulation::Simulation(const model::HandModel& hand, const Options& options,
-                       std::unique_ptr<grasping::World> world,
+Simulation::Simulation(const Options& options, std::unique_ptr<grasping::World> world,
                        std::unique_ptr<carrying::CarryingArm> arm)
-    : hand_(hand),
-      options_(options),
+    : options_(options),
       world_(std::move(world)),
       arm_(std::move(arm)),
-      detector_(world_->time_step()),
-      touch_(hand.links().size(), world_->time_step()),
-      period_(seconds(world_->time_step())) {}
+      period_(seconds(world_->time_step())) {
+  lead(0);
+}
+
+void Simulation::lead(int hand) {
+  const double dt = world_->time_step();
+  hands_.push_back(
+      {hand, ClosureDetector(dt, hand), TouchSense(world_->hand(hand).links().size(), dt, hand)});
+}
+
+Expected<int> Simulation::add_hand(const model::HandModel& hand) {
+  if (arm_) return fail("an arm carries one hand alone", "simulation");
+  const auto beside = static_cast<double>(hands_.size()) * apart * Vector3d::UnitX();
+  auto added = world_->add_hand(hand, moved(resting_place, beside), hand.postures().at("open"));
+  if (added) lead(*added);
+  return added;
+}
+
+double Simulation::distance_to_hands(int body, double most) const {
+  for (const Led& led : hands_)
+    most = std::min(most, world_->distance_to_hand(body, most, led.number));
+  return most;
+}
 
 Expected<void> Simulation::build(const model::Scene& scene,
                                  const grasping::CatalogueBodies& catalogue) {
@@ -76,7 +102,7 @@ void Simulation::put_back() {
   for (std::size_t i = 0; i < stood_.size(); ++i) {
     const int body = static_cast<int>(i);
     const Pose now = world_->body_motion(body).X_WO;
-    if (world_->distance_to_hand(body, options_.far_away) < options_.far_away) {
+    if (distance_to_hands(body, options_.far_away) < options_.far_away) {
       if (!stood_[i]) stood_[i] = now;
     } else if (const auto stood = std::exchange(stood_[i], std::nullopt)) {
       if (differ(now, *stood) && !placed_.contains(world_->body(body).name))
@@ -92,7 +118,7 @@ Expected<bool> Simulation::see(const grasping::Body& body, const Pose& X_WO) {
   const Pose place = standing(body.shape, X_WO);
   if (const int i = find(body.name); i >= 0) {
     if (differ(world_->body_motion(i).X_WO, place) && !placed_.contains(body.name) &&
-        world_->distance_to_hand(i, options_.far_away) >= options_.far_away)
+        distance_to_hands(i, options_.far_away) >= options_.far_away)
       world_->move_body(i, place);
     return false;
   }
@@ -115,19 +141,21 @@ Expected<void> Simulation::is_free(const grasping::Body& body, const Pose& X_WO,
   const auto radius = [](const model::Shape& shape) {
     return model::half_extents(shape).head<2>().norm();
   };
-  const auto apart = [&](const Vector3d& p) {
+  const auto away = [&](const Vector3d& p) {
     return (p - X_WO.translation()).head<2>().norm() - radius(body.shape);
   };
   for (int i = 0; i < world_->body_count(); ++i)
     if (i != itself &&
-        apart(world_->body_motion(i).X_WO.translation()) < radius(world_->body(i).shape))
+        away(world_->body_motion(i).X_WO.translation()) < radius(world_->body(i).shape))
       return fail("cannot stand there", body.name, world_->body(i).name + " does");
-  const grasping::HandMotion hand = world_->hand_motion();
   const double top = 2 * model::half_extents(body.shape).z();
-  for (const Pose& X_BL : hand_.link_poses(hand.joint)) {
-    const Vector3d p = hand.X_WB * X_BL.translation();
-    if (apart(p) < options_.far_away && p.z() < top + options_.far_away)
-      return fail("cannot stand there", body.name, "the hand is in the way");
+  for (const Led& led : hands_) {
+    const grasping::HandMotion hand = world_->hand_motion(led.number);
+    for (const Pose& X_BL : world_->hand(led.number).link_poses(hand.joint)) {
+      const Vector3d p = hand.X_WB * X_BL.translation();
+      if (away(p) < options_.far_away && p.z() < top + options_.far_away)
+        return fail("cannot stand there", body.name, "the hand is in the way");
+    }
   }
   return {};
 }
@@ -138,7 +166,7 @@ Expected<bool> Simulation::place(const grasping::Body& body, const Pose& X_WO) {
   const Pose there = standing(body.shape, X_WO);
   const int known = find(body.name);
   if (const auto free = is_free(body, there, known); !free) return tl::unexpected(free.error());
-  if (known >= 0 && world_->distance_to_hand(known, in_hand) < in_hand)
+  if (known >= 0 && distance_to_hands(known, in_hand) < in_hand)
     return fail("cannot be taken", body.name, "the hand has it");
   placed_.insert(body.name);
   if (known < 0) return add(body, there);
@@ -146,54 +174,60 @@ Expected<bool> Simulation::place(const grasping::Body& body, const Pose& X_WO) {
   return false;
 }
 
-Expected<void> Simulation::accept(const Command& command, Time now) {
-  if (command.model != hand_.name()) return fail("command for another model");
-  if (command.dof.size() != static_cast<Eigen::Index>(hand_.dofs().size()))
+Expected<void> Simulation::accept(const Command& command, Time now, int hand) {
+  Led& one = led(hand);
+  const model::HandModel& model = world_->hand(hand);
+  if (command.model != model.name()) return fail("command for another model");
+  if (command.dof.size() != static_cast<Eigen::Index>(model.dofs().size()))
     return fail("command of wrong length");
   if (!command.dof.allFinite() || !is_finite(command.X_WB)) return fail("command not finite");
   if (command.X_WB.translation().norm() > far_off) return fail("command far away");
-  if (auto limited = world_->limit_effort(command.effort); !limited)
+  if (auto limited = world_->limit_effort(command.effort, hand); !limited)
     return fail("command with impossible efforts", limited.error().where);
-  if (!command_ && !arm_) approach(command);
-  if (auto taken = world_->command(command.X_WB, command.dof); !taken) {
-    world_->limit_effort(command_ ? command_->effort : Eigen::VectorXd());
+  if (!one.command && !arm_) approach(command, hand);
+  if (auto taken = world_->command(command.X_WB, command.dof, Vector3d::Zero(), hand); !taken) {
+    world_->limit_effort(one.command ? one.command->effort : Eigen::VectorXd(), hand);
     return fail("command outside limits", taken.error().where, taken.error().hint);
   }
   if (arm_) arm_->follow(command.X_WB);
-  command_ = command;
-  accepted_ = now;
-  holding_ = braking_ = false;
+  one.command = command;
+  one.accepted = now;
+  one.holding = one.braking = false;
   return {};
 }
 
-void Simulation::hold() {
-  world_->brake();
+void Simulation::hold(int hand) {
+  world_->brake(hand);
   if (arm_) arm_->brake();
-  holding_ = braking_ = true;
+  led(hand).holding = led(hand).braking = true;
 }
 
 /// The base must not come back to where it was when it was told to stay, 5 cm behind at 1 m/s.
-void Simulation::brake() {
-  const Pose before = world_->commanded_base();
-  world_->hold_still();
+void Simulation::brake(Led& led) {
+  const Pose before = world_->commanded_base(led.number);
+  world_->hold_still(led.number);
   if (arm_) {
-    braking_ = !arm_->rests();
+    led.braking = !arm_->rests();
     return;
   }
-  const Pose& now = world_->commanded_base();
-  braking_ = (now.translation() - before.translation()).norm() > 1e-6 ||
-             angle_between(now.linear(), before.linear()) > 1e-6;
+  const Pose& now = world_->commanded_base(led.number);
+  led.braking = (now.translation() - before.translation()).norm() > 1e-6 ||
+                angle_between(now.linear(), before.linear()) > 1e-6;
 }
 
-void Simulation::approach(const Command& command) {
-  if (world_->hand_touches_anything()) return;
-  const grasping::HandMotion before = world_->hand_motion();
-  world_->place_hand(command.X_WB, before.dof);
+void Simulation::approach(const Command& command, int hand) {
+  if (world_->hand_touches_anything(hand)) return;
+  for (const Led& other : hands_)
+    if (other.number != hand &&
+        (world_->base(other.number).translation() - command.X_WB.translation()).norm() < apart / 2)
+      return;
+  const grasping::HandMotion before = world_->hand_motion(hand);
+  world_->place_hand(command.X_WB, before.dof, hand);
   const double margin = 0.02;
   bool free = command.X_WB.translation().z() > 0;
   for (int i = 0; i < world_->body_count(); ++i)
-    free = free && world_->distance_to_hand(i, margin) >= margin;
-  if (!free) world_->place_hand(before.X_WB, before.dof);
+    free = free && world_->distance_to_hand(i, margin, hand) >= margin;
+  if (!free) world_->place_hand(before.X_WB, before.dof, hand);
 }
 
 Duration Simulation::follow(Time now, bool lockstep) {
@@ -213,31 +247,40 @@ Duration Simulation::follow(Time now, bool lockstep) {
 bool Simulation::step() {
   if (time_ + period_ > goal_) return false;
   time_ += period_;
-  if (!holding_ && time_ - accepted_ > options_.stale) {
-    world_->hold_still();
+  for (Led& led : hands_) {
+    if (led.holding || time_ - led.accepted <= options_.stale) continue;
+    world_->hold_still(led.number);
     if (arm_) arm_->brake();
-    holding_ = true;
+    led.holding = true;
   }
   if (arm_) arm_->step(*world_);
   world_->step();
-  touch_.update(world_->touches(), world_->base());
-  if (braking_) brake();
-  if (closures_ == 0 && time_ - looked_ >= look) put_back();
-  if (const auto body = detector_.update(*world_); body && command_) {
-    const grasping::HandMotion motion = world_->hand_motion();
-    Closure closure;
-    closure.number = closures_++;
-    closure.time = time_;
-    closure.command = *command_;
-    closure.body = *body;
-    closure.object = world_->body(*body);
-    closure.dof = motion.dof;
-    closure.X_BO = motion.X_WB.inverse() * world_->body_motion(*body).X_WO;
-    closure.contacts = world_->contacts(*body);
-    closure.world = world_->clone();
-    closure_ = std::move(closure);
+  const std::vector<grasping::Touch> touches = world_->touches();
+  for (Led& led : hands_) {
+    led.touch.update(touches, world_->base(led.number));
+    if (led.braking) brake(led);
   }
+  if (closures_ == 0 && time_ - looked_ >= look) put_back();
+  for (Led& led : hands_) look_for_closure(led);
   return true;
+}
+
+void Simulation::look_for_closure(Led& led) {
+  const auto body = led.detector.update(*world_);
+  if (!body || !led.command) return;
+  const grasping::HandMotion motion = world_->hand_motion(led.number);
+  Closure closure;
+  closure.number = closures_++;
+  closure.time = time_;
+  closure.hand = led.number;
+  closure.command = *led.command;
+  closure.body = *body;
+  closure.object = world_->body(*body);
+  closure.dof = motion.dof;
+  closure.X_BO = motion.X_WB.inverse() * world_->body_motion(*body).X_WO;
+  closure.contacts = world_->contacts(*body);
+  closure.world = world_->clone();
+  led.closure = std::move(closure);
 }
 
 std::optional<carrying::ArmMotion> Simulation::arm_motion() const {
@@ -246,7 +289,9 @@ std::optional<carrying::ArmMotion> Simulation::arm_motion() const {
 }
 
 std::optional<Closure> Simulation::take_closure() {
-  return std::exchange(closure_, std::nullopt);
+  for (Led& led : hands_)
+    if (led.closure) return std::exchange(led.closure, std::nullopt);
+  return std::nullopt;
 }
 
 }  // namespace prehend::simulation

@@ -21,12 +21,13 @@ struct Sum {
 
 }  // namespace
 
-TouchSense::TouchSense(std::size_t links, double time_step)
-    : time_step_(time_step), pads_(links), allowed_(links), slid_(links) {}
+TouchSense::TouchSense(std::size_t links, double time_step, int hand)
+    : time_step_(time_step), hand_(hand), pads_(links), allowed_(links), slid_(links) {}
 
 void TouchSense::update(const std::vector<grasping::Touch>& touches, const Pose& X_WB) {
   std::vector<Sum> sums(pads_.size());
   for (const grasping::Touch& touch : touches) {
+    if (touch.hand != hand_) continue;
     Sum& sum = sums[static_cast<std::size_t>(touch.link)];
     const double pressure = touch.force_W.dot(touch.normal_W);
     sum.force_W += touch.force_W;

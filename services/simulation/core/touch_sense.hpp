@@ -23,7 +23,8 @@ struct PadTouch {
 /// more than 5 mm/s for 10 ms.
 class TouchSense {
  public:
-  TouchSense(std::size_t links, double time_step);
+  /// hand: its number in the world.
+  TouchSense(std::size_t links, double time_step, int hand = 0);
 
   /// After each step of the world, with World::touches().
   void update(const std::vector<grasping::Touch>& touches, const Pose& X_WB);
@@ -32,6 +33,7 @@ class TouchSense {
 
  private:
   double time_step_;
+  int hand_;
   std::vector<PadTouch> pads_;
   std::vector<double> allowed_;  // N, of friction, filtered as the force is
   std::vector<double> slid_;     // s, for which it has

@@ -19,29 +19,51 @@ constexpr std::size_t max_waiting = 4;  // closures for the judge
 
 Expected<std::unique_ptr<Service>> Service::create(service::Shell& shell) {
   const service::Config& config = shell.config();
-  const std::string& kind = config.text("simulation.hand");
-  if (kind.empty()) return wrong_use("is no hand", "simulation.hand", model::hand_hint());
   if (!(config.number("simulation.state_rate") > 0))
     return wrong_use("must be positive", "simulation.state_rate");
-  auto hand = model::HandModel::load(model::hand_directory(kind));
-  if (!hand) return tl::unexpected(hand.error());
+  auto hands = hands_of(config);
+  if (!hands) return tl::unexpected(hands.error());
   auto catalogue = model::Catalogue::load(config.path("lab.catalogue"));
   if (!catalogue) return tl::unexpected(catalogue.error());
   auto bodies = grasping::CatalogueBodies::create(*catalogue);
   if (!bodies) return tl::unexpected(bodies.error());
   std::unique_ptr<Service> made(
-      new Service(shell, std::move(*hand), std::move(*catalogue), std::move(*bodies)));
+      new Service(shell, std::move(*hands), std::move(*catalogue), std::move(*bodies)));
   if (auto started = made->start(); !started) return tl::unexpected(started.error());
   return made;
 }
 
-Service::Service(service::Shell& shell, model::HandModel hand, model::Catalogue catalogue,
+/// Of simulation.hands, or the one of simulation.hand.
+Expected<std::deque<Service::Hand>> Service::hands_of(const service::Config& config) {
+  std::vector<std::string> entries = config.names("simulation.hands");
+  const char* key = "simulation.hands";
+  if (entries.empty()) {
+    key = "simulation.hand";
+    entries = {config.text("simulation.hand_name") + ":" + config.text(key)};
+  }
+  std::deque<Hand> hands;
+  for (const std::string& entry : entries) {
+    const std::size_t colon = entry.find(':');
+    const std::string name = entry.substr(0, colon);
+    const std::string kind = colon == std::string::npos ? "" : entry.substr(colon + 1);
+    if (kind.empty())
+      return wrong_use("is no hand", entries.size() > 1 ? key + (": " + entry) : key,
+                       model::hand_hint());
+    for (const Hand& other : hands)
+      if (other.name == name) return wrong_use("two hands are named " + name, key);
+    auto hand = model::HandModel::load(model::hand_directory(kind));
+    if (!hand) return tl::unexpected(hand.error());
+    hands.push_back({name, std::move(*hand)});
+  }
+  return hands;
+}
+
+Service::Service(service::Shell& shell, std::deque<Hand> hands, model::Catalogue catalogue,
                  grasping::CatalogueBodies bodies)
     : shell_(shell),
-      hand_(std::move(hand)),
+      hands_(std::move(hands)),
       catalogue_(std::move(catalogue)),
       bodies_(std::move(bodies)),
-      hand_name_(shell.config().text("simulation.hand_name")),
       hand_state_(shell.publish(dds::robot_state)),
       hand_touch_(shell.publish(dds::robot_touch)),
       object_state_(shell.publish(dds::object_state)),
@@ -66,31 +88,20 @@ Expected<void> Service::start() {
                                     config.number("simulation.brake_turn")};
   if (!(brake.acceleration > 0 && brake.turn_acceleration > 0))
     return wrong_use("must be positive", "simulation.brake, simulation.brake_turn");
-  auto arm = arm_of(config, hand_);
+  auto arm = arm_of(config, hands_.front().model);
   if (!arm) return tl::unexpected(arm.error());
-  auto simulation = Simulation::create(hand_, {.rate = rate, .brake = brake}, std::move(*arm));
+  Options options{.rate = rate, .brake = brake};
+  if (hands_.size() > 1) options.push = push_of_several;
+  auto simulation = Simulation::create(hands_.front().model, options, std::move(*arm));
   if (!simulation) return tl::unexpected(simulation.error());
   simulation_ = std::move(*simulation);
+  for (std::size_t i = 1; i < hands_.size(); ++i)
+    if (auto added = simulation_->add_hand(hands_[i].model); !added)
+      return tl::unexpected(added.error());
   if (simulation_->arm()) arm_.emplace(shell_, *simulation_->arm());
-  if (const auto file = config.path("lab.scene"); !file.empty()) {
-    const auto scene = model::load_scene(file, catalogue_);
-    if (!scene) return tl::unexpected(scene.error());
-    if (auto built = simulation_->build(*scene, bodies_); !built) return built;
-    from_scene_ = true;
-  }
-
-  robot::Robot robot;
-  robot.obey = [this](const v2::HandCommand& message, const gate::Place& place, Time now) {
-    return simulation_->accept(from_message(message, place), now);
-  };
-  robot.where = [this] { return where(); };
-  robot.is_placed = [this] { return simulation_->command().has_value(); };
-  robot.hold = [this] { simulation_->hold(); };
-  robot.rests = [this] { return !simulation_->is_braking(); };
-  robot.go = [this](const gate::Place& place, Time now) { go(place, now); };
-  auto gate = robot::Gatekeeper::create(shell_, hand_, hand_name_, std::move(robot));
-  if (!gate) return tl::unexpected(gate.error());
-  gate_ = std::move(*gate);
+  if (auto built = build(); !built) return built;
+  for (int hand = 0; hand < static_cast<int>(hands_.size()); ++hand)
+    if (auto opened = open_gate(hand); !opened) return opened;
   if (!from_scene_)
     shell_.subscribe(dds::object_detection, std::function([this](const v1::ObjectDetection& message,
                                                                  const dds::SampleInfo& info) {
@@ -106,24 +117,53 @@ Expected<void> Service::start() {
   return {};
 }
 
+Expected<void> Service::build() {
+  const auto file = shell_.config().path("lab.scene");
+  if (file.empty()) return {};
+  const auto scene = model::load_scene(file, catalogue_);
+  if (!scene) return tl::unexpected(scene.error());
+  from_scene_ = true;
+  return simulation_->build(*scene, bodies_);
+}
+
+/// Each hand has its own; a stop is for all.
+Expected<void> Service::open_gate(int hand) {
+  robot::Robot robot;
+  robot.obey = [this, hand](const v2::HandCommand& message, const gate::Place& place, Time now) {
+    return simulation_->accept(from_message(message, place), now, hand);
+  };
+  robot.where = [this, hand] { return where(hand); };
+  robot.is_placed = [this, hand] { return simulation_->command(hand).has_value(); };
+  robot.hold = [this, hand] { simulation_->hold(hand); };
+  robot.rests = [this, hand] { return !simulation_->is_braking(hand); };
+  robot.go = [this, hand](const gate::Place& place, Time now) { go(place, now, hand); };
+  Hand& own = hands_[static_cast<std::size_t>(hand)];
+  auto gate = robot::Gatekeeper::create(shell_, own.model, own.name, std::move(robot));
+  if (!gate) return tl::unexpected(gate.error());
+  own.gate = std::move(*gate);
+  return {};
+}
+
 /// What the hand is told at the moment, which after a silence is to stay; before any command it may
 /// be put anywhere, unless an arm carries it.
-std::optional<gate::Place> Service::where() const {
-  if (!simulation_->command() && !simulation_->arm()) return std::nullopt;
-  return gate::Place{simulation_->world().commanded_dof(), simulation_->world().commanded_base()};
+std::optional<gate::Place> Service::where(int hand) const {
+  if (!simulation_->command(hand) && !simulation_->arm()) return std::nullopt;
+  const grasping::World& world = simulation_->world();
+  return gate::Place{world.commanded_dof(hand), world.commanded_base(hand)};
 }
 
 /// As a command that answers no glove frame.
-void Service::go(const gate::Place& place, Time now) {
-  Command command = simulation_->command().value_or(Command{});
-  command.model = hand_.name();
+void Service::go(const gate::Place& place, Time now, int hand) {
+  Command command = simulation_->command(hand).value_or(Command{});
+  command.model = simulation_->world().hand(hand).name();
   command.stamp = now;
   command.origin = {};
   command.mode = static_cast<int>(v1::MODE_HOLD);
   command.dof = place.dof;
   command.effort = place.effort;
   command.X_WB = place.X_WB;
-  if (auto went = simulation_->accept(command, now); !went) shell_.status().drop(went.error().what);
+  if (auto went = simulation_->accept(command, now, hand); !went)
+    shell_.status().drop(went.error().what);
 }
 
 void Service::on_detection(const v1::ObjectDetection& message) {
@@ -180,11 +220,11 @@ void Service::on_tick(Time now) {
   if (const Duration dropped = simulation_->follow(now, shell_.lockstep()); dropped.count() > 0)
     shell_.status().drop("time (ms)",
                          static_cast<std::uint64_t>(std::max(1.0, 1e3 * to_seconds(dropped))));
-  gate_->tick(now);
+  for (Hand& hand : hands_) hand.gate->tick(now);
   if (scene_changed_) publish_scene();
   while (simulation_->step()) {
     shell_.status().count("steps");
-    if (auto closure = simulation_->take_closure()) judge_soon(std::move(*closure));
+    while (auto closure = simulation_->take_closure()) judge_soon(std::move(*closure));
     if (simulation_->time() >= next_state_) publish_state();
   }
 }
@@ -193,19 +233,7 @@ void Service::publish_state() {
   const Time time = simulation_->time();
   // On a grid of its own, but never trying to make up for time that was dropped.
   next_state_ = std::max(next_state_ + state_period_, time + state_period_ / 2);
-  v1::HandState state = to_message(simulation_->world().hand_motion());
-  state.hand(hand_name_);
-  state.model(hand_.name());
-  state.sequence_number(sequence_);
-  state.stamp_ns(to_ns(time));
-  if (simulation_->command()) state.origin_ns(to_ns(simulation_->command()->origin));
-  hand_state_.publish(state);
-  v1::HandTouch touch = to_message(simulation_->touch(), hand_);
-  touch.hand(hand_name_);
-  touch.sequence_number(sequence_);
-  touch.stamp_ns(state.stamp_ns());
-  touch.origin_ns(state.origin_ns());
-  hand_touch_.publish(touch);
+  for (int hand = 0; hand < static_cast<int>(hands_.size()); ++hand) publish_hand(hand);
   for (int i = 0; i < simulation_->world().body_count(); ++i) {
     v1::ObjectState object =
         to_message(simulation_->world().body(i), simulation_->world().body_motion(i));
@@ -215,6 +243,23 @@ void Service::publish_state() {
   }
   if (arm_) arm_->tell(*simulation_->arm_motion(), simulation_->command(), time);
   ++sequence_;
+}
+
+void Service::publish_hand(int hand) {
+  const Hand& own = hands_[static_cast<std::size_t>(hand)];
+  v1::HandState state = to_message(simulation_->world().hand_motion(hand));
+  state.hand(own.name);
+  state.model(own.model.name());
+  state.sequence_number(sequence_);
+  state.stamp_ns(to_ns(simulation_->time()));
+  if (const auto& command = simulation_->command(hand)) state.origin_ns(to_ns(command->origin));
+  hand_state_.publish(state);
+  v1::HandTouch touch = to_message(simulation_->touch(hand), own.model);
+  touch.hand(own.name);
+  touch.sequence_number(sequence_);
+  touch.stamp_ns(state.stamp_ns());
+  touch.origin_ns(state.origin_ns());
+  hand_touch_.publish(touch);
 }
 
 void Service::publish_scene() {
@@ -263,7 +308,7 @@ void Service::judge_queued() {
 
 void Service::publish_report(const Closure& closure, const GraspVerdict& verdict) {
   v1::GraspReport report = to_message(closure, verdict);
-  report.hand(hand_name_);
+  report.hand(hands_[static_cast<std::size_t>(closure.hand)].name);
   reports_.publish(report);
   log::info("{}: {} contacts, epsilon {:.4f}, {}", closure.object.name, closure.contacts.size(),
             verdict.quality.epsilon, verdict.hold.held ? "held" : verdict.hold.reason);

@@ -27,29 +27,38 @@ class Service {
   Service& operator=(const Service&) = delete;
 
  private:
-  Service(service::Shell& shell, model::HandModel hand, model::Catalogue catalogue,
+  /// A hand of the lab, by its number in the simulation.
+  struct Hand {
+    std::string name;  // key of its topics
+    model::HandModel model;
+    std::unique_ptr<robot::Gatekeeper> gate{};
+  };
+
+  Service(service::Shell& shell, std::deque<Hand> hands, model::Catalogue catalogue,
           grasping::CatalogueBodies bodies);
+  static Expected<std::deque<Hand>> hands_of(const service::Config& config);
   Expected<void> start();
-  std::optional<gate::Place> where() const;
-  void go(const gate::Place& place, Time now);
+  Expected<void> build();
+  Expected<void> open_gate(int hand);
+  std::optional<gate::Place> where(int hand) const;
+  void go(const gate::Place& place, Time now, int hand);
   void on_detection(const v1::ObjectDetection& message);
   void on_order(const v1::OperatorCommand& order, const dds::SampleInfo& info);
   Expected<std::string> place(const v1::OperatorCommand& order, const dds::SampleInfo& info);
   void on_tick(Time now);
   void publish_state();
+  void publish_hand(int hand);
   void publish_scene();
   void judge_soon(Closure closure);
   void publish_report(const Closure& closure, const GraspVerdict& verdict);
   void judge_queued();
 
   service::Shell& shell_;
-  model::HandModel hand_;
+  std::deque<Hand> hands_;      // stable addresses
   model::Catalogue catalogue_;  // what scenes are read by
   grasping::CatalogueBodies bodies_;
-  std::string hand_name_;
   bool from_scene_ = false;
   std::unique_ptr<Simulation> simulation_;
-  std::unique_ptr<robot::Gatekeeper> gate_;
   std::optional<ArmTeller> arm_;  // none: the hand flies
   service::Shell::Output<v1::HandState> hand_state_;
   service::Shell::Output<v1::HandTouch> hand_touch_;
