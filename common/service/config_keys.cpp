@@ -85,6 +85,7 @@ const std::vector<ConfigKey>& config_keys() {
       {"mapping.model", Text(""), "trained mapping model; empty: that of the hand"},
       {"mapping.intelligent", true, "let detections improve the mapping"},
       {"mapping.placement", true, "let them correct the hand's placement as well"},
+      {"mapping.glove", Text(""), "glove.name of the glove that leads; empty: the first that comes"},
       {"mapping.clutch_speed", 0.1, "m/s, at which the hands come together after an interruption"},
       {"mapping.clutch_turn_speed", 0.5, "rad/s, at which their orientations do"},
       {"mapping.clutch_finger_speed", 0.5, "rad/s, at which their fingers do"},

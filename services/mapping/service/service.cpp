@@ -16,6 +16,7 @@
 #include "services/mapping/core/mapping.hpp"
 #include "services/mapping/core/mapping_model.hpp"
 #include "services/mapping/core/mapping_modes.hpp"
+#include "services/mapping/core/mirror.hpp"
 #include "services/mapping/files/mapping_model_file.hpp"
 #include "services/mapping/service/messages.hpp"
 #include "services/mapping/service/trained_model.hpp"
@@ -63,22 +64,32 @@ MappingModes effective(MappingModes modes) {
 
 }  // namespace
 
+/// The hand as the mapping knows it, with its model. Of a mirror image it is the hand itself, seen
+/// in a mirror.
+struct Service::Known {
+  std::string name;  // of the hand that is led
+  std::unique_ptr<const model::HandModel> hand;
+  std::unique_ptr<const MappingModel> model;
+  std::optional<Mirror> mirror;
+
+  static Expected<Known> load(service::Shell& shell);
+};
+
 class Service::Topics {
  public:
-  Topics(service::Shell& shell, std::unique_ptr<const model::HandModel> hand,
-         std::unique_ptr<const MappingModel> model, Mapping mapping, MappingModes modes)
+  Topics(service::Shell& shell, Known known, Mapping mapping, MappingModes modes)
       : shell_(shell),
-        hand_(std::move(hand)),
-        model_(std::move(model)),
+        known_(std::move(known)),
         mapping_(std::move(mapping)),
         modes_(modes),
         hand_name_(shell.config().text("mapping.hand_name")),
+        wanted_glove_(shell.config().text("mapping.glove")),
         output_(shell.publish(dds::robot_command)),
         feedback_(shell.publish(dds::glove_feedback)),
         replies_(shell.publish(dds::operator_reply)),
         last_posture_(shell.now() + start_up) {
     message_.hand(hand_name_);
-    message_.model(hand_->name());
+    message_.model(known_.name);
     shell.subscribe(dds::hand_posture,
                     Handler<v1::HandPosture>([this](auto& s, auto& i) { on_posture(s, i); }));
     shell.subscribe(dds::object_detection,
@@ -111,6 +122,7 @@ class Service::Topics {
 
   void on_posture(const v1::HandPosture& message, const dds::SampleInfo& info) {
     if (info.gone) return;
+    if (!wanted_glove_.empty() && message.glove().to_string() != wanted_glove_) return;
     const Time now = shell_.now();
     service::Status& status = shell_.status();
     heard_.heard(info.participant, now);
@@ -145,8 +157,9 @@ class Service::Topics {
       return;
     }
     if (seen_.size() < max_tracks) seen_[message.track()] = shell_.now();
-    const auto taken = convert::from_message(message).and_then(
-        [&](const Detection& detection) { return mapping_.on_detection(detection); });
+    const auto taken = convert::from_message(message).and_then([&](const Detection& seen) {
+      return mapping_.on_detection(known_.mirror ? known_.mirror->detection(seen) : seen);
+    });
     if (!taken) shell_.status().drop(taken.error().what);
   }
 
@@ -154,7 +167,8 @@ class Service::Topics {
     if (message.hand().to_string() != hand_name_) return;
     if (info.gone) return mapping_.on_candidates_gone(message.track());
     const auto taken =
-        convert::from_message(message, *hand_).and_then([&](model::GraspCandidates planned) {
+        convert::from_message(message, *known_.hand).and_then([&](model::GraspCandidates planned) {
+          if (known_.mirror) planned = known_.mirror->candidates(std::move(planned));
           return mapping_.on_candidates(std::move(planned));
         });
     if (!taken) shell_.status().drop(taken.error().what);
@@ -162,8 +176,9 @@ class Service::Topics {
 
   void on_state(const v1::HandState& message, const dds::SampleInfo& info) {
     if (info.gone || message.hand() != hand_name_) return;
-    const auto taken = state_from_message(message).and_then(
-        [&](const RobotState& state) { return mapping_.on_state(state); });
+    const auto taken = state_from_message(message).and_then([&](const RobotState& state) {
+      return mapping_.on_state(known_.mirror ? known_.mirror->state(state) : state);
+    });
     if (!taken) return shell_.status().drop(taken.error().what);
     dof_ = convert::from_message(message.dof());
   }
@@ -172,7 +187,7 @@ class Service::Topics {
   void on_touch(const v1::HandTouch& message, const dds::SampleInfo& info) {
     if (info.gone || message.hand() != hand_name_ || glove_.empty() || dof_.size() == 0) return;
     if (shell_.now() - last_posture_ > patience) return;
-    const auto felt = feel(*hand_, touch_from_message(message), dof_);
+    const auto felt = feel(*known_.hand, touch_from_message(message), dof_);
     if (!felt) return shell_.status().drop(felt.error().what);
     v1::GloveFeedback feedback = to_message(*felt);
     feedback.glove(glove_);
@@ -270,7 +285,8 @@ class Service::Topics {
     shell_.status().degraded(missing);
   }
 
-  void publish(const Command& command) {
+  void publish(const Command& answer) {
+    const Command command = known_.mirror ? known_.mirror->command(answer) : answer;
     message_.sequence_number(sequence_number_++);
     message_.stamp_ns(to_ns(command.stamp));
     message_.origin_ns(command.origin ? to_ns(*command.origin) : 0);
@@ -285,15 +301,14 @@ class Service::Topics {
   }
 
   service::Shell& shell_;
-  std::unique_ptr<const model::HandModel> hand_;  // the mapping refers to both
-  std::unique_ptr<const MappingModel> model_;
+  Known known_;  // the mapping refers to it
   Mapping mapping_;
   GloveLead gloves_;
   service::Writers heard_;                // of postures
   std::optional<GloveLead::Writer> led_;  // whose posture was answered last
   service::OrderBook orders_;
   MappingModes modes_;
-  std::string hand_name_;
+  std::string hand_name_, wanted_glove_;
   service::Shell::Output<v2::HandCommand> output_;
   service::Shell::Output<v1::GloveFeedback> feedback_;
   service::Shell::Output<v1::OperatorReply> replies_;
@@ -306,22 +321,38 @@ class Service::Topics {
   std::map<std::uint32_t, Time> seen_;  // tracks, when they last came
 };
 
+Expected<Service::Known> Service::Known::load(service::Shell& shell) {
+  const service::Config& config = shell.config();
+  const std::string& kind = config.text("mapping.hand");
+  if (kind.empty()) return fail("is no hand", "mapping.hand", model::hand_hint());
+  const auto folder = model::hand_directory(kind), files = model::hand_files(folder);
+  auto hand = model::HandModel::load(files);
+  if (!hand) return tl::unexpected(hand.error());
+  Known known{hand->name(), nullptr, nullptr, std::nullopt};
+  if (files != folder) {
+    known.name = hand->mirrored().name();
+    const auto& X_WT = config.numbers("tracker.X_WT");
+    if (X_WT.size() != 7)
+      return wrong_use("needs seven numbers: x y z, then w x y z", "tracker.X_WT");
+    known.mirror.emplace(X_WT[0]);
+  }
+  const std::filesystem::path file = config.path("mapping.model");
+  auto model = file.empty() ? trained_model(files == folder ? kind : files.string(), *hand,
+                                            [&shell] { return shell.stopping(); })
+                            : load_mapping_model(file, *hand);
+  if (!model) return tl::unexpected(model.error());
+  known.hand = std::make_unique<const model::HandModel>(std::move(*hand));
+  known.model = std::make_unique<const MappingModel>(std::move(*model));
+  return known;
+}
+
 Service::Service(std::unique_ptr<Topics> topics) : topics_(std::move(topics)) {}
 Service::~Service() = default;
 
 Expected<std::unique_ptr<Service>> Service::create(service::Shell& shell) {
   const service::Config& config = shell.config();
-  const std::string& hand_kind = config.text("mapping.hand");
-  if (hand_kind.empty()) return fail("is no hand", "mapping.hand", model::hand_hint());
-  auto loaded = model::HandModel::load(model::hand_directory(hand_kind));
-  if (!loaded) return tl::unexpected(loaded.error());
-  auto hand = std::make_unique<const model::HandModel>(std::move(*loaded));
-  const std::filesystem::path file = config.path("mapping.model");
-  auto trained = file.empty()
-                     ? trained_model(hand_kind, *hand, [&shell] { return shell.stopping(); })
-                     : load_mapping_model(file, *hand);
-  if (!trained) return tl::unexpected(trained.error());
-  auto model = std::make_unique<const MappingModel>(std::move(*trained));
+  auto known = Known::load(shell);
+  if (!known) return tl::unexpected(known.error());
   MappingModes modes;
   const std::string& mode = config.text("mapping.mode");
   const auto fingers =
@@ -339,12 +370,12 @@ Expected<std::unique_ptr<Service>> Service::create(service::Shell& shell) {
   const auto& clutch = options.clutch;
   if (!(clutch.speed > 0 && clutch.turn_speed > 0 && clutch.finger_speed > 0))
     return wrong_use("must be above 0", "mapping.clutch_speed, _turn_speed, _finger_speed");
-  auto mapping = Mapping::create(*hand, *model, options);
+  auto mapping = Mapping::create(*known->hand, *known->model, options);
   if (!mapping) return tl::unexpected(mapping.error());
 
-  log::info("{}, {}, {}", hand->name(), model->traits().scheme, to_string(modes));
-  std::unique_ptr<Service> made(new Service(std::make_unique<Topics>(
-      shell, std::move(hand), std::move(model), std::move(*mapping), modes)));
+  log::info("{}, {}, {}", known->name, known->model->traits().scheme, to_string(modes));
+  std::unique_ptr<Service> made(
+      new Service(std::make_unique<Topics>(shell, std::move(*known), std::move(*mapping), modes)));
   shell.status().running();
   return made;
 }

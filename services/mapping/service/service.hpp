@@ -15,6 +15,7 @@ class Service {
   ~Service();
 
  private:
+  struct Known;
   class Topics;
   explicit Service(std::unique_ptr<Topics> topics);
   std::unique_ptr<Topics> topics_;

@@ -1,0 +1,146 @@
+// Two hands in one world, each led by its own glove: together they carry what is too wide for one.
+// Who loses its glove stays where it is, alone; a stop stops both.
+#include <fmt/format.h>
+
+#include <cmath>
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "common/base/file_text.hpp"
+#include "common/convert/convert.hpp"
+#include "tests/integration/rig.hpp"
+
+namespace prehend::integration {
+namespace {
+
+using Eigen::Vector3d;
+using json = nlohmann::json;
+
+class TwoHands : public Rig {
+ protected:
+  /// A crate of 0.3 m that a person carries by 0.3 m.
+  void SetUp() override {
+    write_text("catalogue.toml",
+               "[[object]]\nname = \"Crate\"\nshape = \"box\"\nsize = [0.3, 0.25, 0.25]\n"
+               "mass = 0.6\nmaterial = \"wood\"\n[object.appearance]\ncolours = [[0.6, 0.4, 0.2]]\n"
+               "pattern = \"plain\"\nseed = 1\n");
+    write_text("scene.toml",
+               "[demonstrator]\ntarget = \"Crate\"\ncarry_W = [0.3, 0.0, 0.0]\n\n"
+               "[[object]]\nname = \"Crate\"\nX_WO = [-0.1, 0.0, 0.125, 1.0, 0.0, 0.0, 0.0]\n");
+    simulation_.emplace(start("simulation", sets({"simulation.hands=[\"left:barrett_left\", "
+                                                  "\"right:barrett\"]"})));
+    for (const std::string side : {"left", "right"}) {
+      const std::string hand = side == "left" ? "barrett_left" : "barrett";
+      mappings_.emplace(side,
+                        start("mapping", sets({"mapping.hand=" + hand, "mapping.hand_name=" + side,
+                                               "mapping.glove=" + side + "_glove"})));
+    }
+  }
+  void start_glove(const std::string& side) {
+    gloves_.emplace(side, start("glove", sets({"glove.device=synthetic", "glove.hand=" + side,
+                                               "glove.name=" + side + "_glove"})));
+  }
+  /// Until every hand has been heard anew so often.
+  bool hear_states(int count) {
+    for (auto& [name, heard] : heard_) heard = 0;
+    return eventually(20, [&] {
+      poll();
+      return heard_["left"] >= count && heard_["right"] >= count;
+    });
+  }
+  void poll() {
+    for (auto& sample : states_.take()) {
+      const std::string hand = sample.data.hand().to_string();
+      bases_[hand] = convert::from_message(sample.data.X_WB().position());
+      models_[hand] = sample.data.model().to_string();
+      ++heard_[hand];
+    }
+    for (auto& sample : objects_.take())
+      if (const auto X_WO = convert::from_message(sample.data.X_WO())) X_WO_ = *X_WO;
+  }
+  /// Of a hand's base while both are heard so often, m.
+  std::map<std::string, double> moved(int count) {
+    EXPECT_TRUE(hear_states(3));
+    const auto before = bases_;
+    EXPECT_TRUE(hear_states(count));
+    std::map<std::string, double> by;
+    for (const auto& [name, p] : bases_) by[name] = (p - before.at(name)).norm();
+    return by;
+  }
+  Answer order(Strings words) { return run("prehend", with_lab(std::move(words)), 30); }
+
+  std::map<std::string, Vector3d> bases_;
+  std::map<std::string, std::string> models_;
+  Pose X_WO_ = Pose::Identity();  // of the crate
+
+ private:
+  void write_text(const std::string& name, const std::string& text) {
+    ASSERT_TRUE(write_file(folder_ / name, text));
+  }
+  Strings sets(Strings own) const {
+    own.push_back("lab.catalogue=" + (folder_ / "catalogue.toml").string());
+    own.push_back("lab.scene=" + (folder_ / "scene.toml").string());
+    return own;
+  }
+
+  dds::Reader<v1::HandState> states_ = reader(dds::robot_state);
+  dds::Reader<v1::ObjectState> objects_ = reader(dds::object_state);
+  std::map<std::string, int> heard_;
+  std::optional<stage::Process> simulation_;
+  std::map<std::string, stage::Process> mappings_;
+
+ protected:
+  std::map<std::string, stage::Process> gloves_;
+};
+
+TEST_F(TwoHands, CarryWhatIsTooWideForOne) {
+  start_glove("left");
+  start_glove("right");
+  const auto crate = [&](const auto& holds) {
+    return eventually(60, [&] {
+      poll();
+      return holds(X_WO_.translation());
+    });
+  };
+  ASSERT_TRUE(crate([](const Vector3d& p) { return p.z() > 0.125 + 0.10; })) << "is not lifted";
+  double tilt = 0;
+  EXPECT_TRUE(crate([&](const Vector3d& p) {
+    tilt = std::max(tilt, std::acos(std::clamp(X_WO_.linear()(2, 2), -1.0, 1.0)));
+    return p.x() > 0.2 - 0.03 && p.z() < 0.125 + 0.005;
+  })) << "is not set down aside, but at "
+      << X_WO_.translation().transpose();
+  EXPECT_LT(tilt, 10 * M_PI / 180);
+  EXPECT_EQ(models_["left"], "barrett_left");
+  EXPECT_EQ(models_["right"], "barrett");
+}
+
+TEST_F(TwoHands, EachFollowsItsOwnGloveAndAStopStopsBoth) {
+  start_glove("right");
+  ASSERT_TRUE(eventually(40, [&] {
+    const auto by = moved(50);
+    return by.at("right") > 0.02 && by.at("left") < 1e-3;
+  })) << "the right hand alone follows";
+  start_glove("left");
+  ASSERT_TRUE(eventually(40, [&] {
+    const auto by = moved(50);
+    return by.at("right") > 0.02 && by.at("left") > 0.02;
+  })) << "both follow";
+  gloves_.at("right").signal(SIGKILL);
+  ASSERT_TRUE(eventually(40, [&] {
+    const auto by = moved(50);
+    return by.at("right") < 1e-3 && by.at("left") > 0.02;
+  })) << "the right one stays, the left one goes on";
+
+  const Answer answer = order({"stop", "--reason", "a test", "--json"});
+  EXPECT_EQ(answer.exit_code, 0) << answer.log;
+  std::map<std::string, bool> stopped;
+  for (const json& gate : json::parse(answer.output)["gates"])
+    stopped[gate["hand"].get<std::string>()] = gate["stopped"].get<bool>();
+  EXPECT_EQ(stopped, (std::map<std::string, bool>{{"left", true}, {"right", true}}));
+  const auto by = moved(100);
+  EXPECT_LT(by.at("left"), 1e-3);
+  EXPECT_LT(by.at("right"), 1e-3);
+}
+
+}  // namespace
+}  // namespace prehend::integration
