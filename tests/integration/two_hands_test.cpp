@@ -134,7 +134,8 @@ TEST_F(TwoHands, EachFollowsItsOwnGloveAndAStopStopsBoth) {
   const Answer answer = order({"stop", "--reason", "a test", "--json"});
   EXPECT_EQ(answer.exit_code, 0) << answer.log;
   std::map<std::string, bool> stopped;
-  for (const json& gate : json::parse(answer.output)["gates"])
+  const json told = json::parse(answer.output);
+  for (const json& gate : told["gates"])
     stopped[gate["hand"].get<std::string>()] = gate["stopped"].get<bool>();
   EXPECT_EQ(stopped, (std::map<std::string, bool>{{"left", true}, {"right", true}}));
   const auto by = moved(100);

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "common/base/motion.hpp"
+#include "common/model/placement.hpp"
 #include "services/glove/core/mirrored_scene.hpp"
 
 namespace prehend::glove {
@@ -12,19 +13,18 @@ namespace {
 using Eigen::Vector3d;
 
 /// What the hand does and for how long, s.
-enum Phase { rest, reach, press, hold, lift, carry, lower, stand, release, go_back, phase_count };
-constexpr std::array<double, phase_count> durations{2.0, 1.2, 1.2, 1.0, 1.0,
-                                                    3.0, 1.2, 0.5, 0.8, 0.8};
-constexpr double lift_height = 0.12;                 // m
-constexpr double beside = 0.12;                      // m, of the object, before it is pressed
-constexpr double pressed = 0.03;                     // m, that palms go further than they can
-constexpr double rest_back = 0.2, rest_above = 0.1;  // m
+enum class Step { rest, reach, press, hold, lift, carry, lower, stand, release, go_back };
+constexpr std::array<double, 10> step_lasts{2.0, 1.2, 1.2, 1.0, 1.0, 3.0, 1.2, 0.5, 0.8, 0.8};
+constexpr double lifted_by = 0.12;                     // m
+constexpr double beside = 0.12;                        // m, of the object, before it is pressed
+constexpr double pressed = 0.03;                       // m, that palms go further than they can
+constexpr double waits_back = 0.2, waits_above = 0.1;  // m
 
 }  // namespace
 
 double CarryingHand::cycle() {
   double total = 0;
-  for (const double duration : durations) total += duration;
+  for (const double duration : step_lasts) total += duration;
   return total;
 }
 
@@ -49,11 +49,9 @@ Expected<CarryingHand> CarryingHand::create(const model::Scene& room,
   const double half = X_WO.linear().row(0).cwiseAbs().dot(model::half_extents(object->shape));
   const Vector3d p_WG =
       X_WO.translation() + (half - person.reach.engage - pressed) * Vector3d::UnitX();
-  // Fingers forward, thumb up, the palm towards the object.
-  Eigen::Matrix3d R_WH;
-  R_WH << Vector3d::UnitY(), Vector3d::UnitZ(), Vector3d::UnitX();
-  const Vector3d p_HG = model::HumanHand(person.hand_scale).X_HG().translation();
-  made.X_WH_ = make_pose(p_WG - R_WH * p_HG, R_WH);
+  // The palm towards the object, fingers forward, thumb up.
+  const Pose X_WG = make_pose(p_WG, model::grasp_axes(-Vector3d::UnitX(), Vector3d::UnitY()));
+  made.X_WH_ = X_WG * model::HumanHand(person.hand_scale).X_HG().inverse();
   return made;
 }
 
@@ -61,22 +59,24 @@ HandState CarryingHand::hand(double time) const {
   const double t_all = std::max(time, 0.0);
   double t = std::fmod(t_all, cycle());
   const bool back = std::fmod(t_all, 2 * cycle()) >= cycle();
-  int phase = 0;
-  while (phase + 1 < phase_count && t >= durations[phase]) t -= durations[phase++];
-  const double s = minimum_jerk(t / durations[phase]);
-  // How far each has come when the phase began, and what it adds.
-  const auto in = [&](Phase begins, Phase ends) {  // 0 before, 1 between, 0 again
-    if (phase == begins) return s;
-    if (phase == ends) return 1 - s;
-    return phase > begins && phase < ends ? 1.0 : 0.0;
+  std::size_t number = 0;
+  while (number + 1 < step_lasts.size() && t >= step_lasts[number]) t -= step_lasts[number++];
+  const Step step = static_cast<Step>(number);
+  const double s = minimum_jerk(t / step_lasts[number]);
+  const auto between = [&](Step begins, Step ends) {  // 1; 0 before and after
+    if (step == begins) return s;
+    if (step == ends) return 1 - s;
+    return step > begins && step < ends ? 1.0 : 0.0;
   };
-  const double near = in(reach, go_back), closed = in(press, release), lifted = in(lift, lower);
-  const double there = phase < carry ? 0 : phase == carry ? s : 1;
+  const double near = between(Step::reach, Step::go_back);
+  const double closed = between(Step::press, Step::release);
+  const double lifted = between(Step::lift, Step::lower);
+  const double there = step < Step::carry ? 0 : step == Step::carry ? s : 1;
   const double carried = back ? 1 - there : there;
-  return {.X_WH = moved(X_WH_, carried * carry_W_ + lifted * lift_height * Vector3d::UnitZ() +
+  return {.X_WH = moved(X_WH_, carried * carry_W_ + lifted * lifted_by * Vector3d::UnitZ() +
                                    (1 - closed) * beside * Vector3d::UnitX() +
-                                   (1 - near) * (rest_above * Vector3d::UnitZ() -
-                                                 rest_back * Vector3d::UnitY()))};
+                                   (1 - near) * (waits_above * Vector3d::UnitZ() -
+                                                 waits_back * Vector3d::UnitY()))};
 }
 
 std::optional<Frame> CarryingHand::frame(std::uint64_t n) const {
