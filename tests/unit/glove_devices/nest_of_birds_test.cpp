@@ -125,7 +125,7 @@ TEST(NestOfBirds, ALeftHandWearsItsEmulator) {
   DeviceOptions options;
   options.port = link_path("left");
   options.X_WT =
-      make_pose({0.1, 0.4, 0.3}, Eigen::Quaterniond(Eigen::AngleAxisd(0.3, Vector3d::UnitZ())));
+      make_pose({0.1, 0.4, 0.3}, Eigen::Quaterniond(Eigen::AngleAxisd(0.1, Vector3d::UnitZ())));
   const EmulationOptions line = emulation_of(*find_device("nest_of_birds"), options, options.port);
   const testing::EmulatedDevice tracker(line, hand);
   Listener listener;

@@ -31,20 +31,21 @@ constexpr Duration grace = std::chrono::milliseconds(300),
 constexpr Duration patience = std::chrono::seconds(1);
 constexpr const char* gate_name = "gate";
 
-/// Of a gate that was heard of in the rig, or of a mapping.
+/// Of a process that was heard of in the rig: of its gates, one for each hand, or of a mapping.
 struct Answer {
-  std::optional<v1::OperatorReply> reply;
-  std::optional<v1::GateState> state;
+  std::optional<v1::OperatorReply> reply;       // the last one
+  std::size_t done = 0;                         // replies in a row that say so: each gate gives one
+  std::map<std::string, v1::GateState> states;  // by hand
 };
 
 bool is_done(const Answer& answer) {
-  return answer.reply && answer.reply->done();
+  return answer.reply && answer.done >= std::max<std::size_t>(1, answer.states.size());
 }
 
 /// Only what tells of a gate, on a topic that nobody else may write, answers for one; anybody may
 /// reply. Mapping answers a takeover as well.
 bool counts(const Order& order, const Answer& answer) {
-  return answer.state || (order.action == v1::ACTION_TAKE_OVER && answer.reply);
+  return !answer.states.empty() || (order.action == v1::ACTION_TAKE_OVER && answer.reply);
 }
 
 /// Gives one order in one rig.
@@ -63,12 +64,18 @@ class Giving {
     }
     shell.subscribe(dds::operator_reply, std::function([this](const v1::OperatorReply& reply,
                                                               const dds::SampleInfo& info) {
-                      if (!info.gone && reply.id().to_string() == id_ && is_meant(reply))
-                        answer(info).reply = reply;
+                      if (info.gone || reply.id().to_string() != id_ || !is_meant(reply)) return;
+                      Answer& heard = answer(info);
+                      heard.done = reply.done() ? heard.done + 1 : 0;
+                      heard.reply = reply;
                     }));
     shell.subscribe(dds::robot_gate,
                     std::function([this](const v1::GateState& state, const dds::SampleInfo& info) {
-                      if (!info.gone) answer(info).state = state;
+                      if (info.gone) return;
+                      Answer& heard = answer(info);
+                      const std::string hand = state.hand().to_string();
+                      if (!heard.states.contains(hand)) newest_ = shell_.now();
+                      heard.states[hand] = state;
                     }));
     shell.on_tick(keyboard_ ? key_period : order_period, [this](Time now) { tick(now); });
     shell.status().running();
@@ -78,7 +85,7 @@ class Giving {
     std::vector<Answer> all;
     for (const auto& [participant, answer] : answers_)
       if (counts(order_, answer)) all.push_back(answer);
-    std::stable_partition(all.begin(), all.end(), [](auto& one) { return one.state.has_value(); });
+    std::stable_partition(all.begin(), all.end(), [](auto& one) { return !one.states.empty(); });
     return all;
   }
 
@@ -119,8 +126,8 @@ class Giving {
     const bool given = is_given() && !lacks_gates();
     // What a gate says of itself comes right behind its reply.
     const bool told = std::all_of(answers_.begin(), answers_.end(), [](auto& entry) {
-      const auto& [reply, state] = entry.second;
-      return state || (reply && reply->service().to_string() != gate_name);
+      const Answer& one = entry.second;
+      return !one.states.empty() || (one.reply && one.reply->service().to_string() != gate_name);
     });
     const bool over = now - begun_ > seconds(order_.timeout);
     // Whoever replies as a gate and tells of none holds nobody up for longer than that.
@@ -150,24 +157,27 @@ class Giving {
   std::map<dds::GuidPrefix, Answer> answers_;
 };
 
-/// A line, and an entry of the document, a gate; true: it did what was asked.
+/// A line, and an entry of the document, a gate, or the mapping; true: it did what was asked.
 bool report(const std::string& rig, const Answer& answer, bool json,
             nlohmann::ordered_json& document) {
   const bool done = is_done(answer);
   const std::string service = answer.reply ? answer.reply->service().to_string() : gate_name;
-  const std::string hand = answer.state ? answer.state->hand().to_string() : "";
   const std::string message =
       answer.reply ? answer.reply->message().to_string() : "does not answer";
-  document.push_back({{"rig", rig},
-                      {"service", service},
-                      {"hand", hand},
-                      {"done", done},
-                      {"message", message},
-                      {"stopped", answer.state && answer.state->stopped()},
-                      {"leader", answer.state ? answer.state->leader().to_string() : ""}});
-  if (!json)
-    std::cout << fmt::format("{}/{}: {}\n", rig, printable(hand.empty() ? service : hand),
-                             printable(message));
+  std::map<std::string, v1::GateState> states = answer.states;
+  if (states.empty()) states[""];
+  for (const auto& [hand, state] : states) {
+    document.push_back({{"rig", rig},
+                        {"service", service},
+                        {"hand", hand},
+                        {"done", done},
+                        {"message", message},
+                        {"stopped", state.stopped()},
+                        {"leader", state.leader().to_string()}});
+    if (!json)
+      std::cout << fmt::format("{}/{}: {}\n", rig, printable(hand.empty() ? service : hand),
+                               printable(message));
+  }
   return done;
 }
 
