@@ -10,6 +10,8 @@
 #include <atomic>
 #include <cerrno>
 #include <cstring>
+#include <map>
+#include <string_view>
 
 namespace prehend::service {
 namespace {
@@ -48,8 +50,14 @@ bool is_ours(int handle) {
 }  // namespace
 
 std::string pulse_name(const Config& config, const std::string& service) {
-  return fmt::format("prehend/{}/{}/{}", config.integer("lab.domain"), config.text("lab.rig"),
-                     service);
+  std::string name = fmt::format("prehend/{}/{}/{}", config.integer("lab.domain"),
+                                 config.text("lab.rig"), service);
+  // Of what a lab has for each hand, by the hand.
+  static const std::map<std::string, std::string, std::less<>> by_hand{
+      {"glove", "glove.name"}, {"mapping", "mapping.hand_name"}, {"robot", "robot.hand_name"}};
+  if (const auto key = by_hand.find(service); key != by_hand.end())
+    name += "/" + config.text(key->second);
+  return name;
 }
 
 Expected<std::unique_ptr<Pulse>> Pulse::create(const std::string& name, Post post) {

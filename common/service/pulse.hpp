@@ -15,7 +15,8 @@
 namespace prehend::service {
 
 /// Where the service of this name answers: a name that goes when the process does. It is seen in
-/// the same network name space alone, as in one container.
+/// the same network name space alone, as in one container. Of several gloves, mappings or robots in
+/// one lab each has its own, by its name in the configuration.
 std::string pulse_name(const Config& config, const std::string& service);
 
 /// Answers in the thread of run(): a process whose loop hangs does not.

@@ -5,6 +5,7 @@
 #include <iostream>
 
 #include "common/model/hand_model.hpp"
+#include "services/cli/tools/demo/carry_command.hpp"
 #include "services/cli/tools/demo/demo_command.hpp"
 #include "services/cli/tools/dispatch.hpp"
 
@@ -13,7 +14,7 @@ namespace {
 
 /// What decides who plays; the play itself reads all arguments.
 struct Choice {
-  std::string task, record, robot, hand, mode;
+  std::string task, record, robot, hand, hands, mode;
   bool watch = false, targets = false;
 };
 
@@ -26,6 +27,7 @@ Choice chosen_by(std::vector<std::string> arguments) {
   app.add_option("--record", choice.record);
   app.add_option("--robot", choice.robot);
   app.add_option("--hand", choice.hand);
+  app.add_option("--hands", choice.hands);
   app.add_option("--mode", choice.mode);
   app.add_flag("--watch", choice.watch);
   app.add_flag("--targets", choice.targets);
@@ -39,7 +41,7 @@ Choice chosen_by(std::vector<std::string> arguments) {
 }
 
 std::string targets_of(const Choice& choice) {
-  if (!choice.task.empty()) return "task_lab";
+  if (!choice.task.empty() && choice.hands.empty()) return "task_lab";
   std::string targets = "lab";
   if (!choice.record.empty()) targets += " prehend-record";
   if (!choice.robot.empty()) targets += " prehend-robot prehend-robot-tool";
@@ -60,6 +62,7 @@ int play(const std::vector<std::string>& arguments) {
     std::cout << targets_of(choice) << "\n";
     return exit_done;
   }
+  if (!choice.hands.empty()) return carry_command(arguments);
   if (choice.task.empty()) return demo_command(arguments);
   std::vector<std::string> command{"demo"};
   command.insert(command.end(), arguments.begin(), arguments.end());

@@ -35,18 +35,13 @@ Expected<CarryingHand> CarryingHand::create(const model::Scene& room,
   const model::Demonstrator& person = scene.demonstrator;
   auto sensors = WornSensors::create(person, options);
   if (!sensors) return tl::unexpected(sensors.error());
-  const auto placed =
-      std::find_if(scene.objects.begin(), scene.objects.end(),
-                   [&](const auto& object) { return object.name == person.target; });
-  const model::CatalogueObject* object = catalogue.find(person.target);
-  if (placed == scene.objects.end() || !object)
-    return fail("the target '" + person.target + "' is not in the scene", "synthetic hand",
-                "name one of the scene's objects as demonstrator.target");
+  const auto target = target_of(scene, catalogue);
+  if (!target) return tl::unexpected(target.error());
 
   CarryingHand made(std::move(*sensors));
   made.carry_W_ = person.carry_W;
-  const Pose& X_WO = placed->X_WO;
-  const double half = X_WO.linear().row(0).cwiseAbs().dot(model::half_extents(object->shape));
+  const Pose& X_WO = target->X_WO;
+  const double half = X_WO.linear().row(0).cwiseAbs().dot(model::half_extents(target->shape));
   const Vector3d p_WG =
       X_WO.translation() + (half - person.reach.engage - pressed) * Vector3d::UnitX();
   // The palm towards the object, fingers forward, thumb up.

@@ -63,20 +63,16 @@ Expected<SyntheticHand> SyntheticHand::create(const model::Scene& room,
     made.X_WH_grasp_ = X_WG * error * X_HG.inverse();
     made.closure_.fill(0.5);
   } else {
-    const auto placed = std::find_if(scene.objects.begin(), scene.objects.end(),
-                                     [&](const auto& o) { return o.name == person.target; });
-    const model::CatalogueObject* object = catalogue.find(person.target);
-    if (placed == scene.objects.end() || !object)
-      return fail("the target '" + person.target + "' is not in the scene", "synthetic hand",
-                  "name one of the scene's objects as demonstrator.target");
-    const Pose& X_WO = placed->X_WO;
-    const auto X_OG = model::human_grasp(object->shape, X_WO, person);
+    const auto target = target_of(scene, catalogue);
+    if (!target) return tl::unexpected(target.error());
+    const Pose& X_WO = target->X_WO;
+    const auto X_OG = model::human_grasp(target->shape, X_WO, person);
     if (!X_OG)
       return fail("no hand can grasp '" + person.target + "'", "synthetic hand",
                   "choose a smaller target");
     X_WG = X_WO * *X_OG;
     made.X_WH_grasp_ = X_WG * error * X_HG.inverse();
-    made.closure_ = made.hand_.close_on(object->shape, made.X_WH_grasp_.inverse() * X_WO);
+    made.closure_ = made.hand_.close_on(target->shape, made.X_WH_grasp_.inverse() * X_WO);
   }
   const Vector3d approach = X_WG.linear().col(2);
   // From above, «back» is where the arm comes from: behind the wrist.

@@ -1,5 +1,6 @@
 #include "services/glove/core/worn_sensors.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -22,6 +23,17 @@ Vector3d direction(Random& random) {
 }
 
 }  // namespace
+
+Expected<Target> target_of(const model::Scene& scene, const model::Catalogue& catalogue) {
+  const std::string& name = scene.demonstrator.target;
+  const auto placed = std::find_if(scene.objects.begin(), scene.objects.end(),
+                                   [&](const auto& object) { return object.name == name; });
+  const model::CatalogueObject* object = catalogue.find(name);
+  if (placed == scene.objects.end() || !object)
+    return fail("the target '" + name + "' is not in the scene", "synthetic hand",
+                "name one of the scene's objects as demonstrator.target");
+  return Target{object->shape, placed->X_WO};
+}
 
 Expected<WornSensors> WornSensors::create(const model::Demonstrator& person,
                                           const SyntheticOptions& options) {

@@ -2,6 +2,7 @@
 
 #include <array>
 
+#include "common/model/catalogue.hpp"
 #include "common/model/human_hand.hpp"
 #include "common/model/scene.hpp"
 #include "services/glove/core/frame_source.hpp"
@@ -15,6 +16,14 @@ struct SyntheticOptions {
   std::uint64_t seed = 0;
   bool left = false;  // the frames are those of a left hand that was mirrored into a right one
 };
+
+/// What a computed person reaches for.
+struct Target {
+  model::Shape shape;
+  Pose X_WO;
+};
+/// The demonstrator's. Fails if it is not in the scene, or not known.
+Expected<Target> target_of(const model::Scene& scene, const model::Catalogue& catalogue);
 
 /// What a person's hand does at one moment.
 struct HandState {

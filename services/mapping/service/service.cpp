@@ -108,9 +108,9 @@ class Service::Topics {
                     Handler<v1::OperatorCommand>([this](auto& s, auto& i) { on_order(s, i); }));
     shell.busy_while([this] { return shell_.now() - last_posture_ < patience; });
     shell.on_tick(std::chrono::milliseconds(20), [this](Time now) {
-      if (const auto command = mapping_.tick(now)) {
+      if (auto command = mapping_.tick(now)) {
         shell_.status().count("hold commands");
-        publish(*command);
+        publish(std::move(*command));
       }
       if (!shell_.lockstep()) look_around(now);
     });
@@ -133,14 +133,14 @@ class Service::Topics {
     }
     if (led_ && *led_ != info.participant) mapping_.interrupt();
     const auto posture = posture_from_message(message);
-    const auto command =
+    auto command =
         posture.and_then([&](const Posture& value) { return mapping_.on_posture(value, now); });
     if (!command) {
       status.drop(command.error().what);
       last_reject_ = command.error().what;
       return;
     }
-    publish(*command);
+    publish(std::move(*command));
     glove_ = message.glove().to_string();
     gloves_.followed(info.participant, now);
     led_ = info.participant;
@@ -157,8 +157,9 @@ class Service::Topics {
       return;
     }
     if (seen_.size() < max_tracks) seen_[message.track()] = shell_.now();
-    const auto taken = convert::from_message(message).and_then([&](const Detection& seen) {
-      return mapping_.on_detection(known_.mirror ? known_.mirror->detection(seen) : seen);
+    const auto taken = convert::from_message(message).and_then([&](Detection seen) {
+      if (known_.mirror) seen = known_.mirror->detection(std::move(seen));
+      return mapping_.on_detection(seen);
     });
     if (!taken) shell_.status().drop(taken.error().what);
   }
@@ -176,8 +177,9 @@ class Service::Topics {
 
   void on_state(const v1::HandState& message, const dds::SampleInfo& info) {
     if (info.gone || message.hand() != hand_name_) return;
-    const auto taken = state_from_message(message).and_then([&](const RobotState& state) {
-      return mapping_.on_state(known_.mirror ? known_.mirror->state(state) : state);
+    const auto taken = state_from_message(message).and_then([&](RobotState state) {
+      if (known_.mirror) state = known_.mirror->state(std::move(state));
+      return mapping_.on_state(state);
     });
     if (!taken) return shell_.status().drop(taken.error().what);
     dof_ = convert::from_message(message.dof());
@@ -285,8 +287,8 @@ class Service::Topics {
     shell_.status().degraded(missing);
   }
 
-  void publish(const Command& answer) {
-    const Command command = known_.mirror ? known_.mirror->command(answer) : answer;
+  void publish(Command command) {
+    if (known_.mirror) command = known_.mirror->command(std::move(command));
     message_.sequence_number(sequence_number_++);
     message_.stamp_ns(to_ns(command.stamp));
     message_.origin_ns(command.origin ? to_ns(*command.origin) : 0);
@@ -330,7 +332,7 @@ Expected<Service::Known> Service::Known::load(service::Shell& shell) {
   if (!hand) return tl::unexpected(hand.error());
   Known known{hand->name(), nullptr, nullptr, std::nullopt};
   if (files != folder) {
-    known.name = hand->mirrored().name();
+    known.name = model::mirror_name(hand->name());
     const auto& X_WT = config.numbers("tracker.X_WT");
     if (X_WT.size() != 7)
       return wrong_use("needs seven numbers: x y z, then w x y z", "tracker.X_WT");

@@ -1,56 +1,20 @@
 #include "services/cli/tools/demo/demo_command.hpp"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <charconv>
-#include <chrono>
 #include <iostream>
 #include <string_view>
 
-#include "common/base/log_format.hpp"
 #include "common/base/printable.hpp"
-#include "common/base/terminal.hpp"
 #include "services/cli/tools/demo/chosen_hand.hpp"
 #include "services/cli/tools/demo/demonstration.hpp"
+#include "services/cli/tools/demo/screen.hpp"
 #include "services/cli/tools/demo/series.hpp"
 
 namespace prehend::cli {
 namespace {
-
-using Clock = std::chrono::steady_clock;
-
-/// One line that is renewed on a terminal; otherwise a line whenever there is news, but not often.
-class Screen {
- public:
-  explicit Screen(bool quiet)
-      : quiet_(quiet || log::format() == log::Format::json), terminal_(has_cursor(STDERR_FILENO)) {}
-  ~Screen() { clear(); }
-
-  void show(const std::string& text) {
-    const auto now = Clock::now();
-    if (quiet_ || text == last_ ||
-        now - shown_ < (terminal_ ? std::chrono::milliseconds(100) : std::chrono::seconds(2)))
-      return;
-    last_ = text;
-    shown_ = now;
-    if (terminal_)
-      fmt::print(stderr, "\r\033[K{}", printable(text.substr(0, 100)));
-    else
-      fmt::print(stderr, "{}\n", printable(text));
-    std::fflush(stderr);
-  }
-  void clear() {
-    if (!quiet_ && terminal_ && !last_.empty()) fmt::print(stderr, "\r\033[K");
-    last_.clear();
-  }
-
- private:
-  bool quiet_, terminal_;
-  std::string last_;
-  Clock::time_point shown_{};
-};
 
 /// "A..B" or "A" as seeds.
 bool read_range(const std::string& text, SeriesOptions& series) {
@@ -87,6 +51,9 @@ void add_choices(CLI::App& app) {
   app.add_option("--task",
                  "a task (pick-and-place), or a file of one: it is shown, and done again "
                  "elsewhere;\nprehend demo --task pick-and-place --help tells more");
+  app.add_option("--hands",
+                 "left:HAND,right:HAND: two hands carry a crate together;\n"
+                 "prehend demo --hands left:barrett,right:barrett --help tells more");
   app.add_flag_callback(
       "--targets", [] {}, "only say what `cmake --build` must make for this");
 }
@@ -139,7 +106,7 @@ int demo_command(const std::vector<std::string>& arguments) {
   choose(demo, mode);
 
   Screen screen(quiet);
-  const stage::Progress progress = [&screen](const std::string& text) { screen.show(text); };
+  const stage::Progress progress = screen.progress();
   if (!seeds.empty()) {
     series.json = json;
     if (!read_range(seeds, series))

@@ -1,0 +1,44 @@
+#include "services/cli/service/carry_judge.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace prehend::cli {
+namespace {
+
+constexpr double off_table = 0.005;  // m
+constexpr double stands_for = 0.5;   // s
+constexpr double lift = 0.10, near = 0.03, level = 10 * std::numbers::pi / 180, nearly_all = 0.95;
+
+}  // namespace
+
+bool Carried::done() const {
+  return set_down && lifted >= lift && off <= near && tilt <= level && both >= nearly_all;
+}
+
+void CarryJudge::see(const Pose& X_WO, Time stamp) {
+  if (!X_WO_first_) {
+    X_WO_first_ = X_WO;
+    last_ = stamp;
+  }
+  const double elapsed = std::max(0.0, to_seconds(stamp - last_));
+  last_ = stamp;
+  const Eigen::Vector3d way = X_WO.translation() - X_WO_first_->translation();
+  carried_.lifted = std::max(carried_.lifted, way.z());
+  carried_.off = (way - carry_W_).head<2>().norm();
+  if (way.z() > off_table) {
+    const Eigen::Vector3d up = X_WO.linear() * X_WO_first_->linear().transpose().col(2);
+    carried_.tilt = std::max(carried_.tilt, std::acos(std::clamp(up.z(), -1.0, 1.0)));
+    const auto felt = std::count_if(touches_.begin(), touches_.end(),
+                                    [](const auto& hand) { return hand.second; });
+    in_air_ += elapsed;
+    if (felt >= 2) by_both_ += elapsed;
+    carried_.both = in_air_ > 0 ? by_both_ / in_air_ : 0;
+    stands_since_ = stamp;
+  } else if (carried_.lifted > 4 * off_table) {
+    carried_.set_down = to_seconds(stamp - stands_since_) > stands_for;
+  }
+}
+
+}  // namespace prehend::cli

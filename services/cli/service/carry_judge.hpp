@@ -1,0 +1,48 @@
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+
+#include "common/base/pose.hpp"
+#include "common/base/time.hpp"
+
+namespace prehend::cli {
+
+/// What came of an object that two hands were to carry.
+struct Carried {
+  double lifted = 0;  // m, by which it rose at most
+  double off = 0;     // m, horizontally, from where it was to be set down
+  double tilt = 0;    // rad, at most, while it was off the table
+  double both = 0;    // share of that time in which both hands touched it
+  bool set_down = false;
+
+  /// Lifted by 10 cm and set down 3 cm from its place or nearer, level within 10°, by both hands.
+  bool done() const;
+};
+
+/// Watches an object from where it stands first until it has been lifted and stands again. Pure.
+class CarryJudge {
+ public:
+  /// carry_W: m, from where it stands to where it is to stand.
+  explicit CarryJudge(const Eigen::Vector3d& carry_W) : carry_W_(carry_W) {}
+
+  /// A hand touches something or not.
+  void feel(const std::string& hand, bool touches) { touches_[hand] = touches; }
+  /// Where the object is at that time; later than before.
+  void see(const Pose& X_WO, Time stamp);
+
+  /// It stands again, and has for half a second.
+  bool is_over() const { return carried_.set_down; }
+  const Carried& carried() const { return carried_; }
+
+ private:
+  Eigen::Vector3d carry_W_;
+  std::optional<Pose> X_WO_first_;
+  std::map<std::string, bool> touches_;
+  Carried carried_;
+  Time last_{}, stands_since_{};
+  double in_air_ = 0, by_both_ = 0;  // s
+};
+
+}  // namespace prehend::cli

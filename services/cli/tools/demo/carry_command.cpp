@@ -1,0 +1,72 @@
+#include "services/cli/tools/demo/carry_command.hpp"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <iostream>
+#include <nlohmann/json.hpp>
+#include <numbers>
+
+#include "services/cli/tools/demo/carry_play.hpp"
+#include "services/cli/tools/demo/screen.hpp"
+
+namespace prehend::cli {
+namespace {
+
+std::string to_json(const Carried& carried, const CarryOptions& options) {
+  return nlohmann::ordered_json{{"task", "carry"},
+                                {"hands", {{"left", options.left}, {"right", options.right}}},
+                                {"seed", options.seed},
+                                {"lifted_m", carried.lifted},
+                                {"off_m", carried.off},
+                                {"tilt_rad", carried.tilt},
+                                {"both", carried.both},
+                                {"done", carried.done()}}
+      .dump();
+}
+
+std::string to_line(const Carried& carried) {
+  return fmt::format(
+      "{}: lifted by {:.0f} mm, {} {:.0f} mm from its place, tilted by {:.1f} degrees, in both "
+      "hands {:.0f} % of the way",
+      carried.done() ? "carried" : "not carried", 1000 * carried.lifted,
+      carried.set_down ? "set down" : "is", 1000 * carried.off,
+      carried.tilt * 180 / std::numbers::pi, 100 * carried.both);
+}
+
+}  // namespace
+
+int carry_command(const std::vector<std::string>& arguments) {
+  CLI::App app{
+      "Two robot hands in one world carry a crate that is too wide for one of them, as a person\n"
+      "with two gloves shows it: a tracker, a glove, a mapping and a gate for each. Exit code 0:\n"
+      "lifted by 10 cm, carried 30 cm aside, set down within 3 cm, level within 10 degrees;\n"
+      "1: not so, 2: wrong use, 3: the environment is broken.",
+      "prehend demo --hands"};
+  CarryOptions options;
+  std::string hands, task = "carry";
+  bool json = false, quiet = false;
+  options.lab.add_to(app);
+  app.add_option("--hands", hands, "left:HAND,right:HAND; a left one may be named as its mirror image")
+      ->required();
+  app.add_option("--task", task, "carry")->check(CLI::IsMember({"carry"}));
+  app.add_option("--seed", options.seed, "draws the crate, where it stands, person and noise");
+  app.add_option("--timeout", options.timeout, "s until it must stand again")
+      ->check(CLI::Range(1.0, 3600.0));
+  app.add_option("--record", options.record, "record all topics into this file");
+  app.add_flag("--watch", options.watch, "with a page that shows it (console.port), until Ctrl-C");
+  app.add_flag("--keep", options.keep, "keep scene and logs");
+  app.add_flag("--json", json, "one JSON document on standard output");
+  app.add_flag("--quiet", quiet, "no progress");
+  if (const auto code = service::parse(app, arguments)) return *code;
+  if (auto read = read_hands(hands, options); !read) return service::complain(read.error());
+
+  Screen screen(quiet);
+  const auto carried = carry(options, screen.progress());
+  screen.clear();
+  if (!carried) return service::complain(carried.error());
+  std::cout << (json ? to_json(*carried, options) : to_line(*carried)) << std::endl;
+  return carried->done() ? exit_done : exit_no;
+}
+
+}  // namespace prehend::cli

@@ -1,0 +1,255 @@
+#include "services/cli/tools/demo/carry_play.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <set>
+
+#include "common/base/file_text.hpp"
+#include "common/base/log.hpp"
+#include "common/base/random.hpp"
+#include "common/convert/convert.hpp"
+#include "common/dds/participant.hpp"
+#include "common/dds/topics.hpp"
+#include "common/model/catalogue.hpp"
+#include "common/model/hand_model.hpp"
+#include "common/service/membership.hpp"
+#include "services/cli/tools/demo/chosen_hand.hpp"
+#include "services/cli/tools/demo/setting.hpp"
+
+namespace prehend::cli {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr const char* crate = "Crate";
+const Vector3d aside(0.30, 0, 0);  // m
+
+/// A crate that no hand holds alone.
+model::CatalogueObject drawn_crate(Random& random) {
+  model::CatalogueObject object;
+  object.name = crate;
+  object.shape = {model::ShapeKind::box,
+                  Vector3d(random.uniform(0.26, 0.34), random.uniform(0.22, 0.28),
+                           random.uniform(0.22, 0.28))};
+  object.mass = random.uniform(0.4, 0.8);
+  object.material = "wood";
+  return object;
+}
+
+std::string entry_of(const model::CatalogueObject& object) {
+  const Vector3d& size = object.shape.size;
+  return fmt::format(
+      "[[object]]\nname = \"{}\"\nshape = \"box\"\nsize = [{:.4f}, {:.4f}, {:.4f}]\nmass = {:.3f}\n"
+      "material = \"{}\"\n[object.appearance]\ncolours = [[0.68, 0.51, 0.33]]\npattern = "
+      "\"plain\"\nseed = 1\n",
+      object.name, size.x(), size.y(), size.z(), object.mass, object.material);
+}
+
+/// The lab of a play, and what is heard of it.
+class CarryPlay {
+ public:
+  CarryPlay(const CarryOptions& options, stage::Stage& stage)
+      : options_(options), stage_(stage), judge_(aside) {}
+
+  Expected<Carried> play() {
+    if (auto set = set_up(); !set) return tl::unexpected(set.error());
+    if (auto started = start(); !started) return tl::unexpected(started.error());
+    const auto over = stage_.until(
+        "carrying", [&] { return judge_.is_over(); },
+        [&] {
+          return Error{fmt::format("the {} was not lifted and set down again", crate), "demo", "",
+                       exit_no};
+        });
+    if (!over && over.error().exit != exit_no) return tl::unexpected(over.error());
+    const Carried carried = judge_.carried();
+    while (over && options_.watch && stage_.look("watching")) {
+    }
+    return carried;
+  }
+
+ private:
+  /// Scene and catalogue, which all are told of.
+  Expected<void> set_up() {
+    Random random(options_.seed * 7919 + 17);
+    const model::CatalogueObject object = drawn_crate(random);
+    const auto catalogue_file = stage_.folder() / "catalogue.toml";
+    const auto scene_file = stage_.folder() / "scene.toml";
+    if (auto written = write_file(catalogue_file, entry_of(object)); !written) return written;
+    auto scene =
+        model::make_scene(model::Catalogue({object}), options_.seed,
+                          {.target = crate, .graspable = {crate}, .distractors = 0});
+    if (!scene) return tl::unexpected(scene.error());
+    const double height = model::half_extents(object.shape).z();
+    scene->objects.front().X_WO = make_pose(
+        Vector3d(-0.15 + random.uniform(-0.04, 0.04), random.uniform(-0.05, 0.05), height));
+    scene->demonstrator.carry_W = aside;
+    const auto hand = model::HandModel::load(model::hand_directory(options_.right));
+    if (!hand) return tl::unexpected(hand.error());
+    scene->demonstrator.reach = hand->reach();
+    if (auto written = write_setting(*scene, scene_file); !written) return written;
+    stage_.set("lab.catalogue=" + catalogue_file.string());
+    stage_.set("lab.scene=" + scene_file.string());
+    stage_.set("mapping.model=");  // that of the hand
+    stage_.set("glove.user=" + scene->demonstrator.user);
+    stage_.set(fmt::format("glove.hand_scale={:.3f}", scene->demonstrator.hand_scale));
+    scene_file_ = scene_file.string();
+    return listen();
+  }
+
+  Expected<void> listen() {
+    const auto config = stage_.config();
+    if (!config) return tl::unexpected(config.error());
+    auto participant = dds::Participant::create(service::membership(*config, "prehend", "viewer"));
+    if (!participant) return tl::unexpected(participant.error());
+    participant_.emplace(std::move(*participant));
+    auto statuses = participant_->reader(dds::service_status);
+    auto objects = participant_->reader(dds::object_state);
+    auto touches = participant_->reader(dds::robot_touch);
+    if (!statuses || !objects || !touches) return fail("cannot listen to the lab", "demo");
+    statuses_.emplace(std::move(*statuses));
+    objects_.emplace(std::move(*objects));
+    touches_.emplace(std::move(*touches));
+    stage_.on_look([this] {
+      hear();
+      return fmt::format("lifted by {:.0f} mm", 1000 * judge_.carried().lifted);
+    });
+    return {};
+  }
+
+  void hear() {
+    for (const auto& sample : statuses_->take())
+      if (!sample.info.gone && sample.data.state() != v1::STATE_STARTING)
+        up_.insert(sample.data.service().to_string());
+    for (const auto& sample : touches_->take()) {
+      if (sample.info.gone) continue;
+      const auto& pads = sample.data.pads();
+      judge_.feel(sample.data.hand().to_string(),
+                  std::any_of(pads.begin(), pads.end(),
+                              [](const v1::PadTouch& pad) { return pad.touching(); }));
+    }
+    for (const auto& sample : objects_->take()) {
+      if (sample.info.gone || sample.data.body().to_string() != crate) continue;
+      if (const auto X_WO = convert::from_message(sample.data.X_WO()))
+        judge_.see(*X_WO, from_ns(sample.data.stamp_ns()));
+    }
+  }
+
+  Expected<void> start() {
+    if (!options_.record.empty())
+      if (auto started = stage_.start(
+              "recorder", "prehend-record",
+              {"--output", std::filesystem::absolute(options_.record).string(), "--quiet"});
+          !started)
+        return started;
+    if (options_.watch)
+      if (auto started = start_console(); !started) return started;
+    const std::string left = hand_setting(options_.left), right = hand_setting(options_.right);
+    auto started = stage_.start_service(
+        "simulation", {fmt::format("simulation.hands=[\"left:{}\", \"right:{}\"]", left, right)});
+    for (const std::string side : {"left", "right"}) {
+      if (!started) return started;
+      started = stage_.start(side + " mapping", "prehend-mapping", {},
+                             {"mapping.hand=" + (side == "left" ? left : right),
+                              "mapping.hand_name=" + side, "mapping.glove=" + side});
+    }
+    if (!started) return started;
+    started = stage_.until(
+        "starting", [&] { return up_.size() >= 3; },
+        [&] {
+          return Error{fmt::format("{} of 3 services came up", up_.size()), "demo", ""};
+        });
+    for (const std::string side : {"left", "right"}) {
+      if (!started) return started;
+      started = start_glove(side);
+    }
+    return started;
+  }
+
+  Expected<void> start_console() {
+    if (auto started = stage_.start_service("console"); !started) return started;
+    const auto log = stage_.folder() / "console.log";
+    return stage_
+        .until(
+            "starting the console",
+            [&] { return read_file(log).value_or("").find("http") != std::string::npos; },
+            [&] {
+              return Error{"did not come up", "console", ""};
+            })
+        .map([&] {
+          const std::string said = read_file(log).value_or("");
+          const std::size_t at = said.find("http");
+          log::info("watch it at {}; Ctrl-C ends it", said.substr(at, said.find('\n', at) - at));
+        });
+  }
+
+  /// A tracker that is emulated, and the glove's driver at the other end of its wire.
+  Expected<void> start_glove(const std::string& side) {
+    const std::string hand = "glove.hand=" + side;
+    const auto port = stage_.folder() / (side + "_port");
+    if (auto started = stage_.start(side + " tracker", "prehend-glove-tool",
+                                    {"emulate", "--kind", "nest_of_birds", "--scene", scene_file_,
+                                     "--link", port.string()},
+                                    {hand});
+        !started)
+      return started;
+    const auto there = stage_.until_there("starting the " + side + " tracker", port, [&] {
+      return Error{"did not open its port", side + " tracker", ""};
+    });
+    if (!there) return there;
+    return stage_.start(side + " glove", "prehend-glove", {},
+                        {hand, "glove.name=" + side, "glove.device=nest_of_birds",
+                         "glove.port=" + port.string()});
+  }
+
+  const CarryOptions& options_;
+  stage::Stage& stage_;
+  CarryJudge judge_;
+  std::string scene_file_;
+  std::optional<dds::Participant> participant_;
+  std::optional<dds::Reader<v1::ServiceStatus>> statuses_;
+  std::optional<dds::Reader<v1::ObjectState>> objects_;
+  std::optional<dds::Reader<v1::HandTouch>> touches_;
+  std::set<std::string> up_;  // keys of services that work
+};
+
+}  // namespace
+
+Expected<void> read_hands(const std::string& text, CarryOptions& options) {
+  const char* hint = "as --hands left:barrett,right:barrett";
+  std::map<std::string, std::string> hands;
+  for (std::size_t from = 0; from <= text.size();) {
+    const std::size_t end = std::min(text.find(',', from), text.size());
+    const std::string entry = text.substr(from, end - from);
+    const std::size_t colon = entry.find(':');
+    const std::string side = entry.substr(0, colon);
+    if (colon == std::string::npos || colon + 1 == entry.size() ||
+        (side != "left" && side != "right") || hands.contains(side))
+      return wrong_use("«" + entry + "» is no hand", "--hands", hint);
+    hands[side] = entry.substr(colon + 1);
+    from = end + 1;
+  }
+  if (hands.size() != 2) return wrong_use("names one hand", "--hands", hint);
+  std::string& left = hands["left"];
+  if (!left.ends_with("_left")) left += "_left";
+  for (const auto& [side, hand] : hands)
+    if (!model::is_hand(model::hand_directory(hand)))
+      return wrong_use("'" + hand + "' is no hand", "--hands", model::hand_hint());
+  options.left = left;
+  options.right = hands["right"];
+  return {};
+}
+
+Expected<Carried> carry(const CarryOptions& options, const stage::Progress& progress) {
+  // The mirror image is led by the same networks.
+  if (auto trained = train_hand({.lab = options.lab, .hand = options.right}); !trained)
+    return tl::unexpected(trained.error());
+  auto stage = stage::Stage::create({options.lab, options.timeout, options.keep, progress});
+  if (!stage) return tl::unexpected(stage.error());
+  return CarryPlay(options, *stage).play();
+}
+
+}  // namespace prehend::cli

@@ -1,0 +1,60 @@
+// What came of an object that two hands carried: every way in which it can go wrong is told.
+#include "services/cli/service/carry_judge.hpp"
+
+#include <gtest/gtest.h>
+
+namespace prehend::cli {
+namespace {
+
+using Eigen::Vector3d;
+
+struct Way {
+  double lift = 0.12, aside = 0.30, tilt = 0;  // m, m, rad
+  bool left = true, right = true, sets_down = true;
+};
+
+/// Lifted in a second, carried in another, set down in a third, and left alone.
+Carried carried(const Way& way) {
+  CarryJudge judge(Vector3d(0.3, 0, 0));
+  const Vector3d first(-0.1, 0.02, 0.125);
+  const auto at = [&](double t, double aside, double up, double tilt) {
+    judge.see(make_pose(first + Vector3d(aside, 0, up),
+                        Eigen::Quaterniond(Eigen::AngleAxisd(tilt, Vector3d::UnitY()))),
+              Time(seconds(1000 + t)));
+  };
+  judge.feel("left", way.left);
+  judge.feel("right", way.right);
+  for (double t = 0; t < 1; t += 0.01) at(t, 0, way.lift * t, way.tilt * t);
+  for (double t = 0; t < 1; t += 0.01) at(1 + t, way.aside * t, way.lift, way.tilt);
+  EXPECT_FALSE(judge.is_over()) << "while it is carried";
+  if (!way.sets_down) return judge.carried();
+  for (double t = 0; t < 1; t += 0.01) at(2 + t, way.aside, way.lift * (1 - t), way.tilt * (1 - t));
+  for (double t = 0; t < 1; t += 0.01) at(3 + t, way.aside, 0, 0);
+  EXPECT_EQ(judge.is_over(), way.lift > 0.02);
+  return judge.carried();
+}
+
+TEST(CarryJudge, SaysWhatWasDone) {
+  const Carried good = carried({});
+  EXPECT_TRUE(good.done());
+  EXPECT_NEAR(good.lifted, 0.12, 2e-3);
+  EXPECT_NEAR(good.off, 0, 1e-9);
+  EXPECT_NEAR(good.both, 1, 1e-9);
+  EXPECT_TRUE(carried({.aside = 0.28}).done()) << "2 cm off";
+  EXPECT_TRUE(carried({.tilt = 0.15}).done());
+}
+
+TEST(CarryJudge, TellsEachWayInWhichItGoesWrong) {
+  EXPECT_FALSE(carried({.lift = 0.09}).done()) << "too low";
+  EXPECT_FALSE(carried({.lift = 0}).done()) << "pushed along";
+  EXPECT_FALSE(carried({.aside = 0.26}).done()) << "4 cm off";
+  EXPECT_FALSE(carried({.aside = 0}).done()) << "set down where it was";
+  EXPECT_FALSE(carried({.tilt = 0.2}).done()) << "tilted by 11 degrees";
+  EXPECT_NEAR(carried({.tilt = 0.2}).tilt, 0.2, 1e-6);
+  EXPECT_FALSE(carried({.left = false}).done()) << "by one hand";
+  EXPECT_EQ(carried({.left = false}).both, 0);
+  EXPECT_FALSE(carried({.sets_down = false}).done()) << "still up";
+}
+
+}  // namespace
+}  // namespace prehend::cli
