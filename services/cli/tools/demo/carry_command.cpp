@@ -14,14 +14,11 @@ namespace prehend::cli {
 namespace {
 
 std::string to_json(const Carried& carried, const CarryOptions& options) {
-  return nlohmann::ordered_json{{"task", "carry"},
-                                {"hands", {{"left", options.left}, {"right", options.right}}},
-                                {"seed", options.seed},
-                                {"lifted_m", carried.lifted},
-                                {"off_m", carried.off},
-                                {"tilt_rad", carried.tilt},
-                                {"both", carried.both},
-                                {"done", carried.done()}}
+  return nlohmann::ordered_json{
+      {"task", "carry"},      {"hands", {{"left", options.left}, {"right", options.right}}},
+      {"seed", options.seed}, {"lifted_m", carried.lifted},
+      {"off_m", carried.off}, {"tilt_rad", carried.tilt},
+      {"both", carried.both}, {"done", carried.done()}}
       .dump();
 }
 
@@ -39,7 +36,7 @@ std::string to_line(const Carried& carried) {
 int carry_command(const std::vector<std::string>& arguments) {
   CLI::App app{
       "Two robot hands in one world carry a crate that is too wide for one of them, as a person\n"
-      "with two gloves shows it: a tracker, a glove, a mapping and a gate for each. Exit code 0:\n"
+      "with two gloves shows it: a device, a glove, a mapping and a gate for each. Exit code 0:\n"
       "lifted by 10 cm, carried 30 cm aside, set down within 3 cm, level within 10 degrees;\n"
       "1: not so, 2: wrong use, 3: the environment is broken.",
       "prehend demo --hands"};
@@ -47,10 +44,13 @@ int carry_command(const std::vector<std::string>& arguments) {
   std::string hands, task = "carry";
   bool json = false, quiet = false;
   options.lab.add_to(app);
-  app.add_option("--hands", hands, "left:HAND,right:HAND; a left one may be named as its mirror image")
+  app.add_option("--hands", hands,
+                 "left:HAND,right:HAND; a left one may be named as its mirror image")
       ->required();
   app.add_option("--task", task, "carry")->check(CLI::IsMember({"carry"}));
   app.add_option("--seed", options.seed, "draws the crate, where it stands, person and noise");
+  app.add_option("--glove", options.glove,
+                 "DEVICE of both, see `prehend glove devices`: what has an emulator is emulated");
   app.add_option("--timeout", options.timeout, "s until it must stand again")
       ->check(CLI::Range(1.0, 3600.0));
   app.add_option("--record", options.record, "record all topics into this file");

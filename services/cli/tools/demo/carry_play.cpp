@@ -18,6 +18,7 @@
 #include "common/model/hand_model.hpp"
 #include "common/service/membership.hpp"
 #include "services/cli/tools/demo/chosen_hand.hpp"
+#include "services/cli/tools/demo/emulated_glove.hpp"
 #include "services/cli/tools/demo/setting.hpp"
 
 namespace prehend::cli {
@@ -32,9 +33,9 @@ const Vector3d aside(0.30, 0, 0);  // m
 model::CatalogueObject drawn_crate(Random& random) {
   model::CatalogueObject object;
   object.name = crate;
-  object.shape = {model::ShapeKind::box,
-                  Vector3d(random.uniform(0.26, 0.34), random.uniform(0.22, 0.28),
-                           random.uniform(0.22, 0.28))};
+  object.shape = {
+      model::ShapeKind::box,
+      Vector3d(random.uniform(0.26, 0.34), random.uniform(0.22, 0.28), random.uniform(0.22, 0.28))};
   object.mass = random.uniform(0.4, 0.8);
   object.material = "wood";
   return object;
@@ -56,6 +57,7 @@ class CarryPlay {
       : options_(options), stage_(stage), judge_(aside) {}
 
   Expected<Carried> play() {
+    if (auto chosen = choose_glove(); !chosen) return tl::unexpected(chosen.error());
     if (auto set = set_up(); !set) return tl::unexpected(set.error());
     if (auto started = start(); !started) return tl::unexpected(started.error());
     const auto over = stage_.until(
@@ -72,6 +74,19 @@ class CarryPlay {
   }
 
  private:
+  Expected<void> choose_glove() {
+    auto gloves = ask_glove_rows();
+    if (!gloves) return tl::unexpected(gloves.error());
+    gloves_ = std::move(*gloves);
+    auto glove = glove_row(gloves_, options_.glove);
+    if (!glove) return wrong_use(glove.error().what, glove.error().where, glove.error().hint);
+    glove_ = std::move(*glove);
+    if (!glove_.emulator && glove_.line != "none")
+      return wrong_use("has nobody who carries a crate", "--glove " + glove_.name,
+                       "choose one that is emulated: `prehend glove devices`");
+    return {};
+  }
+
   /// Scene and catalogue, which all are told of.
   Expected<void> set_up() {
     Random random(options_.seed * 7919 + 17);
@@ -79,9 +94,8 @@ class CarryPlay {
     const auto catalogue_file = stage_.folder() / "catalogue.toml";
     const auto scene_file = stage_.folder() / "scene.toml";
     if (auto written = write_file(catalogue_file, entry_of(object)); !written) return written;
-    auto scene =
-        model::make_scene(model::Catalogue({object}), options_.seed,
-                          {.target = crate, .graspable = {crate}, .distractors = 0});
+    auto scene = model::make_scene(model::Catalogue({object}), options_.seed,
+                                   {.target = crate, .graspable = {crate}, .distractors = 0});
     if (!scene) return tl::unexpected(scene.error());
     const double height = model::half_extents(object.shape).z();
     scene->objects.front().X_WO = make_pose(
@@ -186,29 +200,24 @@ class CarryPlay {
         });
   }
 
-  /// A tracker that is emulated, and the glove's driver at the other end of its wire.
   Expected<void> start_glove(const std::string& side) {
-    const std::string hand = "glove.hand=" + side;
-    const auto port = stage_.folder() / (side + "_port");
-    if (auto started = stage_.start(side + " tracker", "prehend-glove-tool",
-                                    {"emulate", "--kind", "nest_of_birds", "--scene", scene_file_,
-                                     "--link", port.string()},
-                                    {hand});
-        !started)
-      return started;
-    const auto there = stage_.until_there("starting the " + side + " tracker", port, [&] {
-      return Error{"did not open its port", side + " tracker", ""};
-    });
-    if (!there) return there;
-    return stage_.start(side + " glove", "prehend-glove", {},
-                        {hand, "glove.name=" + side, "glove.device=nest_of_birds",
-                         "glove.port=" + port.string()});
+    std::vector<std::string> sets{"glove.hand=" + side, "glove.name=" + side,
+                                  "glove.device=" + glove_.name};
+    if (glove_.emulator) {
+      const auto told =
+          emulate({glove_, scene_file_, "", side + " ", {"glove.hand=" + side}}, gloves_, stage_);
+      if (!told) return tl::unexpected(told.error());
+      sets.insert(sets.end(), told->begin(), told->end());
+    }
+    return stage_.start(side + " glove", "prehend-glove", {}, sets);
   }
 
   const CarryOptions& options_;
   stage::Stage& stage_;
   CarryJudge judge_;
   std::string scene_file_;
+  std::vector<GloveRow> gloves_;  // that there are
+  GloveRow glove_;
   std::optional<dds::Participant> participant_;
   std::optional<dds::Reader<v1::ServiceStatus>> statuses_;
   std::optional<dds::Reader<v1::ObjectState>> objects_;
@@ -219,7 +228,8 @@ class CarryPlay {
 }  // namespace
 
 Expected<void> read_hands(const std::string& text, CarryOptions& options) {
-  const char* hint = "as --hands left:barrett,right:barrett";
+  const std::string some = model::hand_names().front();
+  const std::string hint = fmt::format("as --hands left:{},right:{}", some, some);
   std::map<std::string, std::string> hands;
   for (std::size_t from = 0; from <= text.size();) {
     const std::size_t end = std::min(text.find(',', from), text.size());

@@ -13,14 +13,15 @@ struct CarryOptions {
   service::LabArguments lab;
   std::uint64_t seed = 1;   // of where the crate stands, its size and weight, of person and noise
   std::string left, right;  // robot hands
-  double timeout = 60;      // s, until it must stand again
-  bool keep = false;        // keeps the folder with scene and logs
-  std::string record;       // file that takes all topics; empty: none
-  bool watch = false;       // with a console, and it goes on until it is interrupted
+  std::string glove;    // kind of both, see `prehend glove devices`; empty: one that is emulated
+  double timeout = 60;  // s, until it must stand again
+  bool keep = false;    // keeps the folder with scene and logs
+  std::string record;   // file that takes all topics; empty: none
+  bool watch = false;   // with a console, and it goes on until it is interrupted
 };
 
-/// A person with two gloves presses a crate between both palms and carries it aside; two robot hands
-/// in one world do the same: a glove, a mapping and a gate for each.
+/// A person with two gloves presses a crate between both palms and carries it aside; two robot
+/// hands in one world do the same: a glove, a mapping and a gate for each.
 Expected<Carried> carry(const CarryOptions& options, const stage::Progress& progress);
 
 /// The hands of «left:HAND,right:HAND». A left hand that is none, by its name, is the mirror image

@@ -53,7 +53,7 @@ void add_choices(CLI::App& app) {
                  "elsewhere;\nprehend demo --task pick-and-place --help tells more");
   app.add_option("--hands",
                  "left:HAND,right:HAND: two hands carry a crate together;\n"
-                 "prehend demo --hands left:barrett,right:barrett --help tells more");
+                 "prehend demo --hands left:HAND,right:HAND --help tells more");
   app.add_flag_callback(
       "--targets", [] {}, "only say what `cmake --build` must make for this");
 }

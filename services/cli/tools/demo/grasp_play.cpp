@@ -1,7 +1,6 @@
 #include "services/cli/tools/demo/grasp_play.hpp"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
 
@@ -11,7 +10,7 @@
 #include "common/model/hand_model.hpp"
 #include "common/stage/arm.hpp"
 #include "services/cli/tools/demo/chosen_hand.hpp"
-#include "services/cli/tools/demo/free_address.hpp"
+#include "services/cli/tools/demo/emulated_glove.hpp"
 #include "services/cli/tools/demo/setting.hpp"
 
 namespace prehend::cli {
@@ -29,10 +28,6 @@ std::string absolute(const std::string& path) {
 
 bool in(const std::vector<std::string>& list, std::string_view entry) {
   return std::find(list.begin(), list.end(), entry) != list.end();
-}
-
-bool is_serial(const GloveRow& row) {
-  return row.line == "serial";
 }
 
 /// A hand that the console's page tracks comes as datagrams.
@@ -67,14 +62,10 @@ Expected<void> GraspPlay::look_up() {
   const auto gloves = ask_glove_rows();
   if (!gloves) return broken(gloves.error());
   gloves_ = *gloves;
-  if (glove_.kind.empty()) {
-    const auto first = std::find_if(gloves_.begin(), gloves_.end(),
-                                    [](const GloveRow& row) { return row.emulator; });
-    glove_.kind = first == gloves_.end() ? gloves_.front().name : first->name;
-  }
-  auto glove = find_row(gloves_, glove_.kind, "--glove");
+  auto glove = glove_row(gloves_, glove_.kind);
   if (!glove) return wrong(glove.error());
   glove_row_ = *glove;
+  glove_.kind = glove->name;
   return look_up_camera();
 }
 
@@ -221,12 +212,6 @@ Expected<void> GraspPlay::await_service(const std::string& name) {
       });
 }
 
-Expected<void> GraspPlay::await_port(const std::filesystem::path& port, const std::string& name) {
-  return stage_.until_there("starting the " + name, port, [&] {
-    return Error{"did not open its port", name, ""};
-  });
-}
-
 // --- those who play
 
 /// Up before the others, so that it misses nothing.
@@ -277,7 +262,7 @@ Expected<void> GraspPlay::start_robot() {
                                    port.string(), "--twin", twin});
       !started)
     return started;
-  if (auto there = await_port(port, name); !there) return there;
+  if (auto there = await_port(port, name, stage_); !there) return there;
   // Who emulates shares the processors with everybody, and may have to wait for them.
   awaited_.push_back("robot");
   return stage_.start_service(
@@ -289,39 +274,13 @@ Expected<void> GraspPlay::start_glove(const std::filesystem::path& scene_file,
                                       const std::string& truth) {
   std::vector<std::string> sets{truth};
   if (glove_row_.emulator) {
-    const bool serial = is_serial(glove_row_);
-    std::string port = serial ? absolute(glove_.detail) : glove_.detail;
-    if (port.empty()) {
-      port = serial                       ? (stage_.folder() / "glove_port").string()
-             : glove_row_.line == "nodes" ? fmt::format("demo_{}/hand_joints", ::getpid())
-                                          : free_address();
-      if (auto there = emulate(glove_row_, scene_file, port, {}); !there) return there;
-      if (!glove_row_.tracker.empty()) {
-        // The glove measures only joints: a tracker on its back says where the hand is.
-        const std::string wrist = (stage_.folder() / "wrist_port").string();
-        const auto tracker = find_row(gloves_, glove_row_.tracker, glove_row_.name);
-        if (!tracker) return broken(tracker.error());
-        if (auto there = emulate(*tracker, scene_file, wrist, {"glove.sites=[\"back_of_hand\"]"});
-            !there)
-          return there;
-        sets.push_back("glove.wrist_port=" + wrist);
-      }
-    }
-    sets.push_back("glove.port=" + port);
+    EmulatedGlove glove{glove_row_, scene_file, glove_.detail, "", {}};
+    if (glove_row_.line == "serial") glove.port = absolute(glove_.detail);
+    const auto told = emulate(glove, gloves_, stage_);
+    if (!told) return broken(told.error());
+    sets.insert(sets.end(), told->begin(), told->end());
   }
   return stage_.start_service("glove", sets);
-}
-
-Expected<void> GraspPlay::emulate(const GloveRow& row, const std::filesystem::path& scene_file,
-                                  const std::string& port, std::vector<std::string> sets) {
-  const std::string name = "emulated " + row.name;
-  std::vector<std::string> arguments{"emulate", "--kind", row.name, "--scene", scene_file.string()};
-  if (is_serial(row))
-    arguments.insert(arguments.end(), {"--link", port});
-  else
-    sets.push_back("glove.port=" + port);
-  auto started = stage_.start(name, "prehend-glove-tool", arguments, sets);
-  return started && is_serial(row) ? await_port(port, name) : started;
 }
 
 }  // namespace prehend::cli

@@ -55,12 +55,7 @@ class GraspPlay {
   Expected<void> start_robot();
   Expected<void> await_plans();
   Expected<void> start_glove(const std::filesystem::path& scene_file, const std::string& truth);
-  /// Starts a device that is not there, and waits until it is plugged in.
-  Expected<void> emulate(const GloveRow& row, const std::filesystem::path& scene_file,
-                         const std::string& port, std::vector<std::string> sets);
-
   Expected<void> await_service(const std::string& name);
-  Expected<void> await_port(const std::filesystem::path& port, const std::string& name);
   /// A robot says something of its joints only when it is homed and follows.
   bool is_ready(const std::string& name) const;
   std::string missing() const;

@@ -1,5 +1,6 @@
 #include "services/cli/tools/demo/rows.hpp"
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "common/stage/process.hpp"
@@ -50,6 +51,14 @@ Expected<std::vector<GloveRow>> ask_glove_rows() {
 
 Expected<std::vector<CameraRow>> ask_camera_rows() {
   return stage::printed_by("prehend-camera", {"sources", "--json"}, patience).and_then(camera_rows);
+}
+
+Expected<GloveRow> glove_row(const std::vector<GloveRow>& rows, const std::string& name) {
+  if (!name.empty()) return find_row(rows, name, "--glove");
+  const auto first =
+      std::find_if(rows.begin(), rows.end(), [](const GloveRow& row) { return row.emulator; });
+  if (first == rows.end()) return fail("no device can be emulated", "--glove");
+  return *first;
 }
 
 }  // namespace prehend::cli

@@ -42,4 +42,7 @@ Expected<Row> find_row(const std::vector<Row>& rows, const std::string& name,
   return fail("there is no '" + name + "'", where, "choose one of " + known);
 }
 
+/// What --glove names; empty: the first that can be emulated.
+Expected<GloveRow> glove_row(const std::vector<GloveRow>& rows, const std::string& name);
+
 }  // namespace prehend::cli

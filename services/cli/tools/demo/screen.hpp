@@ -6,8 +6,8 @@
 
 namespace prehend::cli {
 
-/// How a play goes: one line that is renewed on a terminal; otherwise a line whenever there is news,
-/// but not often.
+/// How a play goes: one line that is renewed on a terminal; otherwise a line whenever there is
+/// news, but not often.
 class Screen {
  public:
   /// Of a quiet one nothing is seen, nor beside a log in JSON.
