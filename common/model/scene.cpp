@@ -56,7 +56,8 @@ class TableReader {
     read_list(key, n);
     if (n.size() != 4)
       return complain(key, "needs four numbers: opening, engage, clearance, half width");
-    if (*std::min_element(n.begin(), n.end()) < 0) return complain(key, "must not be negative");
+    // Fingers may touch before the origin of G is at the surface.
+    if (std::min({n[0], n[2], n[3]}) < 0) return complain(key, "must not be negative");
     value = {n[0], n[1], n[2], n[3]};
   }
   void read(std::string_view key, Pose& value) {

@@ -111,6 +111,24 @@ Eigen::Vector3d half_extents(const Shape& shape) {
   return Eigen::Vector3d::Zero();
 }
 
+double extent(const Shape& shape, const Eigen::Vector3d& direction_O) {
+  const Eigen::Vector3d& size = shape.size;
+  const double flat = direction_O.head<2>().norm(), up = 0.5 * direction_O.z() * size.z();
+  switch (shape.kind) {
+    case ShapeKind::box:
+      return 0.5 * direction_O.cwiseAbs().dot(size);
+    case ShapeKind::sphere:
+      return size.x();
+    case ShapeKind::cylinder:
+    case ShapeKind::cone:
+      // One of its two rims is there.
+      return std::max(size.x() * flat - up, size.y() * flat + up);
+    case ShapeKind::unknown:
+      break;
+  }
+  return 0;
+}
+
 double signed_distance(const Shape& shape, const Eigen::Vector3d& p_O) {
   switch (shape.kind) {
     case ShapeKind::cylinder:

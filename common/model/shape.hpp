@@ -54,6 +54,9 @@ Shape like_known(const Shape& shape);
 /// Half the edges of the box that bounds the shape along its own axes, m.
 Eigen::Vector3d half_extents(const Shape& shape);
 
+/// How far the shape reaches from O along a unit vector in O, m; of an unknown kind 0.
+double extent(const Shape& shape, const Eigen::Vector3d& direction_O);
+
 /// m³; of an unknown kind that of the sphere.
 double volume(const Shape& shape);
 

@@ -25,7 +25,8 @@ class TwoHands : public Rig {
                "mass = 0.6\nmaterial = \"wood\"\n[object.appearance]\ncolours = [[0.6, 0.4, 0.2]]\n"
                "pattern = \"plain\"\nseed = 1\n");
     write_text("scene.toml",
-               "[demonstrator]\ntarget = \"Crate\"\ncarry_W = [0.3, 0.0, 0.0]\n\n"
+               "[demonstrator]\ntarget = \"Crate\"\ncarry_W = [0.3, 0.0, 0.0]\n"
+               "reach = [0.09, 0.066, 0.038, 0.055]\n\n"
                "[[object]]\nname = \"Crate\"\nX_WO = [-0.1, 0.0, 0.125, 1.0, 0.0, 0.0, 0.0]\n");
     simulation_.emplace(start("simulation", sets({"simulation.hands=[\"left:barrett_left\", "
                                                   "\"right:barrett\"]"})));

@@ -17,7 +17,7 @@ enum class Step { rest, reach, press, hold, lift, carry, lower, stand, release, 
 constexpr std::array<double, 10> step_lasts{2.0, 1.2, 1.2, 1.0, 1.0, 3.0, 1.2, 0.5, 0.8, 0.8};
 constexpr double lifted_by = 0.12;                     // m
 constexpr double beside = 0.12;                        // m, of the object, before it is pressed
-constexpr double pressed = 0.03;                       // m, that palms go further than they can
+constexpr double pressed = 0.02;                       // m, that palms go further than they can
 constexpr double waits_back = 0.2, waits_above = 0.1;  // m
 
 }  // namespace
@@ -41,9 +41,11 @@ Expected<CarryingHand> CarryingHand::create(const model::Scene& room,
   CarryingHand made(std::move(*sensors));
   made.carry_W_ = person.carry_W;
   const Pose& X_WO = target->X_WO;
-  const double half = X_WO.linear().row(0).cwiseAbs().dot(model::half_extents(target->shape));
-  const Vector3d p_WG =
-      X_WO.translation() + (half - person.reach.engage - pressed) * Vector3d::UnitX();
+  const double wide = model::extent(target->shape, X_WO.linear().row(0).transpose());
+  const double high = model::extent(target->shape, X_WO.linear().row(2).transpose());
+  const Vector3d p_WG = X_WO.translation() +
+                        (wide - person.reach.engage - pressed) * Vector3d::UnitX() +
+                        model::pressed_above * high * Vector3d::UnitZ();
   // The palm towards the object, fingers forward, thumb up.
   const Pose X_WG = make_pose(p_WG, model::grasp_axes(-Vector3d::UnitX(), Vector3d::UnitY()));
   made.X_WH_ = X_WG * model::HumanHand(person.hand_scale).X_HG().inverse();

@@ -17,16 +17,8 @@ constexpr auto size_input_names =
                              {SizeInput::seen, "seen"}});
 
 /// How far the shape reaches along a unit direction of its frame, from end to end, m.
-double extent(const model::Shape& shape, const Eigen::Vector3d& direction) {
-  const Eigen::Vector3d half = model::half_extents(shape);
-  switch (shape.kind) {
-    case model::ShapeKind::cylinder:
-      return 2 * (half.x() * direction.head<2>().norm() + half.z() * std::abs(direction.z()));
-    case model::ShapeKind::sphere:
-      return 2 * half.x();
-    default:
-      return 2 * half.dot(direction.cwiseAbs());
-  }
+double width(const model::Shape& shape, const Eigen::Vector3d& direction) {
+  return model::extent(shape, direction) + model::extent(shape, -direction);
 }
 
 }  // namespace
@@ -51,7 +43,7 @@ Eigen::VectorXd size_numbers(SizeInput input, const model::Shape& seen, const Po
   Eigen::VectorXd numbers(size_count(input, shape.kind));
   const Eigen::Matrix3d R = X_OG.linear();
   if (input == SizeInput::seen)
-    numbers << extent(shape, R.col(1)), extent(shape, R.col(2)), extent(shape, R.col(0)),
+    numbers << width(shape, R.col(1)), width(shape, R.col(2)), width(shape, R.col(0)),
         std::clamp(-R(2, 2), 0.0, 1.0);
   else if (numbers.size() == 1)
     numbers << characteristic_size(shape);

@@ -39,13 +39,28 @@ std::vector<Vector3d> sample_surface(const Shape& shape, Random& random, int cou
   return points;
 }
 
+const Shape shapes[] = {{ShapeKind::cylinder, {0.03, 0.03, 0.1}},
+                        {ShapeKind::box, {0.04, 0.2, 0.12}},
+                        {ShapeKind::sphere, {0.04, 0.04, 0.04}},
+                        {ShapeKind::cone, {0.025, 0.04, 0.1}},
+                        {ShapeKind::cone, {0.05, 0, 0.08}}};
+
+TEST(Shape, ReachesAsFarAsTheFarthestPointOfItsSurface) {
+  Random random(8);
+  for (const Shape& shape : shapes) {
+    const auto surface = sample_surface(shape, random, 60000);
+    for (int i = 0; i < 60; ++i) {
+      const Vector3d direction = random.normal3(1).normalized();
+      double farthest = -1;
+      for (const Vector3d& p : surface) farthest = std::max(farthest, p.dot(direction));
+      EXPECT_GE(extent(shape, direction), farthest - 1e-9) << to_string(shape.kind);
+      EXPECT_NEAR(extent(shape, direction), farthest, 2e-3) << to_string(shape.kind);
+    }
+  }
+}
+
 TEST(Shape, SignedDistanceIsTheDistanceToTheSurface) {
   Random random(7);
-  const Shape shapes[] = {{ShapeKind::cylinder, {0.03, 0.03, 0.1}},
-                          {ShapeKind::box, {0.04, 0.2, 0.12}},
-                          {ShapeKind::sphere, {0.04, 0.04, 0.04}},
-                          {ShapeKind::cone, {0.025, 0.04, 0.1}},
-                          {ShapeKind::cone, {0.05, 0, 0.08}}};
   for (const Shape& shape : shapes) {
     const auto surface = sample_surface(shape, random, 60000);
     for (int i = 0; i < 60; ++i) {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <map>
 #include <optional>
@@ -19,6 +20,7 @@
 #include "common/service/membership.hpp"
 #include "services/cli/tools/demo/chosen_hand.hpp"
 #include "services/cli/tools/demo/emulated_glove.hpp"
+#include "services/cli/tools/demo/first_touch.hpp"
 #include "services/cli/tools/demo/setting.hpp"
 
 namespace prehend::cli {
@@ -104,6 +106,10 @@ class CarryPlay {
     const auto hand = model::HandModel::load(model::hand_directory(options_.right));
     if (!hand) return tl::unexpected(hand.error());
     scene->demonstrator.reach = hand->reach();
+    // Who watches the hands presses until these touch.
+    const double touched = first_touch(*hand, object.shape, model::pressed_above * height);
+    if (!std::isfinite(touched)) return wrong_use("does not reach the crate", options_.right);
+    scene->demonstrator.reach.engage = touched;
     if (auto written = write_setting(*scene, scene_file); !written) return written;
     stage_.set("lab.catalogue=" + catalogue_file.string());
     stage_.set("lab.scene=" + scene_file.string());

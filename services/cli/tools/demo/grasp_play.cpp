@@ -277,7 +277,7 @@ Expected<void> GraspPlay::start_glove(const std::filesystem::path& scene_file,
     EmulatedGlove glove{glove_row_, scene_file, glove_.detail, "", {}};
     if (glove_row_.line == "serial") glove.port = absolute(glove_.detail);
     const auto told = emulate(glove, gloves_, stage_);
-    if (!told) return broken(told.error());
+    if (!told) return tl::unexpected(told.error());
     sets.insert(sets.end(), told->begin(), told->end());
   }
   return stage_.start_service("glove", sets);
