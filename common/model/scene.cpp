@@ -56,8 +56,7 @@ class TableReader {
     read_list(key, n);
     if (n.size() != 4)
       return complain(key, "needs four numbers: opening, engage, clearance, half width");
-    // Fingers may touch before the origin of G is at the surface.
-    if (std::min({n[0], n[2], n[3]}) < 0) return complain(key, "must not be negative");
+    if (*std::min_element(n.begin(), n.end()) < 0) return complain(key, "must not be negative");
     value = {n[0], n[1], n[2], n[3]};
   }
   void read(std::string_view key, Pose& value) {
@@ -162,6 +161,7 @@ void read_demonstrator(TableReader& reader, Demonstrator& person) {
   reader.read("grasp_yaw", person.grasp_yaw);
   reader.read("reach", person.reach);
   reader.read("carry_W", person.carry_W);
+  reader.read("X_OG", person.X_OG);
   reader.read("approach_offset", person.approach_offset);
   reader.read("approach_turn", person.approach_turn);
   reader.read("position_noise", person.position_noise);
@@ -177,6 +177,8 @@ std::string contradiction(const Scene& scene) {
   if (!(scene.demonstrator.hand_scale >= 0.7 && scene.demonstrator.hand_scale <= 1.4))
     return "hand_scale must lie in 0.7 to 1.4";
   if (!(scene.demonstrator.carry_W.norm() <= 1)) return "carry_W must be at most 1 m";
+  if (!scene.demonstrator.carry_W.isZero() && !(scene.demonstrator.X_OG.translation().x() > 0))
+    return "X_OG must say where the right hand presses what is carried, at x > 0";
   const std::string& target = scene.demonstrator.target;
   if (!target.empty() &&
       std::none_of(scene.objects.begin(), scene.objects.end(),
@@ -357,7 +359,8 @@ std::string to_toml(const Scene& scene) {
       list(person.approach_offset), list(person.approach_turn), number(person.position_noise),
       number(person.angle_noise), number(person.extreme_rate),
       static_cast<std::int64_t>(person.seed));
-  if (!person.carry_W.isZero()) text += fmt::format("carry_W = {}\n", list(person.carry_W));
+  if (!person.carry_W.isZero())
+    text += fmt::format("carry_W = {}\nX_OG = {}\n", list(person.carry_W), list(person.X_OG));
   for (const PlacedObject& object : scene.objects)
     text +=
         fmt::format("\n[[object]]\nname = {}\nX_WO = {}\n", quoted(object.name), list(object.X_WO));

@@ -25,19 +25,17 @@ struct Light {
   Eigen::Vector3d colour = {1, 1, 1};              // RGB
 };
 
-/// Where two hands press what they carry: so much of half its height above its middle, that it
-/// hangs level.
-inline constexpr double pressed_above = 0.3;
-
 /// The synthetic person: who reaches for what, and how badly.
 struct Demonstrator {
   std::string user = "demo";
   std::string target;       // object; empty: poses only
   double hand_scale = 1.0;  // 1 = average adult
   double grasp_yaw = 0;     // rad about z of W: from where a cylinder is approached
-  /// m: both hands press the target at the height pressed_above and carry it so far; zero: one
-  /// grasps it and puts it back.
+  /// m: both hands press the target and carry it so far; zero: one grasps it and puts it back.
   Eigen::Vector3d carry_W = {0, 0, 0};
+  /// Then: the right hand's grasp frame in the target where they press, from +x of O; the left
+  /// hand's is its mirror image at x = 0.
+  Pose X_OG = Pose::Identity();
   Reach reach;  // of the hand that is led: whoever leads it sees it and gives it room
   Eigen::Vector3d approach_offset = {0, 0, 0};  // m, error of the palm in the hand's frame
   Eigen::Vector3d approach_turn = {0, 0, 0};    // rad, rotation vector of the same

@@ -1,5 +1,5 @@
 // Two hands in one world, each led by its own glove: together they carry what is too wide for one.
-// Who loses its glove stays where it is, alone; a stop stops both.
+// Who loses its glove stays where it is, alone, unless both hold something up; a stop stops both.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -26,7 +26,7 @@ class TwoHands : public Rig {
                "pattern = \"plain\"\nseed = 1\n");
     write_text("scene.toml",
                "[demonstrator]\ntarget = \"Crate\"\ncarry_W = [0.3, 0.0, 0.0]\n"
-               "reach = [0.09, 0.066, 0.038, 0.055]\n\n"
+               "X_OG = [0.084, 0.0, 0.0375, 1.0, 0.0, -1.0, 0.0]\n\n"
                "[[object]]\nname = \"Crate\"\nX_WO = [-0.1, 0.0, 0.125, 1.0, 0.0, 0.0, 0.0]\n");
     simulation_.emplace(start("simulation", sets({"simulation.hands=[\"left:barrett_left\", "
                                                   "\"right:barrett\"]"})));
@@ -113,6 +113,29 @@ TEST_F(TwoHands, CarryWhatIsTooWideForOne) {
   EXPECT_LT(tilt, 10 * M_PI / 180);
   EXPECT_EQ(models_["left"], "barrett_left");
   EXPECT_EQ(models_["right"], "barrett");
+}
+
+TEST_F(TwoHands, WhoLosesItsGloveInTheMiddleMakesTheOtherWait) {
+  start_glove("left");
+  start_glove("right");
+  ASSERT_TRUE(eventually(60, [&] {
+    poll();
+    return X_WO_.translation().z() > 0.125 + 0.08;
+  })) << "is not lifted";
+  gloves_.at("left").signal(SIGKILL);
+  ASSERT_TRUE(eventually(10, [&] {
+    const auto by = moved(20);
+    return by.at("left") < 3e-3 && by.at("right") < 3e-3;
+  })) << "both stay";
+  const Vector3d held = X_WO_.translation();
+  const auto by = moved(300);  // meanwhile the right hand is told to go on, by 0.3 m
+  // Both push as hard as they may, so nothing holds the crate at a place along the line of the push:
+  // 26 mm were seen.
+  EXPECT_LT(by.at("left"), 0.05);
+  EXPECT_LT(by.at("right"), 0.05);
+  EXPECT_LT((X_WO_.translation() - held).norm(), 0.05) << "what they hold stays";
+  EXPECT_NEAR(X_WO_.translation().z(), held.z(), 3e-3);
+  EXPECT_GT(held.z(), 0.125 + 0.07);
 }
 
 TEST_F(TwoHands, EachFollowsItsOwnGloveAndAStopStopsBoth) {

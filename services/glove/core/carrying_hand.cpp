@@ -41,13 +41,8 @@ Expected<CarryingHand> CarryingHand::create(const model::Scene& room,
   CarryingHand made(std::move(*sensors));
   made.carry_W_ = person.carry_W;
   const Pose& X_WO = target->X_WO;
-  const double wide = model::extent(target->shape, X_WO.linear().row(0).transpose());
-  const double high = model::extent(target->shape, X_WO.linear().row(2).transpose());
-  const Vector3d p_WG = X_WO.translation() +
-                        (wide - person.reach.engage - pressed) * Vector3d::UnitX() +
-                        model::pressed_above * high * Vector3d::UnitZ();
-  // The palm towards the object, fingers forward, thumb up.
-  const Pose X_WG = make_pose(p_WG, model::grasp_axes(-Vector3d::UnitX(), Vector3d::UnitY()));
+  made.out_W_ = X_WO.linear().col(0);
+  const Pose X_WG = moved(X_WO * person.X_OG, -pressed * made.out_W_);
   made.X_WH_ = X_WG * model::HumanHand(person.hand_scale).X_HG().inverse();
   return made;
 }
@@ -71,7 +66,7 @@ HandState CarryingHand::hand(double time) const {
   const double there = step < Step::carry ? 0 : step == Step::carry ? s : 1;
   const double carried = back ? 1 - there : there;
   return {.X_WH = moved(X_WH_, carried * carry_W_ + lifted * lifted_by * Vector3d::UnitZ() +
-                                   (1 - closed) * beside * Vector3d::UnitX() +
+                                   (1 - closed) * beside * out_W_ +
                                    (1 - near) * (waits_above * Vector3d::UnitZ() -
                                                  waits_back * Vector3d::UnitY()))};
 }

@@ -25,7 +25,8 @@ class CarryingHand final : public FrameSource {
   explicit CarryingHand(WornSensors sensors) : sensors_(std::move(sensors)) {}
 
   WornSensors sensors_;
-  Pose X_WH_ = Pose::Identity();  // pressing, where the object stands at first
+  Pose X_WH_ = Pose::Identity();                      // pressing, where the object stands at first
+  Eigen::Vector3d out_W_ = Eigen::Vector3d::UnitX();  // unit, away from the object
   Eigen::Vector3d carry_W_ = Eigen::Vector3d::Zero();
 };
 

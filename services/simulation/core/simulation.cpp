@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 #include <utility>
 
 #include "common/base/motion.hpp"
@@ -200,6 +201,17 @@ void Simulation::hold(int hand) {
   world_->brake(hand);
   if (arm_) arm_->brake();
   led(hand).holding = led(hand).braking = true;
+}
+
+bool Simulation::hold_together(int hand, int other) const {
+  std::set<int> own, others;
+  for (const grasping::Touch& touch : world_->touches()) {
+    if (touch.hand == hand) own.insert(touch.body);
+    if (touch.hand == other) others.insert(touch.body);
+  }
+  return std::any_of(own.begin(), own.end(), [&](int body) {
+    return body >= 0 && others.contains(body) && !world_->touches_others(body);
+  });
 }
 
 /// The base must not come back to where it was when it was told to stay, 5 cm behind at 1 m/s.

@@ -68,6 +68,8 @@ class Simulation {
 
   /// Stops as fast as the arm can, and stays there, with its squeeze, until the next command.
   void hold(int hand = 0);
+  /// Do both hands touch one object that nothing else touches?
+  bool hold_together(int hand, int other) const;
 
   /// Lets the world follow the clock: drops what it is behind by more than max_behind (live) or
   /// nothing (lockstep) and returns the time dropped. The first call sets the world's time.

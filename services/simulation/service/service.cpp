@@ -14,6 +14,7 @@ namespace prehend::simulation {
 namespace {
 
 constexpr std::size_t max_waiting = 4;  // closures for the judge
+constexpr Duration partner_silence = std::chrono::milliseconds(100);
 
 }  // namespace
 
@@ -130,7 +131,7 @@ Expected<void> Service::build() {
 Expected<void> Service::open_gate(int hand) {
   robot::Robot robot;
   robot.obey = [this, hand](const v2::HandCommand& message, const gate::Place& place, Time now) {
-    return simulation_->accept(from_message(message, place), now, hand);
+    return obey(message, place, now, hand);
   };
   robot.where = [this, hand] { return where(hand); };
   robot.is_placed = [this, hand] { return simulation_->command(hand).has_value(); };
@@ -142,6 +143,20 @@ Expected<void> Service::open_gate(int hand) {
   if (!gate) return tl::unexpected(gate.error());
   own.gate = std::move(*gate);
   return {};
+}
+
+/// Who holds something up together with a hand that nobody leads any more, or that is stopped,
+/// waits for it, and presses on as it does.
+Expected<void> Service::obey(const v2::HandCommand& message, const gate::Place& place, Time now,
+                             int hand) {
+  if (message.mode() != v1::MODE_HOLD) hands_[static_cast<std::size_t>(hand)].led = now;
+  for (int other = 0; other < static_cast<int>(hands_.size()); ++other) {
+    const Hand& partner = hands_[static_cast<std::size_t>(other)];
+    if (other != hand && now - partner.led > partner_silence &&
+        simulation_->hold_together(hand, other))
+      return fail("waits for the other hand", partner.name, "which is not led");
+  }
+  return simulation_->accept(from_message(message, place), now, hand);
 }
 
 /// What the hand is told at the moment, which after a silence is to stay; before any command it may

@@ -32,6 +32,7 @@ class Service {
     std::string name;  // key of its topics
     model::HandModel model;
     std::unique_ptr<robot::Gatekeeper> gate{};
+    Time led{};  // when it was last told to go on
   };
 
   Service(service::Shell& shell, std::deque<Hand> hands, model::Catalogue catalogue,
@@ -40,6 +41,7 @@ class Service {
   Expected<void> start();
   Expected<void> build();
   Expected<void> open_gate(int hand);
+  Expected<void> obey(const v2::HandCommand& message, const gate::Place& place, Time now, int hand);
   std::optional<gate::Place> where(int hand) const;
   void go(const gate::Place& place, Time now, int hand);
   void on_detection(const v1::ObjectDetection& message);

@@ -80,6 +80,7 @@ def check_aloha():
         assert file.attrs["compress"]
         count = file["action"].shape[0]
         width = file["action"].shape[1]
+        assert len(file.attrs["columns"].split(",")) == width
         for name in ("qpos", "qvel", "effort"):
             assert file[f"observations/{name}"].shape == (count, width), name
         pictures = file["observations/images/camera"]

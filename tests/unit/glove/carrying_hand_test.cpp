@@ -29,6 +29,9 @@ Room with_crate(double width, const Vector3d& carry_W) {
   room.scene.objects.push_back({"Crate", make_pose(Vector3d(0.05, -0.04, 0.1))});
   room.scene.demonstrator.target = "Crate";
   room.scene.demonstrator.carry_W = carry_W;
+  room.scene.demonstrator.X_OG =
+      make_pose(Vector3d(0.5 * width - 0.04, 0.01, 0.02),
+                model::grasp_axes(-Vector3d::UnitX(), Vector3d::UnitY()));
   return room;
 }
 
@@ -52,17 +55,17 @@ TEST(CarryingHand, PressesFromBothSidesAllTheWay) {
       const Room room = with_crate(width, carry_W);
       const CarryingHand right = hand_of(room, false), left = hand_of(room, true);
       const Vector3d stood = room.scene.objects[0].X_WO.translation();
-      const double apart = width - 2 * (room.scene.demonstrator.reach.engage + 0.02);
+      const double apart = width - 2 * (0.04 + 0.02);
       double highest = 0, farthest = 0;
       for (double t = 4.5; t < 10.6; t += 0.01) {  // from held to set down
         const Vector3d r = palm(right, t, false), l = palm(left, t, true);
         EXPECT_NEAR(r.x() - l.x(), apart, 1e-9) << t;
         EXPECT_NEAR((r - l).tail<2>().norm(), 0, 1e-9) << t;
-        const Vector3d middle = (r + l) / 2 - stood;
+        const Vector3d middle = (r + l) / 2 - stood - Vector3d(0, 0.01, 0);
         highest = std::max(highest, middle.z());
         farthest = std::max(farthest, middle.head<2>().norm());
       }
-      EXPECT_NEAR(highest, 0.12 + model::pressed_above * 0.1, 1e-9);
+      EXPECT_NEAR(highest, 0.12 + 0.02, 1e-9);
       EXPECT_NEAR(farthest, carry_W.norm(), 1e-9);
       // The palms look at each other, and thumbs up.
       const Pose X_WG = right.hand(5).X_WH * model::HumanHand(1).X_HG();

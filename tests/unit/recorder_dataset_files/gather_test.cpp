@@ -16,17 +16,20 @@ class GatherTest : public ::testing::Test {
  protected:
   /// Two seconds of a hand that grasps; `objects` stand still on the table.
   std::string record(const std::string& name, const std::string& model,
-                     const std::vector<std::string>& objects, bool held) {
+                     const std::vector<std::string>& objects, bool held,
+                     const std::vector<std::string>& hands = {"hand"}) {
     const auto path = scratch_ / name;
     WrittenRecording file(path);
     for (int t = 0; t <= 2000; t += 50) {
-      file.command(t, "hand", {0.1, 0.2}, model);
-      v1::HandState state;
-      state.hand("hand");
-      state.model(model);
-      state.dof({0.1, 0.2});
-      state.X_WB().orientation().w(1);
-      file.write(dds::robot_state, t, state);
+      for (const std::string& hand : hands) {
+        file.command(t, hand, {0.1, 0.2}, model);
+        v1::HandState state;
+        state.hand(hand);
+        state.model(model);
+        state.dof({0.1, 0.2});
+        state.X_WB().orientation().w(1);
+        file.write(dds::robot_state, t, state);
+      }
       for (const std::string& object : objects) {
         v1::ObjectState body;
         body.body(object);
@@ -36,7 +39,7 @@ class GatherTest : public ::testing::Test {
       }
     }
     v1::GraspReport report;
-    report.hand("hand");
+    report.hand(hands.back());
     report.object(objects.front());
     report.held(held);
     file.write(dds::grasp_report, 1500, report);
@@ -44,8 +47,9 @@ class GatherTest : public ::testing::Test {
     return path.string();
   }
 
-  static Expected<Gathered> gather_all(const std::vector<std::string>& sources) {
-    return gather({.sources = sources, .format = "aloha", .output = "x", .rate = 10});
+  static Expected<Gathered> gather_all(const std::vector<std::string>& sources,
+                                       const std::string& hand = "") {
+    return gather({.sources = sources, .format = "aloha", .output = "x", .rate = 10, .hand = hand});
   }
 
   const testing::Scratch scratch_;
@@ -76,6 +80,28 @@ TEST_F(GatherTest, HandsOfDifferentKindsDoNotMix) {
   ASSERT_FALSE(all);
   EXPECT_EQ(all.error().exit, exit_wrong_use);
   EXPECT_THAT(all.error().message(), HasSubstr("b.mcap: its hand is others, that of the others"));
+}
+
+TEST_F(GatherTest, SeveralHandsStandInOneRowInTheOrderAskedFor) {
+  const std::string both = record("both.mcap", "nobodys", {"Cup"}, true, {"left", "right"});
+  const auto unclear = gather_all({both});
+  ASSERT_FALSE(unclear);
+  EXPECT_THAT(unclear.error().message(), HasSubstr("holds several hands: left, right"));
+  for (const std::vector<std::string>& order :
+       {std::vector<std::string>{"left", "right"}, {"right", "left"}}) {
+    const auto all = gather_all({both}, order[0] + "," + order[1]);
+    ASSERT_TRUE(all) << all.error().message();
+    EXPECT_EQ(all->dataset.hand, "nobodys+nobodys");
+    ASSERT_EQ(all->dataset.episodes.size(), 1u);
+    EXPECT_EQ(all->dataset.episodes[0].episode.success, true);  // judged of the right hand
+    const auto& columns = all->dataset.episodes[0].rows.state.columns;
+    ASSERT_EQ(columns.size(), 18u);
+    EXPECT_EQ(columns[0], order[0] + "_dof0");
+    EXPECT_EQ(columns[9], order[1] + "_dof0");
+  }
+  const auto none = gather_all({both}, "left,third");
+  ASSERT_FALSE(none);
+  EXPECT_THAT(none.error().message(), HasSubstr("holds no hand third but left, right"));
 }
 
 TEST_F(GatherTest, OneThatCannotBeUsedIsPassedBy) {

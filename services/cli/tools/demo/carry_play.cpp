@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
 #include <map>
 #include <optional>
@@ -20,7 +19,7 @@
 #include "common/service/membership.hpp"
 #include "services/cli/tools/demo/chosen_hand.hpp"
 #include "services/cli/tools/demo/emulated_glove.hpp"
-#include "services/cli/tools/demo/first_touch.hpp"
+#include "services/cli/tools/demo/pressing.hpp"
 #include "services/cli/tools/demo/setting.hpp"
 
 namespace prehend::cli {
@@ -30,6 +29,8 @@ using Eigen::Vector3d;
 
 constexpr const char* crate = "Crate";
 const Vector3d aside(0.30, 0, 0);  // m
+/// Where it is pressed: so much of half its height above its middle, that it hangs level.
+constexpr double pressed_above = 0.3;
 
 /// A crate that no hand holds alone.
 model::CatalogueObject drawn_crate(Random& random) {
@@ -105,11 +106,9 @@ class CarryPlay {
     scene->demonstrator.carry_W = aside;
     const auto hand = model::HandModel::load(model::hand_directory(options_.right));
     if (!hand) return tl::unexpected(hand.error());
-    scene->demonstrator.reach = hand->reach();
-    // Who watches the hands presses until these touch.
-    const double touched = first_touch(*hand, object.shape, model::pressed_above * height);
-    if (!std::isfinite(touched)) return wrong_use("does not reach the crate", options_.right);
-    scene->demonstrator.reach.engage = touched;
+    const auto X_OG = pressing_pose(*hand, object.shape, pressed_above * height);
+    if (!X_OG) return wrong_use("does not reach the crate", options_.right);
+    scene->demonstrator.X_OG = *X_OG;
     if (auto written = write_setting(*scene, scene_file); !written) return written;
     stage_.set("lab.catalogue=" + catalogue_file.string());
     stage_.set("lab.scene=" + scene_file.string());

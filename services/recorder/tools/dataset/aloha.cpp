@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 
@@ -88,6 +89,7 @@ Expected<void> write_episode(const Dataset& dataset, const RecordedEpisode& reco
   if (auto done = write_pictures(dataset, recorded, *file); !done) return done;
   file->attribute("/", "sim", recorded.simulated);
   file->attribute("/", "compress", !dataset.sized && !dataset.cameras.empty());
+  file->attribute("/", "columns", fmt::format("{}", fmt::join(rows.state.columns, ",")));
   file->attribute("/", "task", recorded.episode.task);
   file->attribute("/", "recording", recorded.file.filename().string());
   file->attribute("/", "begin_ns", static_cast<std::int64_t>(to_ns(rows.begin)));

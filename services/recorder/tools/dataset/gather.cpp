@@ -1,10 +1,12 @@
 #include "services/recorder/tools/dataset/gather.hpp"
 
 #include <algorithm>
+#include <map>
 
 #include "common/base/log.hpp"
 #include "common/base/printable.hpp"
 #include "common/base/progress.hpp"
+#include "services/recorder/core/dataset/hands.hpp"
 #include "services/recorder/core/dataset/split.hpp"
 #include "services/recorder/tools/dataset/columns_file.hpp"
 #include "services/recorder/tools/dataset/message.hpp"
@@ -13,6 +15,17 @@
 
 namespace prehend::recorder::dataset {
 namespace {
+
+/// Of «left,right».
+std::vector<std::string> names_of(const std::string& list) {
+  std::vector<std::string> names;
+  for (std::size_t from = 0; from <= list.size();) {
+    const std::size_t end = std::min(list.find(',', from), list.size());
+    names.push_back(list.substr(from, end - from));
+    from = end + 1;
+  }
+  return names;
+}
 
 class Gatherer {
  public:
@@ -61,6 +74,7 @@ class Gatherer {
       if (!shares) return tl::unexpected(shares.error());
       shares_ = std::move(*shares);
     }
+    hand_names_ = names_of(options_.hand);
     if (options_.columns.empty()) return {};
     auto columns = load_columns(options_.columns);
     if (!columns) return tl::unexpected(columns.error());
@@ -71,24 +85,32 @@ class Gatherer {
 
   RowOptions row_options() const {
     return {.rate = options_.rate,
-            .turns = options_.turns == "columns" ? Turns::columns : Turns::quaternion,
-            .hand = hand_ ? &*hand_ : nullptr};
+            .turns = options_.turns == "columns" ? Turns::columns : Turns::quaternion};
   }
 
   Expected<void> add(const std::filesystem::path& file) {
     if (columns_) return add_mapped(file);
-    auto read = read_log(file, options_.hand);
-    if (!read) return tl::unexpected(read.error());
-    for (Error& error : read->damage) gathered_.passed_by.push_back(std::move(error));
-    const RecordingLog& log = read->log;
-    if (auto same = same_hand(log.model, file); !same) return same;
+    std::vector<ReadLog> read;
+    for (const std::string& name : hand_names_) {
+      auto of_hand = read_log(file, name);
+      if (!of_hand) return tl::unexpected(of_hand.error());
+      if (read.empty())
+        for (Error& error : of_hand->damage) gathered_.passed_by.push_back(std::move(error));
+      read.push_back(std::move(*of_hand));
+    }
+    if (auto same = same_hands(read, file); !same) return same;
+    std::vector<HandLog> hands;
+    for (std::size_t i = 0; i < read.size(); ++i)
+      hands.push_back({as_name(hand_names_[i]), &read[i].log, hand_of(read[i].log.model)});
+    const RecordingLog& log = read.front().log;
     std::vector<Episode> episodes =
-        given_.empty() ? find_episodes(log) : given_episodes(given_, read->start, "lead the hand");
+        given_.empty() ? find_episodes(hands)
+                       : given_episodes(given_, read.front().start, "lead the hand");
     for (Episode& episode : episodes)
       if (!episode.object.empty()) episode.object = as_name(episode.object);
     return keep_all(
         file, std::move(episodes),
-        [&](const Episode& episode) { return make_rows(log, episode, row_options()); },
+        [&](const Episode& episode) { return make_rows(hands, episode, row_options()); },
         [&](RecordedEpisode& kept) {
           kept.simulated = log.simulated;
           keep_cameras(log.cameras, kept);
@@ -151,19 +173,29 @@ class Gatherer {
     return tl::unexpected(reason);
   }
 
-  Expected<void> same_hand(const std::string& model, const std::filesystem::path& file) {
+  const model::HandModel* hand_of(const std::string& model) const {
+    const auto found = hands_.find(model);
+    return found == hands_.end() ? nullptr : &found->second;
+  }
+
+  Expected<void> same_hands(const std::vector<ReadLog>& read, const std::filesystem::path& file) {
+    std::string models;
+    for (const ReadLog& each : read) models += (models.empty() ? "" : "+") + each.log.model;
     Dataset& dataset = gathered_.dataset;
-    if (!dataset.hand.empty() && dataset.hand != model)
-      return wrong_use("its hand is " + model + ", that of the others " + dataset.hand,
+    if (!dataset.hand.empty() && dataset.hand != models)
+      return wrong_use("its hand is " + models + ", that of the others " + dataset.hand,
                        file.string(), "export them apart");
     if (!dataset.hand.empty()) return {};
-    dataset.hand = model;
-    const auto folder = model::named_hand(model);
-    if (auto hand = folder ? model::HandModel::load(*folder) : tl::unexpected(folder.error()))
-      hand_ = std::move(*hand);
-    else
-      log::warning("{}: its hand {} is not known here: fingertips are left out", file.string(),
-                   printable(model));
+    dataset.hand = models;
+    for (const ReadLog& each : read) {
+      const std::string& model = each.log.model;
+      const auto folder = model::named_hand(model);
+      if (auto hand = folder ? model::HandModel::load(*folder) : tl::unexpected(folder.error()))
+        hands_.insert_or_assign(model, std::move(*hand));
+      else
+        log::warning("{}: its hand {} is not known here: fingertips are left out", file.string(),
+                     printable(model));
+    }
     return {};
   }
 
@@ -196,7 +228,8 @@ class Gatherer {
 
   const DatasetOptions& options_;
   Gathered gathered_;
-  std::optional<model::HandModel> hand_;
+  std::vector<std::string> hand_names_;            // one that is empty: the only hand
+  std::map<std::string, model::HandModel> hands_;  // by kind, those that are known
   std::optional<ColumnsFile> columns_;
   std::vector<std::pair<double, double>> given_;
   Shares shares_;

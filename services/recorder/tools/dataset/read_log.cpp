@@ -130,10 +130,15 @@ class LogTaker {
     return true;
   }
 
-  /// Of the first glove that is heard; the fingers that it measures at first, whenever it does.
+  /// Of the glove that is called like the hand, else of the first that is heard; the fingers that
+  /// it measures at first, whenever it does.
   bool posture(const Value& message, Time time) {
     const std::string glove = text(message, "glove");
     if (glove_.empty()) glove_ = glove;
+    if (glove == hand_ && glove_ != hand_) {
+      glove_ = glove;
+      log_.human_fingertips = {};
+    }
     const auto X_WH = pose(message, "X_WH");
     const auto* tips = list(message, "fingertips");
     if (!X_WH || !tips || tips->size() != model::finger_count) return false;
@@ -229,7 +234,8 @@ Expected<std::string> hand_of(Reader& reader, const std::string& file, const std
     return fail("holds no command of a hand (robot/command)", file,
                 "prehend recording info FILE says what it holds", exit_no);
   if (wanted.empty() && hands.size() > 1)
-    return wrong_use("holds several hands: " + names, file, "choose one with --hand");
+    return wrong_use("holds several hands: " + names, file,
+                     "choose one with --hand, or all as --hand NAME,NAME");
   if (!wanted.empty() && !hands.contains(wanted))
     return wrong_use("holds no hand " + wanted + " but " + names, file);
   return wanted.empty() ? *hands.begin() : wanted;

@@ -30,7 +30,9 @@ void add_dataset_options(CLI::App& app, DatasetOptions& options) {
       ->group(group);
   app.add_option("--size", options.size, "of pictures, as 84x84; without it as recorded")
       ->group(group);
-  app.add_option("--hand", options.hand, "which one, where several are recorded")->group(group);
+  app.add_option("--hand", options.hand,
+                 "which one, where several are recorded, or all side by side: left,right")
+      ->group(group);
   app.add_option("--columns", options.columns,
                  "a file that says which fields of which topics are columns: for recordings of "
                  "others")
