@@ -129,8 +129,8 @@ TEST_F(TwoHands, WhoLosesItsGloveInTheMiddleMakesTheOtherWait) {
   })) << "both stay";
   const Vector3d held = X_WO_.translation();
   const auto by = moved(300);  // meanwhile the right hand is told to go on, by 0.3 m
-  // Both push as hard as they may, so nothing holds the crate at a place along the line of the push:
-  // 26 mm were seen.
+  // Both push as hard as they may, so nothing holds the crate at a place along the line of the
+  // push: 26 mm were seen.
   EXPECT_LT(by.at("left"), 0.05);
   EXPECT_LT(by.at("right"), 0.05);
   EXPECT_LT((X_WO_.translation() - held).norm(), 0.05) << "what they hold stays";

@@ -17,7 +17,7 @@ enum class Step { rest, reach, press, hold, lift, carry, lower, stand, release, 
 constexpr std::array<double, 10> step_lasts{2.0, 1.2, 1.2, 1.0, 1.0, 3.0, 1.2, 0.5, 0.8, 0.8};
 constexpr double lifted_by = 0.12;                     // m
 constexpr double beside = 0.12;                        // m, of the object, before it is pressed
-constexpr double pressed = 0.02;                       // m, that palms go further than they can
+constexpr double pressed = 0.03;                       // m, that palms go further than they can
 constexpr double waits_back = 0.2, waits_above = 0.1;  // m
 
 }  // namespace

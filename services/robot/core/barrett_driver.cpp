@@ -313,7 +313,7 @@ std::string Driver::loop(Time now) {
   }
   if (now - good_ > options_.lost_after) return lose("the wire is lost", now);
   for (std::size_t i = 0; i < motors; ++i)
-    if (control_[i].stuck(now)) return lose(std::string(names[i]) + " is stuck", now);
+    if (control_[i].stuck()) return lose(std::string(names[i]) + " is stuck", now);
   if (temperature_ && *temperature_ > options_.max_temperature) return lose(too_hot(), now);
   return now < deaf_until_ ? std::string() : exchange_block(now);
 }

@@ -10,6 +10,7 @@
 
 #include "services/robot/core/barrett_protocol.hpp"
 #include "services/robot/core/driver.hpp"
+#include "services/robot/core/kept.hpp"
 
 namespace prehend::robot::barrett {
 
@@ -37,8 +38,11 @@ class MotorControl {
   /// Where it shall be; share: of the full effort.
   void follow(double target, double share, Time now);
   void hold();
-  /// It is told to stand still for once, whatever its target is.
-  void rest() { commanded_ = 0; }
+  /// It is told to stand still until the next command, whatever its target is.
+  void rest() {
+    commanded_ = 0;
+    kept_.rest();
+  }
   void close_no_further() { target_ = std::min(target_, position_); }
   /// The velocity to command, counts/s.
   double command(Time now);
@@ -47,9 +51,9 @@ class MotorControl {
   double velocity() const { return velocity_; }
   /// Of what it may press with: -1 to 1; 0 as long as it moves.
   double effort() const;
-  bool stalled() const { return stalled_; }
+  bool stalled() const { return kept_.stalled(); }
   /// Far from where it shall be, and for long.
-  bool stuck(Time now) const;
+  bool stuck() const;
 
  private:
   void watch(Time now);
@@ -58,8 +62,9 @@ class MotorControl {
   double position_ = 0, velocity_ = 0;
   double target_ = 0, ahead_ = 0;  // counts, counts/s
   double share_ = 1, commanded_ = 0;
-  Time seen_{}, told_{}, moved_{};
-  bool known_ = false, stalled_ = false;
+  Time seen_{}, told_{};
+  Kept kept_;
+  bool known_ = false;
 };
 
 /// Speaks with the hand: wakes it, asks who it is and how it fares, sets up RealTime mode, and

@@ -20,8 +20,6 @@ constexpr double near = 0.02;     // rad: there
 constexpr double still = 0.03;    // rad/s
 constexpr double far = 0.5;       // rad, but at most a third of the range
 constexpr double speed_up = 1.2;  // how much faster than the hand may be a servo goes to its goal
-constexpr Duration stalls_after = milliseconds(150);
-constexpr Duration stuck_after = milliseconds(1200);
 
 }  // namespace
 
@@ -92,8 +90,7 @@ void Driver::hold() {
   wants_home_ = false;
   for (Motion& motion : motions_) {
     const model::HandDof& dof = hand_.dofs()[motion.servo.dof];
-    const bool stalled = good_ - motion.free > stalls_after;
-    const double squeeze = stalled ? std::abs(dof.squeeze * motion.servo.pulses) : 0;
+    const double squeeze = motion.kept.stalled() ? std::abs(dof.squeeze * motion.servo.pulses) : 0;
     motion.goal = static_cast<int>(std::lround(
         std::clamp<double>(motion.goal, motion.position - squeeze, motion.position + squeeze)));
   }
@@ -250,7 +247,7 @@ std::string Driver::next_step(Time now) {
   hot_ = false;
   phase_ = Phase::ready;
   good_ = checked_ = now;
-  for (Motion& motion : motions_) motion.free = now;
+  for (Motion& motion : motions_) motion.kept.forget();
   publish(now);
   return cycle(now);
 }
@@ -268,7 +265,7 @@ std::string Driver::loop(Time now) {
   if (waiting_)
     if (std::string said = take(now); !said.empty()) return said;
   for (const Motion& motion : motions_)
-    if (stuck(motion, now)) return lose(named(motion) + " is stuck", now);
+    if (stuck(motion)) return lose(named(motion) + " is stuck", now);
   if (waiting_ || now - asked_ < seconds(1 / options_.rate)) return {};
   return cycle(now);
 }
@@ -357,15 +354,15 @@ void Driver::observe(Motion& motion, const std::string& bytes, Time now) {
   motion.position = number(view.substr(6, 4));
   const double radian =
       std::abs(motion.servo.pulses) * model::radian_of(hand_.dofs()[motion.servo.dof]);
-  if (std::abs(motion.goal - motion.position) < near * radian ||
-      std::abs(motion.velocity) > still * radian)
-    motion.free = now;
+  motion.kept.observe(std::abs(motion.goal - motion.position) < near * radian ||
+                          std::abs(motion.velocity) > still * radian,
+                      now);
 }
 
-bool Driver::stuck(const Motion& motion, Time now) const {
+bool Driver::stuck(const Motion& motion) const {
   const model::HandDof& dof = hand_.dofs()[motion.servo.dof];
   const double most = std::min(far * model::radian_of(dof), (dof.upper - dof.lower) / 3);
-  return now - motion.free > stuck_after &&
+  return motion.kept.stuck() &&
          std::abs(motion.goal - motion.position) > most * std::abs(motion.servo.pulses);
 }
 

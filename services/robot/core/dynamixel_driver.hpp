@@ -11,6 +11,7 @@
 #include "services/robot/core/driver.hpp"
 #include "services/robot/core/dynamixel_protocol.hpp"
 #include "services/robot/core/dynamixel_wiring.hpp"
+#include "services/robot/core/kept.hpp"
 
 namespace prehend::robot::dynamixel {
 
@@ -65,7 +66,7 @@ class Driver final : public robot::Driver {
     double position = 0, velocity = 0, current = 0;  // pulses, pulses/s, units of current
     int goal = 0, limit = 0;                         // pulses; units of current, by the servo's own
     int allowed = 0;                                 // units of current, for the effort
-    Time free{};                                     // when it was last where it shall be, or moved
+    Kept kept;                                       // from going to its goal
   };
 
   std::string begin(Time now);
@@ -84,7 +85,7 @@ class Driver final : public robot::Driver {
   void publish(Time now);
   std::string explain(Time now);
   std::string lose(const std::string& why, Time now);
-  bool stuck(const Motion& motion, Time now) const;
+  bool stuck(const Motion& motion) const;
   std::string stay();
   std::string sync_write(const Item& item, int Motion::*value) const;
   std::string sync_read(const Item& item) const;

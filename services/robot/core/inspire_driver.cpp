@@ -13,7 +13,6 @@ namespace {
 using std::chrono::milliseconds;
 
 constexpr Duration pause = milliseconds(1);
-constexpr Duration stuck_after = milliseconds(1200);
 constexpr Duration tells_again = milliseconds(1000);  // it may have been switched off and on
 constexpr double smoothing = 0.05;                    // s, of velocities
 constexpr double approach = 8;           // 1/s: how fast it goes to a goal that is so far away
@@ -222,8 +221,9 @@ void Driver::observe(const Values& angles, Time now) {
     const int moved = angle_ ? angles[i] - (*angle_)[i] : 0;
     if (dt > 0) velocity_[i] += (moved - velocity_[i] * dt) / (dt + smoothing);
     const int goal = wanted_[angle][i];
-    if (!angle_ || moved != 0 || presses(i) || goal == leave || std::abs(goal - angles[i]) < near)
-      free_[i] = now;
+    kept_[i].observe(
+        !angle_ || moved != 0 || presses(i) || goal == leave || std::abs(goal - angles[i]) < near,
+        now);
   }
   angle_ = angles;
   angles_at_ = now;
@@ -247,7 +247,7 @@ void Driver::judge(Time now) {
     return fault(
         fmt::format("too hot: {} °C, of at most {:.0f} °C", hottest, options_.max_temperature));
   const bool anew = phase_ != Phase::ready;
-  if (anew) become_ready(now);
+  if (anew) become_ready();
   if (anew || reads_angle_) publish(now);
 }
 
@@ -257,10 +257,10 @@ void Driver::fault(const std::string& why) {
 }
 
 /// It stays where it is until it is told where to go. Of one that was led before this must be said.
-void Driver::become_ready(Time now) {
+void Driver::become_ready() {
   be(Phase::ready);
   wanted_[angle] = halt();
-  free_.fill(now);
+  kept_.fill({});
 }
 
 void Driver::publish(Time now) {
@@ -281,10 +281,10 @@ void Driver::publish(Time now) {
   reading_ = std::move(reading);
 }
 
-std::optional<std::string> Driver::what_is_wrong(Time now) const {
+std::optional<std::string> Driver::what_is_wrong() const {
   if (phase_ != Phase::ready || !angle_) return std::nullopt;
   for (std::size_t i = 0; i < motors; ++i)
-    if (now - free_[i] > stuck_after && std::abs(wanted_[angle][i] - (*angle_)[i]) > far)
+    if (kept_[i].stuck() && std::abs(wanted_[angle][i] - (*angle_)[i]) > far)
       return std::string(dof_names[i]) + " is stuck";
   return std::nullopt;
 }

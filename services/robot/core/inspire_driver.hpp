@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "services/robot/core/inspire_protocol.hpp"
+#include "services/robot/core/kept.hpp"
 #include "services/robot/core/polled_driver.hpp"
 
 namespace prehend::robot::inspire {
@@ -37,7 +38,7 @@ class Driver final : public PolledDriver {
   Heard hear(Time now) override;
   void forget() override { parser_.clear(); }
   std::string stay() override;
-  std::optional<std::string> what_is_wrong(Time now) const override;
+  std::optional<std::string> what_is_wrong() const override;
 
   std::string ask(const Block& block);
   std::string tell(std::size_t what, Time now);
@@ -47,7 +48,7 @@ class Driver final : public PolledDriver {
   bool is_plausible(const Values& angles, Time now) const;
   void observe(const Values& angles, Time now);
   void judge(Time now);
-  void become_ready(Time now);
+  void become_ready();
   void fault(const std::string& why);
   void publish(Time now);
   bool presses(std::size_t motor) const;
@@ -67,7 +68,7 @@ class Driver final : public PolledDriver {
   Time cleared_{};          // when it was told last to forget its errors
   bool commanded_ = false;  // ever: before, nothing is said that could move it
   std::array<double, motors> velocity_{};
-  std::array<Time, motors> free_{};  // when it was last where it shall be, or moved, or pressed
+  std::array<Kept, motors> kept_{};  // from going where it shall be, or pressing
   Time read_{}, angles_at_{};
 };
 

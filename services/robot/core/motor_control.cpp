@@ -6,13 +6,11 @@
 namespace prehend::robot::barrett {
 namespace {
 
-constexpr double gain = 12;                     // 1/s
-constexpr double smoothing = 0.5;               // of the velocity, per sample
-constexpr double near = 0.002;                  // rad: there
-constexpr double pushing = 0.06, still = 0.03;  // rad/s, commanded and done
-constexpr double far = 0.5;                     // rad
-constexpr Duration stalls_after = std::chrono::milliseconds(150);
-constexpr Duration stuck_after = std::chrono::milliseconds(1200);
+constexpr double gain = 12;                                      // 1/s
+constexpr double smoothing = 0.5;                                // of the velocity, per sample
+constexpr double near = 0.002;                                   // rad: there
+constexpr double pushing = 0.06, still = 0.03;                   // rad/s, commanded and done
+constexpr double far = 0.5;                                      // rad
 constexpr Duration follows_for = std::chrono::milliseconds(80);  // without a newer target
 
 }  // namespace
@@ -22,10 +20,7 @@ void MotorControl::observe(double position, Time now) {
     const double v = (position - position_) / to_seconds(now - seen_);
     velocity_ += smoothing * (v - velocity_);
   }
-  if (!known_) {
-    target_ = position;
-    moved_ = now;
-  }
+  if (!known_) target_ = position;
   known_ = true;
   position_ = position;
   seen_ = now;
@@ -35,14 +30,9 @@ void MotorControl::observe(double position, Time now) {
 void MotorControl::watch(Time now) {
   const double scale = limits_.counts_per_radian;
   // However gently, it goes on to press once it was kept from moving.
-  const bool pushes = std::abs(commanded_) > (stalled_ ? 0 : pushing * scale);
+  const bool pushes = std::abs(commanded_) > (stalled() ? 0 : pushing * scale);
   const bool moves = std::abs(velocity_) > still * scale && velocity_ * commanded_ > 0;
-  if (!pushes || moves) {
-    moved_ = now;
-    stalled_ = false;
-  } else if (now - moved_ > stalls_after) {
-    stalled_ = true;
-  }
+  kept_.observe(!pushes || moves, now);
 }
 
 void MotorControl::follow(double target, double share, Time now) {
@@ -56,8 +46,9 @@ void MotorControl::follow(double target, double share, Time now) {
 
 void MotorControl::hold() {
   ahead_ = 0;
-  target_ = stalled_ ? std::clamp(target_, position_ - limits_.squeeze, position_ + limits_.squeeze)
-                     : position_;
+  target_ = stalled()
+                ? std::clamp(target_, position_ - limits_.squeeze, position_ + limits_.squeeze)
+                : position_;
 }
 
 double MotorControl::command(Time now) {
@@ -65,23 +56,19 @@ double MotorControl::command(Time now) {
   const double ahead = now - told_ < follows_for ? ahead_ : 0;
   double v = ahead + gain * behind;
   if (ahead == 0 && std::abs(behind) < near * limits_.counts_per_radian) v = 0;
-  const bool still_pressing = stalled_ && v * commanded_ > 0;
+  const bool still_pressing = stalled() && v * commanded_ > 0;
   const double most = still_pressing ? limits_.press * share_ : limits_.speed;
   commanded_ = std::clamp(v, -most, most);
-  if (!still_pressing && stalled_) {
-    stalled_ = false;
-    moved_ = now;
-  }
+  if (!still_pressing && stalled()) kept_.forget();
   return commanded_;
 }
 
 double MotorControl::effort() const {
-  return stalled_ ? std::clamp(commanded_ / limits_.press, -share_, share_) : 0;
+  return stalled() ? std::clamp(commanded_ / limits_.press, -share_, share_) : 0;
 }
 
-bool MotorControl::stuck(Time now) const {
-  return stalled_ && now - moved_ > stuck_after &&
-         std::abs(target_ - position_) > far * limits_.counts_per_radian;
+bool MotorControl::stuck() const {
+  return kept_.stuck() && std::abs(target_ - position_) > far * limits_.counts_per_radian;
 }
 
 }  // namespace prehend::robot::barrett

@@ -47,7 +47,7 @@ std::string PolledDriver::step(std::string_view heard, Time now) {
                 : identity_.empty() ? "does not answer"
                                     : "the wire is lost",
                 now);
-  if (const auto why = what_is_wrong(now)) return lose(*why, now);
+  if (const auto why = what_is_wrong()) return lose(*why, now);
   if (waiting_ && now - asked_ > pace_.patience) {
     waiting_ = false;
     if (phase_ != Phase::offline) count_reject("no answer");

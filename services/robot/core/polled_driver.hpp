@@ -47,7 +47,7 @@ class PolledDriver : public Driver {
   /// What makes it stay where it is; empty: nothing moves, or it presses.
   virtual std::string stay() = 0;
   /// Of one that answers: what is wrong with how it moves.
-  virtual std::optional<std::string> what_is_wrong(Time now) const = 0;
+  virtual std::optional<std::string> what_is_wrong() const = 0;
 
   void suspect(std::string why) { suspicion_ = std::move(why); }
   /// An answer of another device than the one that was asked is suspected and counted.

@@ -10,7 +10,6 @@ namespace {
 using std::chrono::milliseconds;
 
 constexpr Duration pause = milliseconds(5);
-constexpr Duration stuck_after = milliseconds(1200);
 constexpr Duration homes_for = std::chrono::seconds(20);
 constexpr double smoothing = 0.05;       // s, of its velocity
 constexpr int near = 4;                  // counts: there
@@ -149,7 +148,7 @@ void Driver::take(const Status& status, Time now) {
   const Status last = status_.value_or(status);
   status_ = status;
   identity_ = fmt::format("{}, id {}", kind_.title, id_);
-  if (first) moved_ = now;
+  if (first) kept_.forget();
   if (first || homing_ == Homing::none) homes_since_ = now;
   observe(last, now);
   if (homing_ != Homing::none)
@@ -212,9 +211,10 @@ void Driver::observe(const Status& last, Time now) {
   const double moved = scale_.dof_of(status_->position) - scale_.dof_of(last.position);
   const double dt = reading_ ? to_seconds(now - reading_->stamp) : 0;
   if (dt > 0) velocity_ += (moved - velocity_ * dt) / (dt + smoothing);
-  if (status_->position != last.position || status_->object != Object::moving ||
-      (status_->bits & goes) == 0 || std::abs(status_->goal - status_->position) <= near)
-    moved_ = now;
+  kept_.observe(status_->position != last.position || status_->object != Object::moving ||
+                    (status_->bits & goes) == 0 ||
+                    std::abs(status_->goal - status_->position) <= near,
+                now);
   const double effort = !presses() ? 0.0
                                    : (status_->object == Object::while_closing ? 1 : -1) *
                                          scale_.effort_of(said_.force);
@@ -225,9 +225,8 @@ void Driver::observe(const Status& last, Time now) {
                      {}};
 }
 
-std::optional<std::string> Driver::what_is_wrong(Time now) const {
-  if (phase_ == Phase::ready && now - moved_ > stuck_after)
-    return hand_.dofs()[0].name + " is stuck";
+std::optional<std::string> Driver::what_is_wrong() const {
+  if (phase_ == Phase::ready && kept_.stuck()) return hand_.dofs()[0].name + " is stuck";
   return std::nullopt;
 }
 

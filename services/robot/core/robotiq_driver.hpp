@@ -5,6 +5,7 @@
 #include <string>
 #include <string_view>
 
+#include "services/robot/core/kept.hpp"
 #include "services/robot/core/modbus_rtu.hpp"
 #include "services/robot/core/polled_driver.hpp"
 #include "services/robot/core/robotiq_protocol.hpp"
@@ -37,7 +38,7 @@ class Driver final : public PolledDriver {
   Heard hear(Time now) override;
   void forget() override { parser_.clear(); }
   std::string stay() override;
-  std::optional<std::string> what_is_wrong(Time now) const override;
+  std::optional<std::string> what_is_wrong() const override;
 
   bool take(const modbus::Frame& answer, Time now);
   void take(const Status& status, Time now);
@@ -61,7 +62,8 @@ class Driver final : public PolledDriver {
   modbus::Function asked_ = modbus::Function::read_input;
   Homing homing_ = Homing::none;
   double velocity_ = 0;
-  Time read_{}, moved_{}, homes_since_{};
+  Kept kept_;
+  Time read_{}, homes_since_{};
 };
 
 }  // namespace prehend::robot::robotiq

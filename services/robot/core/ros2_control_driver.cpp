@@ -11,13 +11,11 @@
 namespace prehend::robot::ros2_control {
 namespace {
 
-constexpr double margin = 0.1;  // rad, that a joint may be past its range
-constexpr double near = 0.02;   // rad: there
-constexpr double still = 0.03;  // rad/s
-constexpr double far = 0.5;     // rad, but at most a third of the range
-constexpr double faster = 5;    // than the hand's fastest no joint is
-constexpr Duration stalls_after = std::chrono::milliseconds(150);
-constexpr Duration stuck_after = std::chrono::milliseconds(1200);
+constexpr double margin = 0.1;       // rad, that a joint may be past its range
+constexpr double near = 0.02;        // rad: there
+constexpr double still = 0.03;       // rad/s
+constexpr double far = 0.5;          // rad, but at most a third of the range
+constexpr double faster = 5;         // than the hand's fastest no joint is
 constexpr double periods_ahead = 2;  // of commands, until a point is to be reached
 
 }  // namespace
@@ -90,8 +88,7 @@ void Driver::follow(const Eigen::VectorXd& dof, const Eigen::VectorXd& effort, T
 void Driver::hold() {
   if (phase_ == Phase::homing) be(Phase::ready);
   for (Motion& motion : motions_) {
-    const bool stalled = good_ - motion.free > stalls_after;
-    const double squeeze = stalled ? std::abs(dof_of(motion).squeeze) : 0;
+    const double squeeze = motion.kept.stalled() ? std::abs(dof_of(motion).squeeze) : 0;
     motion.goal = std::clamp(motion.goal, motion.position - squeeze, motion.position + squeeze);
   }
 }
@@ -139,7 +136,7 @@ void Driver::hear(std::string_view message, Time now) {
   if (!std::exchange(known_, true)) {
     for (Motion& motion : motions_) {
       motion.goal = motion.position;
-      motion.free = now;
+      motion.kept.forget();
     }
     identity_ = fmt::format("{} joints of ros2_control", motions_.size());
   }
@@ -165,9 +162,9 @@ void Driver::observe(Motion& motion, double position, std::optional<double> velo
   motion.velocity = sound ? *velocity : moved;
   motion.position = position;
   const double radian = model::radian_of(dof_of(motion));
-  if (std::abs(motion.goal - position) < near * radian ||
-      std::abs(motion.velocity) > still * radian)
-    motion.free = now;
+  motion.kept.observe(std::abs(motion.goal - position) < near * radian ||
+                          std::abs(motion.velocity) > still * radian,
+                      now);
 }
 
 std::optional<std::string> Driver::out_of_range() const {
@@ -187,7 +184,7 @@ std::optional<std::string> Driver::what_is_wrong(Time now) const {
   for (const Motion& motion : motions_) {
     const model::HandDof& dof = dof_of(motion);
     const double most = std::min(far * model::radian_of(dof), (dof.upper - dof.lower) / 3);
-    if (now - motion.free > stuck_after && std::abs(motion.goal - motion.position) > most)
+    if (motion.kept.stuck() && std::abs(motion.goal - motion.position) > most)
       return motion.joint + " is stuck";
   }
   return std::nullopt;
@@ -208,7 +205,7 @@ void Driver::publish(Time now) {
 /// A trajectory knows no effort: what is kept from moving is sent no farther ahead than it shall
 /// press.
 double Driver::bounded(const Motion& motion) const {
-  if (good_ - motion.free <= stalls_after) return motion.goal;
+  if (!motion.kept.stalled()) return motion.goal;
   const double press = motion.share * std::abs(dof_of(motion).squeeze);
   return std::clamp(motion.goal, motion.position - press, motion.position + press);
 }

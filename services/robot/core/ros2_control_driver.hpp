@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "services/robot/core/driver.hpp"
+#include "services/robot/core/kept.hpp"
 
 namespace prehend::robot::ros2_control {
 
@@ -34,7 +35,7 @@ class Driver final : public robot::Driver {
     std::string joint;  // in ROS 2
     double position = 0, velocity = 0, effort = 0;
     double goal = 0, share = 1;  // of the effort that it may press with
-    Time free{};                 // when it was last where it shall be, or moved
+    Kept kept;                   // from going to its goal
   };
   void suspect(std::string why, Time now);
   void hear(std::string_view message, Time now);
