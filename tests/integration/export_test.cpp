@@ -172,6 +172,7 @@ TEST_F(Export, WhatCannotBeMeantIsRefused) {
   refused(with_pictures + " --format aloha --rate 0", 2, "--rate 0: out of range (1 to 1000 Hz)");
   refused(with_pictures + " --format aloha --rate 5000", 2, "out of range");
   refused(with_pictures + " --format lerobot --rate 29.97", 2, "whole rows");
+  refused(with_pictures + " --format aloha --hand left,left", 2, "must name each hand once");
   refused(with_pictures + " --format aloha --size 84", 2, "--size 84: is no size of pictures");
   refused(with_pictures + " --format aloha --hand left", 2, "holds no hand left but hand");
   refused(with_pictures + " --format zarr", 2, "--format");

@@ -39,10 +39,7 @@ class MotorControl {
   void follow(double target, double share, Time now);
   void hold();
   /// It is told to stand still until the next command, whatever its target is.
-  void rest() {
-    commanded_ = 0;
-    kept_.rest();
-  }
+  void rest() { commanded_ = 0; }
   void close_no_further() { target_ = std::min(target_, position_); }
   /// The velocity to command, counts/s.
   double command(Time now);

@@ -17,8 +17,6 @@ class Kept {
     time_ = free ? Duration{} : time_ + step;
     seen_ = now;
   }
-  /// It was told to rest until the next observation.
-  void rest() { seen_.reset(); }
   void forget() { *this = Kept(); }
 
   /// Something is in its way.

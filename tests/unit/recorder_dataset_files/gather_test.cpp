@@ -48,8 +48,9 @@ class GatherTest : public ::testing::Test {
   }
 
   static Expected<Gathered> gather_all(const std::vector<std::string>& sources,
-                                       const std::string& hand = "") {
-    return gather({.sources = sources, .format = "aloha", .output = "x", .rate = 10, .hand = hand});
+                                       const std::vector<std::string>& hands = {}) {
+    return gather(
+        {.sources = sources, .format = "aloha", .output = "x", .rate = 10, .hands = hands});
   }
 
   const testing::Scratch scratch_;
@@ -89,7 +90,7 @@ TEST_F(GatherTest, SeveralHandsStandInOneRowInTheOrderAskedFor) {
   EXPECT_THAT(unclear.error().message(), HasSubstr("holds several hands: left, right"));
   for (const std::vector<std::string>& order :
        {std::vector<std::string>{"left", "right"}, {"right", "left"}}) {
-    const auto all = gather_all({both}, order[0] + "," + order[1]);
+    const auto all = gather_all({both}, order);
     ASSERT_TRUE(all) << all.error().message();
     EXPECT_EQ(all->dataset.hand, "nobodys+nobodys");
     ASSERT_EQ(all->dataset.episodes.size(), 1u);
@@ -99,7 +100,7 @@ TEST_F(GatherTest, SeveralHandsStandInOneRowInTheOrderAskedFor) {
     EXPECT_EQ(columns[0], order[0] + "_dof0");
     EXPECT_EQ(columns[9], order[1] + "_dof0");
   }
-  const auto none = gather_all({both}, "left,third");
+  const auto none = gather_all({both}, {"left", "third"});
   ASSERT_FALSE(none);
   EXPECT_THAT(none.error().message(), HasSubstr("holds no hand third but left, right"));
 }

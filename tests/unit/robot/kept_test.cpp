@@ -23,8 +23,8 @@ TEST(Kept, IsStalledThenStuckAndFreeAtOnceWhenItMoves) {
   EXPECT_FALSE(kept.stalled());
 }
 
-// On a busy machine a servo was not heard for 0.6 s, told where to go, not heard again, and said to
-// be stuck.
+// On a busy machine a servo was said to be stuck 0.6 s after it was told where to go, half as long
+// as that takes; time in which it was not heard had counted in full.
 TEST(Kept, WhatIsNotHeardIsNotStuck) {
   Kept kept;
   kept.observe(true, begin);

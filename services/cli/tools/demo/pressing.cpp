@@ -1,5 +1,6 @@
 #include "services/cli/tools/demo/pressing.hpp"
 
+#include <cmath>
 #include <limits>
 #include <numbers>
 #include <vector>
@@ -93,6 +94,7 @@ std::optional<Pose> pressing_pose(const model::HandModel& hand, const model::Sha
   X_OG.linear() = Eigen::Quaterniond::FromTwoVectors(normal, -Vector3d::UnitX()) * X_OG.linear();
   double foremost = std::numeric_limits<double>::infinity();  // x in O
   for (const Vector3d& point : before_box()) foremost = std::min(foremost, (X_OG * point).x());
+  if (!std::isfinite(foremost)) return std::nullopt;  // turned, it passes by
   X_OG.pretranslate((half.x() - foremost) * Vector3d::UnitX());
   return X_OG;
 }

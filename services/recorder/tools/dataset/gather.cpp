@@ -16,17 +16,6 @@
 namespace prehend::recorder::dataset {
 namespace {
 
-/// Of «left,right».
-std::vector<std::string> names_of(const std::string& list) {
-  std::vector<std::string> names;
-  for (std::size_t from = 0; from <= list.size();) {
-    const std::size_t end = std::min(list.find(',', from), list.size());
-    names.push_back(list.substr(from, end - from));
-    from = end + 1;
-  }
-  return names;
-}
-
 class Gatherer {
  public:
   explicit Gatherer(const DatasetOptions& options) : options_(options) {}
@@ -74,7 +63,7 @@ class Gatherer {
       if (!shares) return tl::unexpected(shares.error());
       shares_ = std::move(*shares);
     }
-    hand_names_ = names_of(options_.hand);
+    if (!options_.hands.empty()) hand_names_ = options_.hands;
     if (options_.columns.empty()) return {};
     auto columns = load_columns(options_.columns);
     if (!columns) return tl::unexpected(columns.error());
@@ -228,7 +217,7 @@ class Gatherer {
 
   const DatasetOptions& options_;
   Gathered gathered_;
-  std::vector<std::string> hand_names_;            // one that is empty: the only hand
+  std::vector<std::string> hand_names_{""};        // one that is empty: the only hand
   std::map<std::string, model::HandModel> hands_;  // by kind, those that are known
   std::optional<ColumnsFile> columns_;
   std::vector<std::pair<double, double>> given_;

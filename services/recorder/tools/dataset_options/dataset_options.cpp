@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <charconv>
 #include <cmath>
+#include <set>
 
 #include "common/base/finite_number.hpp"
 
@@ -30,8 +31,10 @@ void add_dataset_options(CLI::App& app, DatasetOptions& options) {
       ->group(group);
   app.add_option("--size", options.size, "of pictures, as 84x84; without it as recorded")
       ->group(group);
-  app.add_option("--hand", options.hand,
+  app.add_option("--hand", options.hands,
                  "which one, where several are recorded, or all side by side: left,right")
+      ->delimiter(',')
+      ->allow_extra_args(false)
       ->group(group);
   app.add_option("--columns", options.columns,
                  "a file that says which fields of which topics are columns: for recordings of "
@@ -60,7 +63,7 @@ std::vector<std::string> to_arguments(const DatasetOptions& options) {
     if (!value.empty()) all.insert(all.end(), {name, value});
   };
   add("--size", options.size);
-  add("--hand", options.hand);
+  for (const std::string& hand : options.hands) add("--hand", hand);
   add("--task", options.task);
   add("--columns", options.columns);
   for (const std::string& episode : options.episodes) add("--episode", episode);
@@ -81,8 +84,11 @@ Expected<void> check(const DatasetOptions& options) {
     return wrong_use("LeRobot wants whole rows a second", fmt::format("--rate {}", options.rate));
   if (const auto size = picture_size(options); !size) return tl::unexpected(size.error());
   if (const auto times = given_times(options); !times) return tl::unexpected(times.error());
-  if (!options.columns.empty() && !options.hand.empty())
-    return wrong_use("is for our own topics", "--hand " + options.hand, "--columns names topics");
+  const std::set<std::string> hands(options.hands.begin(), options.hands.end());
+  if (hands.contains("") || hands.size() < options.hands.size())
+    return wrong_use("must name each hand once", "--hand", "as --hand left,right");
+  if (!options.columns.empty() && !hands.empty())
+    return wrong_use("is for our own topics", "--hand", "--columns names topics");
   return {};
 }
 

@@ -22,7 +22,7 @@ struct DatasetOptions {
   double rate = 30;                   // Hz, of the rows
   std::string turns = "quaternion";   // how orientations are written
   std::string size;                   // of pictures, as 84x84; empty: as recorded
-  std::string hand;                   // empty: the only one
+  std::vector<std::string> hands;     // side by side, in this order; empty: the only one
   std::string task;                   // its words; empty: as recorded
   std::string columns;                // file that maps topics of others; empty: topics are ours
   std::vector<std::string> episodes;  // FROM..TO, s after the recording's begin; empty: found
