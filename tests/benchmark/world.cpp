@@ -1,9 +1,10 @@
-// How fast the world steps while each hand grips an object, as a multiple of real time at 500 Hz,
+// How fast the world steps while each hand grips an object, alone and beside its like, as a multiple of real time at 500 Hz,
 // and what contacts and bodies cost. A step is deterministic, so the figures differ by the machine
 // alone; floors: Barrett 10, DLR 5, Robonaut 3 times real time on one core.
 #include "common/grasping/world.hpp"
 
 #include <benchmark/benchmark.h>
+#include <fmt/format.h>
 #include <malloc.h>
 
 #include <algorithm>
@@ -19,31 +20,38 @@ using namespace prehend::grasping;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
 
-/// A hand that has closed on the Talc at its grasp frame, moved `ahead` m along its z, and
-/// squeezes.
-std::unique_ptr<World> gripping(const model::HandModel& model, double ahead) {
+/// So many hands, apart from each other, that have closed on a Talc each, at their grasp frames moved
+/// `ahead` m along z, and squeeze.
+std::unique_ptr<World> gripping(const model::HandModel& model, double ahead, int hands) {
   const auto& postures = model.postures();
   const VectorXd& preshape = postures.at(postures.contains("power") ? "power" : "open");
-  auto world = std::move(*World::create(model, make_pose(Vector3d(0, 0, 0.6)), preshape));
+  const auto place = [](int hand) { return make_pose(Vector3d(hand, 0, 0.6)); };
+  auto world = std::move(*World::create(model, place(0), preshape));
+  for (int hand = 1; hand < hands; ++hand)
+    if (!world->add_hand(model, place(hand), preshape)) throw std::runtime_error("no hand");
   world->set_gravity(Vector3d::Zero());
   world->set_object_damping(20);
   const Body talc{"Talc", {model::ShapeKind::cylinder, {0.024, 0.024, 0.105}}, 0.15, "plastic", {}};
   const Pose X_GO = make_pose(
       Vector3d(0, 0, ahead), Eigen::AngleAxisd(EIGEN_PI / 2, Vector3d::UnitY()).toRotationMatrix());
-  const Pose X_WG = world->hand_motion().X_WB * model.X_BG();
-  if (!world->add_body(talc, X_WG * X_GO)) throw std::runtime_error("no talc");
-  VectorXd command = world->commanded_dof();
+  for (int hand = 0; hand < hands; ++hand)
+    if (!world->add_body(talc, world->hand_motion(hand).X_WB * model.X_BG() * X_GO))
+      throw std::runtime_error("no talc");
   for (int step = 0; step < 1500; ++step) {
-    const VectorXd now = world->hand_motion().dof;
-    for (Eigen::Index i = 0; i < command.size(); ++i) {
-      const model::HandDof& dof = model.dofs()[static_cast<std::size_t>(i)];
-      if (dof.closing == 0) continue;
-      const double next = command[i] + dof.closing * radian_of(dof) * world->time_step();
-      const double most = now[i] + dof.closing * dof.squeeze;
-      command[i] = dof.closing > 0 ? std::min(next, most) : std::max(next, most);
+    for (int hand = 0; hand < hands; ++hand) {
+      const VectorXd now = world->hand_motion(hand).dof;
+      VectorXd command = world->commanded_dof(hand);
+      for (Eigen::Index i = 0; i < command.size(); ++i) {
+        const model::HandDof& dof = model.dofs()[static_cast<std::size_t>(i)];
+        if (dof.closing == 0) continue;
+        const double next = command[i] + dof.closing * radian_of(dof) * world->time_step();
+        const double most = now[i] + dof.closing * dof.squeeze;
+        command[i] = dof.closing > 0 ? std::min(next, most) : std::max(next, most);
+      }
+      if (!world->command(world->commanded_base(hand), model.clamp(command), Vector3d::Zero(),
+                          hand))
+        throw std::runtime_error("refused");
     }
-    if (!world->command(world->commanded_base(), model.clamp(command)))
-      throw std::runtime_error("refused");
     world->step();
   }
   return world;
@@ -57,13 +65,13 @@ void report(benchmark::State& state, const World& world, double contacts) {
   state.counters["contacts"] = contacts;
 }
 
-void grip(benchmark::State& state, const std::string& name) {
+void grip(benchmark::State& state, const std::string& name, int hands) {
   const std::size_t before = mallinfo2().uordblks;
   // Hands differ in where two links have it.
   std::unique_ptr<World> world;
   bool gripped = false;
   for (const double ahead : {0.0, -0.01, 0.01}) {
-    world = gripping(test::hand(name), ahead);
+    world = gripping(test::hand(name), ahead, hands);
     const auto contacts = world->contacts(0);
     gripped = std::any_of(contacts.begin(), contacts.end(), [&](const auto& contact) {
       return contact.link != contacts.front().link;
@@ -72,7 +80,7 @@ void grip(benchmark::State& state, const std::string& name) {
   }
   if (!gripped) return state.SkipWithError("does not grip");
   const auto memory = static_cast<double>(mallinfo2().uordblks - before);
-  const auto contacts = static_cast<double>(world->contacts(0).size());
+  const auto contacts = hands * static_cast<double>(world->contacts(0).size());
   for (auto _ : state) world->step();
   report(state, *world, contacts);
   state.counters["memory_kB"] = memory / 1024;
@@ -110,8 +118,10 @@ void stacked(benchmark::State& state) {
 
 int main(int argc, char** argv) {
   for (const std::string& name : test::hand_names())
-    benchmark::RegisterBenchmark(("gripping/" + name).c_str(), grip, name)
-        ->Unit(benchmark::kMicrosecond);
+    for (const int hands : {1, 2})
+      benchmark::RegisterBenchmark(fmt::format("gripping/{}/{}", name, hands).c_str(), grip, name,
+                                   hands)
+          ->Unit(benchmark::kMicrosecond);
   benchmark::RegisterBenchmark("bodies", bodies)
       ->Arg(0)
       ->Arg(1)

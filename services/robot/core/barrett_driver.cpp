@@ -286,7 +286,7 @@ std::string Driver::probe(Time now) {
     waiting_ = false;
     deaf_until_ = now;
     phase_ = Phase::ready;
-    good_ = now - milliseconds(1);
+    silence_.end(now - milliseconds(1));
     for (MotorControl& motor : control_) motor.forget();
     accept(*feedback, now);  // each target is where its motor is
     return {};
@@ -296,6 +296,7 @@ std::string Driver::probe(Time now) {
 }
 
 std::string Driver::loop(Time now) {
+  silence_.listen(now);
   if (wants_home_) {
     phase_ = Phase::configured;
     return interrupt(now);
@@ -311,7 +312,7 @@ std::string Driver::loop(Time now) {
     if (now - asked_ > due && now - heard_at_ > quiet / 2)
       return heard_.empty() ? miss(now) : (reject("garbled answer", now), std::string());
   }
-  if (now - good_ > options_.lost_after) return lose("the wire is lost", now);
+  if (now - silence_.began() > options_.lost_after) return lose(silence_.words(now), now);
   for (std::size_t i = 0; i < motors; ++i)
     if (control_[i].stuck()) return lose(std::string(names[i]) + " is stuck", now);
   if (temperature_ && *temperature_ > options_.max_temperature) return lose(too_hot(), now);
@@ -356,7 +357,7 @@ bool Driver::take_block(Time now) {
 /// No joint is faster than its motor. A block has no sum, so what bytes that changed places say is
 /// not believed the more the longer nothing sound has come.
 bool Driver::plausible(const Feedback& feedback, Time now) const {
-  const double dt = std::min(to_seconds(now - good_), max_gap);
+  const double dt = std::min(to_seconds(now - silence_.began()), max_gap);
   for (std::size_t i = 0; i < motors; ++i)
     if (std::abs(feedback.position[i] - control_[i].position()) > max_way(i, dt)) return false;
   return true;
@@ -389,7 +390,7 @@ void Driver::accept(const Feedback& feedback, Time now) {
   if (feedback.temperature) temperature_ = feedback.temperature;
   doubted_.reset();
   doubted_before_.reset();
-  good_ = now;
+  silence_.end(now);
   publish(now);
 }
 

@@ -11,6 +11,7 @@
 #include "services/robot/core/barrett_protocol.hpp"
 #include "services/robot/core/driver.hpp"
 #include "services/robot/core/kept.hpp"
+#include "services/robot/core/silence.hpp"
 
 namespace prehend::robot::barrett {
 
@@ -122,7 +123,8 @@ class Driver final : public robot::Driver {
   Talk talk_ = Talk::silent;
   std::string heard_, line_;
   std::optional<double> temperature_;
-  Time asked_{}, heard_at_{}, good_{};
+  Silence silence_;
+  Time asked_{}, heard_at_{};
   Time deaf_until_{};  // what comes before is an answer that was given up
   std::optional<Feedback> doubted_, doubted_before_;  // in this answer, in the one before
   Duration patience_{};

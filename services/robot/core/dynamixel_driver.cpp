@@ -246,7 +246,8 @@ std::string Driver::next_step(Time now) {
   tells_current_ = true;
   hot_ = false;
   phase_ = Phase::ready;
-  good_ = checked_ = now;
+  checked_ = now;
+  silence_.end(now);
   for (Motion& motion : motions_) motion.kept.forget();
   publish(now);
   return cycle(now);
@@ -255,8 +256,9 @@ std::string Driver::next_step(Time now) {
 // --- goals and places
 
 std::string Driver::loop(Time now) {
+  silence_.listen(now);
   // First of all: their watchdogs may have stopped them, though an answer has come meanwhile.
-  if (now - good_ > options_.lost_after) return lose("the wire is lost", now);
+  if (now - silence_.began() > options_.lost_after) return lose(silence_.words(now), now);
   if (wants_home_) {
     wants_home_ = false;
     phase_ = Phase::homing;
@@ -316,7 +318,7 @@ std::string Driver::take(Time now) {
 std::string Driver::accept(Time now) {
   waiting_ = false;
   if (asks_ == table::torque_enable) {
-    good_ = now;
+    silence_.end(now);
     for (std::size_t i = 0; i < motions_.size(); ++i)
       if (number(answers_[i]) == 0)
         return lose(named(motions_[i]) + " has lost its torque; was it switched off and on?", now);
@@ -325,7 +327,7 @@ std::string Driver::accept(Time now) {
   if (asks_ == table::temperature) {
     int hottest = 0;
     for (const std::string& answer : answers_) hottest = std::max(hottest, number(answer));
-    good_ = now;
+    silence_.end(now);
     return too_hot(hottest) ? lose(trouble_, now) : std::string();
   }
   if (!plausible(now)) {
@@ -333,14 +335,14 @@ std::string Driver::accept(Time now) {
     return {};
   }
   for (std::size_t i = 0; i < motions_.size(); ++i) observe(motions_[i], answers_[i], now);
-  good_ = now;
+  silence_.end(now);
   publish(now);
   return {};
 }
 
 /// No servo is faster than four turns in a second; and a little, for the first look.
 bool Driver::plausible(Time now) const {
-  const double most = 300 + 4 * pulses_per_turn * to_seconds(now - good_);
+  const double most = 300 + 4 * pulses_per_turn * to_seconds(now - silence_.began());
   for (std::size_t i = 0; i < motions_.size(); ++i)
     if (std::abs(number(std::string_view(answers_[i]).substr(6, 4)) - motions_[i].position) > most)
       return false;

@@ -12,6 +12,7 @@
 #include "services/robot/core/dynamixel_protocol.hpp"
 #include "services/robot/core/dynamixel_wiring.hpp"
 #include "services/robot/core/kept.hpp"
+#include "services/robot/core/silence.hpp"
 
 namespace prehend::robot::dynamixel {
 
@@ -103,7 +104,8 @@ class Driver final : public robot::Driver {
   int tries_ = 0;
   std::vector<std::string> answers_;  // of the motions, as they came
   std::optional<double> temperature_;
-  Time asked_{}, good_{}, checked_{};
+  Silence silence_;
+  Time asked_{}, checked_{};
   Item asks_ = table::motion;   // all servos, in this cycle
   Item check_ = table::motion;  // that was asked last beside motions
   bool armed_ = false, waiting_ = false, wants_home_ = false;

@@ -17,7 +17,7 @@ Duration patience_for(std::size_t bytes, int baud) {
 void PolledDriver::connected(Time now) {
   open_ = true;
   waiting_ = false;
-  good_ = now;
+  silence_.end(now);
   free_ = rests_until_ = now;
   suspicion_.clear();
   forget();
@@ -33,6 +33,7 @@ void PolledDriver::disconnected(const std::string& why) {
 std::string PolledDriver::step(std::string_view heard, Time now) {
   if (!open_) return {};
   if (now < rests_until_) return {};
+  silence_.listen(now);
   feed(heard);
   for (Heard said = hear(now); said != Heard::nothing; said = hear(now)) {
     if (said == Heard::foreign) continue;
@@ -40,9 +41,9 @@ std::string PolledDriver::step(std::string_view heard, Time now) {
     free_ = now;
     if (said == Heard::refusal) continue;
     suspicion_.clear();
-    good_ = now;
+    silence_.end(now);
   }
-  if (now - good_ > options_.lost_after)
+  if (silence_.listened() > options_.lost_after)
     return lose(!suspicion_.empty() ? suspicion_
                 : identity_.empty() ? "does not answer"
                                     : "the wire is lost",
@@ -73,7 +74,8 @@ std::string PolledDriver::lose(const std::string& why, Time now) {
   std::string said = stay();
   be(identity_.empty() ? Phase::offline : Phase::faulted, why);
   rests_until_ = now + rest;
-  good_ = free_ = rests_until_;
+  silence_.end(rests_until_);
+  free_ = rests_until_;
   waiting_ = false;
   suspicion_.clear();
   forget();

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "services/robot/core/driver.hpp"
+#include "services/robot/core/silence.hpp"
 
 namespace prehend::robot {
 
@@ -61,7 +62,8 @@ class PolledDriver : public Driver {
 
   Pace pace_;
   std::string suspicion_;  // why no answer comes; empty: nobody knows
-  Time asked_{}, good_{}, free_{}, rests_until_{};
+  Silence silence_;
+  Time asked_{}, free_{}, rests_until_{};
   bool open_ = false, waiting_ = false;
 };
 

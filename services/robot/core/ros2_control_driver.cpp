@@ -38,7 +38,7 @@ const model::HandDof& Driver::dof_of(const Motion& motion) const {
 void Driver::connected(Time now) {
   joined_ = true;
   known_ = false;
-  good_ = now;
+  silence_.end(now);
   if (phase_ == Phase::offline) trouble_ = "nobody tells its joint states";
 }
 
@@ -49,6 +49,7 @@ void Driver::disconnected(const std::string& why) {
 
 std::string Driver::step(std::string_view heard, Time now) {
   if (!joined_) return {};
+  silence_.listen(now);
   if (!heard.empty()) hear(heard, now);
   if (phase_ != Phase::ready && phase_ != Phase::homing) return {};
   if (const auto why = what_is_wrong(now)) {
@@ -123,7 +124,7 @@ void Driver::hear(std::string_view message, Time now) {
   if (known_ && !is_plausible(positions, now)) {
     suspect("its joint states jump", now);
     // What it was known by was perhaps no sound state itself.
-    if (phase_ == Phase::faulted && now - good_ > options_.lost_after) known_ = false;
+    if (phase_ == Phase::faulted && now - silence_.began() > options_.lost_after) known_ = false;
     return count_reject("joint state jumps");
   }
   for (std::size_t i = 0; i < motions_.size(); ++i) {
@@ -132,7 +133,7 @@ void Driver::hear(std::string_view message, Time now) {
     motions_[i].effort = state->efforts.empty() ? 0 : state->efforts[at[i]];
     observe(motions_[i], positions[i], velocity, now);
   }
-  good_ = now;
+  silence_.end(now);
   if (!std::exchange(known_, true)) {
     for (Motion& motion : motions_) {
       motion.goal = motion.position;
@@ -146,7 +147,7 @@ void Driver::hear(std::string_view message, Time now) {
 }
 
 bool Driver::is_plausible(const std::vector<double>& positions, Time now) const {
-  const double dt = to_seconds(now - good_);
+  const double dt = to_seconds(now - silence_.began());
   for (std::size_t i = 0; i < motions_.size(); ++i) {
     const model::HandDof& dof = hand_.dofs()[i];
     const double most = margin * model::radian_of(dof) + faster * dof.max_velocity * dt;
@@ -156,7 +157,7 @@ bool Driver::is_plausible(const std::vector<double>& positions, Time now) const 
 }
 
 void Driver::observe(Motion& motion, double position, std::optional<double> velocity, Time now) {
-  const double dt = to_seconds(now - good_);
+  const double dt = to_seconds(now - silence_.began());
   const double moved = known_ && dt > 0 ? (position - motion.position) / dt : 0;
   const bool sound = velocity && std::abs(*velocity) <= faster * dof_of(motion).max_velocity;
   motion.velocity = sound ? *velocity : moved;
@@ -178,7 +179,7 @@ std::optional<std::string> Driver::out_of_range() const {
 }
 
 std::optional<std::string> Driver::what_is_wrong(Time now) const {
-  if (now - good_ > options_.lost_after)
+  if (silence_.listened() > options_.lost_after)
     return now - suspected_ > options_.lost_after / 2 ? "its joint states have fallen silent"
                                                       : suspicion_;
   for (const Motion& motion : motions_) {

@@ -8,6 +8,7 @@
 
 #include "services/robot/core/driver.hpp"
 #include "services/robot/core/kept.hpp"
+#include "services/robot/core/silence.hpp"
 
 namespace prehend::robot::ros2_control {
 
@@ -53,7 +54,8 @@ class Driver final : public robot::Driver {
   std::vector<Motion> motions_;  // a DoF each
   std::string suspicion_;        // why the last one was not sound,
   Time suspected_{};             // and when that was
-  Time good_{}, told_{};
+  Silence silence_;
+  Time told_{};
   bool joined_ = false, known_ = false;  // known: it has been heard since it was lost
   bool commanded_ = false;
 };

@@ -18,6 +18,7 @@ using std::chrono::milliseconds;
 
 constexpr Duration period = milliseconds(10);  // of commands
 constexpr int strange_id = 3;                  // of a device that answers for another
+constexpr Duration held_up = milliseconds(500);
 constexpr double begins = 4;                   // s: when the fault comes
 constexpr double recovers_for = 8;             // s, after its end
 constexpr double led_again_for = 4;            // s
@@ -250,6 +251,7 @@ FaultPlay Stage::run() {
   while (t_ < begin_) pass();
   const double begun = t_;
   begin(fault_, faulty_->faults(), begun);
+  if (is(fault_, "held-up")) time_ += held_up;
   while (t_ < begun + fault_lasts) pass();
   const double end = t_;
   end_fault();
@@ -293,6 +295,7 @@ const std::vector<PlayedFault>& played_faults() {
                                                {"hot", of_a_line},
                                                {"stuck", any},
                                                {"restart", any},
+                                               {"held-up", any},
                                                {"answers-as", of_one_device},
                                                {"other joints", of_topics},
                                                {"out of range", of_topics}};

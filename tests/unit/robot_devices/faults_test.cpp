@@ -55,6 +55,13 @@ Outcome of(const WiredHand& wired, std::string_view fault) {
     if (wired.driver == "robotiq_2f85") return by("has lost its activation", 0.1, 0.1);
     return {.led_on = true, .words = {}};  // nothing is lost with their power
   }
+  // Nobody was silent; but these have moved unwatched meanwhile, or been stopped by their own dogs.
+  if (fault == "held-up") {
+    Outcome outcome = by("as this machine was too busy", 0.52, 0.62);
+    outcome.led_on = wired.driver != "dynamixel";
+    outcome.named = wired.driver == "dynamixel" || wired.driver == "barrett";
+    return outcome;
+  }
   if (fault == "answers-as") return by("does not answer, but id 3 does", in_time, 0);
   if (fault == "other joints") return by("its joint states do not name", in_time, in_time + 0.1);
   if (fault == "out of range") return by("its joint states jump", in_time, in_time + 0.1);
