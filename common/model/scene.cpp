@@ -162,6 +162,7 @@ void read_demonstrator(TableReader& reader, Demonstrator& person) {
   reader.read("reach", person.reach);
   reader.read("carry_W", person.carry_W);
   reader.read("X_OG", person.X_OG);
+  reader.read("hands_over", person.hands_over);
   reader.read("approach_offset", person.approach_offset);
   reader.read("approach_turn", person.approach_turn);
   reader.read("position_noise", person.position_noise);
@@ -177,8 +178,12 @@ std::string contradiction(const Scene& scene) {
   if (!(scene.demonstrator.hand_scale >= 0.7 && scene.demonstrator.hand_scale <= 1.4))
     return "hand_scale must lie in 0.7 to 1.4";
   if (!(scene.demonstrator.carry_W.norm() <= 1)) return "carry_W must be at most 1 m";
-  if (!scene.demonstrator.carry_W.isZero() && !(scene.demonstrator.X_OG.translation().x() > 0))
+  if (scene.demonstrator.hands_over) {
+    if (scene.demonstrator.carry_W.isZero()) return "hands_over needs carry_W";
+  } else if (!scene.demonstrator.carry_W.isZero() &&
+             !(scene.demonstrator.X_OG.translation().x() > 0)) {
     return "X_OG must say where the right hand presses what is carried, at x > 0";
+  }
   const std::string& target = scene.demonstrator.target;
   if (!target.empty() &&
       std::none_of(scene.objects.begin(), scene.objects.end(),
@@ -360,7 +365,8 @@ std::string to_toml(const Scene& scene) {
       number(person.angle_noise), number(person.extreme_rate),
       static_cast<std::int64_t>(person.seed));
   if (!person.carry_W.isZero())
-    text += fmt::format("carry_W = {}\nX_OG = {}\n", list(person.carry_W), list(person.X_OG));
+    text += fmt::format("carry_W = {}\nX_OG = {}\nhands_over = {}\n", list(person.carry_W),
+                        list(person.X_OG), person.hands_over);
   for (const PlacedObject& object : scene.objects)
     text +=
         fmt::format("\n[[object]]\nname = {}\nX_WO = {}\n", quoted(object.name), list(object.X_WO));

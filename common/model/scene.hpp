@@ -36,6 +36,9 @@ struct Demonstrator {
   /// Then: the right hand's grasp frame in the target where they press, from +x of O; the left
   /// hand's is its mirror image at x = 0.
   Pose X_OG = Pose::Identity();
+  /// Then they do not press: the left hand takes it, lifts it and holds it out half-way, the right
+  /// one takes it over and sets it down. The left hand's X_OG is also mirrored at z = 0.
+  bool hands_over = false;
   Reach reach;  // of the hand that is led: whoever leads it sees it and gives it room
   Eigen::Vector3d approach_offset = {0, 0, 0};  // m, error of the palm in the hand's frame
   Eigen::Vector3d approach_turn = {0, 0, 0};    // rad, rotation vector of the same

@@ -13,8 +13,10 @@ constexpr double lift = 0.10, near = 0.03, level = 10 * std::numbers::pi / 180, 
 
 }  // namespace
 
-bool Carried::done() const {
-  return set_down && lifted >= lift && off <= near && tilt <= level && both >= nearly_all;
+bool Carried::done(CarryTask task) const {
+  const bool by_them =
+      task == CarryTask::carry ? both >= nearly_all : held >= nearly_all && handed_over;
+  return set_down && lifted >= lift && off <= near && tilt <= level && by_them;
 }
 
 void CarryJudge::see(const Pose& X_WO, Time stamp) {
@@ -30,11 +32,14 @@ void CarryJudge::see(const Pose& X_WO, Time stamp) {
   if (way.z() > off_table) {
     const Eigen::Vector3d up = X_WO.linear() * X_WO_first_->linear().transpose().col(2);
     carried_.tilt = std::max(carried_.tilt, std::acos(std::clamp(up.z(), -1.0, 1.0)));
-    const auto felt = std::count_if(touches_.begin(), touches_.end(),
-                                    [](const auto& hand) { return hand.second; });
+    const bool left = touches_["left"], right = touches_["right"];
     in_air_ += elapsed;
-    if (felt >= 2) by_both_ += elapsed;
+    if (left && right) by_both_ += elapsed;
+    if (left || right) by_one_ += elapsed;
     carried_.both = in_air_ > 0 ? by_both_ / in_air_ : 0;
+    carried_.held = in_air_ > 0 ? by_one_ / in_air_ : 0;
+    left_alone_ |= left && !right;
+    carried_.handed_over = left_alone_ && right && !left;
     stands_since_ = stamp;
   } else if (carried_.lifted > 4 * off_table) {
     carried_.set_down = to_seconds(stamp - stands_since_) > stands_for;

@@ -9,19 +9,28 @@
 
 namespace prehend::cli {
 
+/// What two hands do with an object: press it between them all the way, or take it with the left
+/// one and hand it over to the right one.
+enum class CarryTask { carry, hand_over };
+
 /// What came of an object that two hands were to carry.
 struct Carried {
   double lifted = 0;  // m, by which it rose at most
   double off = 0;     // m, horizontally, from where it was to be set down
   double tilt = 0;    // rad, at most, while it was off the table
   double both = 0;    // share of that time in which both hands touched it
+  double held = 0;    // in which one did, or both
+  /// The left hand alone held it at first, and the right hand alone in the end.
+  bool handed_over = false;
   bool set_down = false;
 
-  /// Lifted by 10 cm and set down 3 cm from its place or nearer, level within 10°, by both hands.
-  bool done() const;
+  /// Lifted by 10 cm and set down 3 cm from its place or nearer, level within 10°, in the hands
+  /// that the task is for.
+  bool done(CarryTask task) const;
 };
 
-/// Watches an object from where it stands first until it has been lifted and stands again. Pure.
+/// Watches an object from where it stands first until it has been lifted and stands again. The
+/// hands are «left» and «right». Pure.
 class CarryJudge {
  public:
   /// carry_W: m, from where it stands to where it is to stand.
@@ -40,9 +49,10 @@ class CarryJudge {
   Eigen::Vector3d carry_W_;
   std::optional<Pose> X_WO_first_;
   std::map<std::string, bool> touches_;
+  bool left_alone_ = false;
   Carried carried_;
   Time last_{}, stands_since_{};
-  double in_air_ = 0, by_both_ = 0;  // s
+  double in_air_ = 0, by_both_ = 0, by_one_ = 0;  // s
 };
 
 }  // namespace prehend::cli

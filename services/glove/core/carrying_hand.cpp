@@ -12,19 +12,58 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// What the hand does and for how long, s.
-enum class Step { rest, reach, press, hold, lift, carry, lower, stand, release, go_back };
-constexpr std::array<double, 10> step_lasts{2.0, 1.2, 1.2, 1.0, 1.0, 3.0, 1.2, 0.5, 0.8, 0.8};
 constexpr double lifted_by = 0.12;                     // m
-constexpr double beside = 0.12;                        // m, of the object, before it is pressed
+constexpr double beside = 0.12;                        // m, of the object, before it is touched
 constexpr double pressed = 0.03;                       // m, that palms go further than they can
 constexpr double waits_back = 0.2, waits_above = 0.1;  // m
 
 }  // namespace
 
-double CarryingHand::cycle() {
+const std::array<CarryingHand::Step, 10> CarryingHand::presses{{
+    {2.0, 0, 0, 0, 0, 0},  // rests
+    {1.2, 1, 0, 0, 0, 0},
+    {1.2, 1, 1, 0, 0, 0},
+    {1.0, 1, 1, 0, 0, 0},
+    {1.0, 1, 1, 0, 1, 0},
+    {3.0, 1, 1, 0, 1, 1},
+    {1.2, 1, 1, 0, 0, 1},
+    {0.5, 1, 1, 0, 0, 1},
+    {0.8, 1, 0, 0, 0, 1},
+    {0.8, 0, 0, 0, 0, 1},
+}};
+
+/// It holds the object out until the other has had a second to hold it, too.
+const std::array<CarryingHand::Step, 10> CarryingHand::gives{{
+    {2.0, 0, 0, 0, 0, 0},
+    {1.2, 1, 0, 0, 0, 0},
+    {0.8, 1, 1, 0, 0, 0},
+    {1.0, 1, 1, 1, 0, 0},
+    {1.0, 1, 1, 1, 0, 0},
+    {1.0, 1, 1, 1, 1, 0},
+    {1.5, 1, 1, 1, 1, 0.5},
+    {4.5, 1, 1, 1, 1, 0.5},
+    {0.8, 1, 1, 0, 1, 0.5},
+    {1.6, 0, 0, 0, 1, 0.5},
+}};
+
+const std::array<CarryingHand::Step, 12> CarryingHand::takes{{
+    {8.5, 0, 0, 0, 1, 0.5},  // until it is held out
+    {1.2, 1, 0, 0, 1, 0.5},
+    {0.8, 1, 1, 0, 1, 0.5},
+    {1.0, 1, 1, 1, 1, 0.5},
+    {4.0, 1, 1, 1, 1, 0.5},  // until the other has let go
+    {1.5, 1, 1, 1, 1, 1},
+    {1.2, 1, 1, 1, 0, 1},
+    {0.5, 1, 1, 1, 0, 1},
+    {0.8, 1, 1, 0, 0, 1},
+    {0.8, 1, 0, 0, 0, 1},
+    {0.8, 0, 0, 0, 0, 1},
+    {0.5, 0, 0, 0, 0, 1},
+}};
+
+double CarryingHand::cycle() const {
   double total = 0;
-  for (const double duration : step_lasts) total += duration;
+  for (const Step& step : steps_) total += step.lasts;
   return total;
 }
 
@@ -38,37 +77,51 @@ Expected<CarryingHand> CarryingHand::create(const model::Scene& room,
   const auto target = target_of(scene, catalogue);
   if (!target) return tl::unexpected(target.error());
 
+  const model::HumanHand hand(person.hand_scale);
   CarryingHand made(std::move(*sensors));
   made.carry_W_ = person.carry_W;
   const Pose& X_WO = target->X_WO;
   made.out_W_ = X_WO.linear().col(0);
-  const Pose X_WG = moved(X_WO * person.X_OG, -pressed * made.out_W_);
-  made.X_WH_ = X_WG * model::HumanHand(person.hand_scale).X_HG().inverse();
+  if (!person.hands_over) {
+    made.steps_ = presses;
+    const Pose X_WG = moved(X_WO * person.X_OG, -pressed * made.out_W_);
+    made.X_WH_ = X_WG * hand.X_HG().inverse();
+    return made;
+  }
+  made.again_ = false;
+  Pose X_OG = person.X_OG;
+  if (options.left) {
+    made.steps_ = gives;
+    X_OG.translation().z() *= -1;
+  } else {
+    made.steps_ = takes;
+  }
+  made.X_WH_ = X_WO * X_OG * hand.X_HG().inverse();
+  made.closure_ = hand.close_on(target->shape, made.X_WH_.inverse() * X_WO);
   return made;
 }
 
 HandState CarryingHand::hand(double time) const {
-  const double t_all = std::max(time, 0.0);
-  double t = std::fmod(t_all, cycle());
-  const bool back = std::fmod(t_all, 2 * cycle()) >= cycle();
+  const double t_all = again_ ? std::max(time, 0.0) : std::clamp(time, 0.0, cycle());
+  double t = again_ ? std::fmod(t_all, cycle()) : t_all;
+  const bool back = again_ && std::fmod(t_all, 2 * cycle()) >= cycle();
   std::size_t number = 0;
-  while (number + 1 < step_lasts.size() && t >= step_lasts[number]) t -= step_lasts[number++];
-  const Step step = static_cast<Step>(number);
-  const double s = minimum_jerk(t / step_lasts[number]);
-  const auto between = [&](Step begins, Step ends) {  // 1; 0 before and after
-    if (step == begins) return s;
-    if (step == ends) return 1 - s;
-    return step > begins && step < ends ? 1.0 : 0.0;
-  };
-  const double near = between(Step::reach, Step::go_back);
-  const double closed = between(Step::press, Step::release);
-  const double lifted = between(Step::lift, Step::lower);
-  const double there = step < Step::carry ? 0 : step == Step::carry ? s : 1;
-  const double carried = back ? 1 - there : there;
-  return {.X_WH = moved(X_WH_, carried * carry_W_ + lifted * lifted_by * Vector3d::UnitZ() +
-                                   (1 - closed) * beside * out_W_ +
-                                   (1 - near) * (waits_above * Vector3d::UnitZ() -
-                                                 waits_back * Vector3d::UnitY()))};
+  while (number + 1 < steps_.size() && t >= steps_[number].lasts) t -= steps_[number++].lasts;
+  const Step& to = steps_[number];
+  // Before the first it has been where that ends.
+  const Step& from = number == 0 ? to : steps_[number - 1];
+  const double s = minimum_jerk(t / to.lasts);
+  const auto now = [&](double Step::*part) { return from.*part + s * (to.*part - from.*part); };
+
+  const double carried = back ? 1 - now(&Step::carried) : now(&Step::carried);
+  HandState state;
+  state.X_WH = moved(X_WH_, carried * carry_W_ + now(&Step::lifted) * lifted_by * Vector3d::UnitZ() +
+                                (1 - now(&Step::there)) * beside * out_W_ +
+                                (1 - now(&Step::near)) * (waits_above * Vector3d::UnitZ() -
+                                                          waits_back * Vector3d::UnitY()));
+  for (std::size_t finger = 0; finger < closure_.size(); ++finger)
+    state.closure[finger] = now(&Step::closed) * closure_[finger];
+  return state;
 }
 
 std::optional<Frame> CarryingHand::frame(std::uint64_t n) const {

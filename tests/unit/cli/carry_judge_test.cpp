@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 namespace prehend::cli {
 namespace {
 
@@ -36,24 +38,49 @@ Carried carried(const Way& way) {
 
 TEST(CarryJudge, SaysWhatWasDone) {
   const Carried good = carried({});
-  EXPECT_TRUE(good.done());
+  EXPECT_TRUE(good.done(CarryTask::carry));
   EXPECT_NEAR(good.lifted, 0.12, 2e-3);
   EXPECT_NEAR(good.off, 0, 1e-9);
   EXPECT_NEAR(good.both, 1, 1e-9);
-  EXPECT_TRUE(carried({.aside = 0.28}).done()) << "2 cm off";
-  EXPECT_TRUE(carried({.tilt = 0.15}).done());
+  EXPECT_TRUE(carried({.aside = 0.28}).done(CarryTask::carry)) << "2 cm off";
+  EXPECT_TRUE(carried({.tilt = 0.15}).done(CarryTask::carry));
+}
+
+/// Handed from the left hand to the right one, both holding it in between; or let go of too soon.
+Carried handed_over(double left_until, double right_from, bool gives = true) {
+  CarryJudge judge(Vector3d(0.3, 0, 0));
+  for (double t = 0; t < 4; t += 0.01) {
+    judge.feel("left", gives ? t < left_until : t > left_until);
+    judge.feel("right", gives ? t > right_from : t < right_from);
+    const double up = std::min({0.12, 0.12 * t, std::max(0.0, 0.12 * (3 - t))});
+    judge.see(make_pose(Vector3d(std::min(0.3, 0.15 * t), 0, 0.15 + up)), Time(seconds(1000 + t)));
+  }
+  EXPECT_TRUE(judge.is_over());
+  return judge.carried();
+}
+
+TEST(CarryJudge, KnowsAHandOver) {
+  const Carried good = handed_over(2.0, 1.5);
+  EXPECT_TRUE(good.done(CarryTask::hand_over));
+  EXPECT_TRUE(good.handed_over);
+  EXPECT_NEAR(good.held, 1, 0.01);
+  EXPECT_FALSE(good.done(CarryTask::carry)) << "both held it for a short time";
+  EXPECT_FALSE(handed_over(1.5, 2.0).done(CarryTask::hand_over)) << "thrown";
+  EXPECT_FALSE(handed_over(9, 9).done(CarryTask::hand_over)) << "carried by the left hand alone";
+  EXPECT_FALSE(handed_over(1.5, 2.0, false).done(CarryTask::hand_over)) << "the other way";
+  EXPECT_FALSE(handed_over(9, 0).done(CarryTask::hand_over)) << "carried by both";
 }
 
 TEST(CarryJudge, TellsEachWayInWhichItGoesWrong) {
-  EXPECT_FALSE(carried({.lift = 0.09}).done()) << "too low";
-  EXPECT_FALSE(carried({.lift = 0}).done()) << "pushed along";
-  EXPECT_FALSE(carried({.aside = 0.26}).done()) << "4 cm off";
-  EXPECT_FALSE(carried({.aside = 0}).done()) << "set down where it was";
-  EXPECT_FALSE(carried({.tilt = 0.2}).done()) << "tilted by 11 degrees";
+  EXPECT_FALSE(carried({.lift = 0.09}).done(CarryTask::carry)) << "too low";
+  EXPECT_FALSE(carried({.lift = 0}).done(CarryTask::carry)) << "pushed along";
+  EXPECT_FALSE(carried({.aside = 0.26}).done(CarryTask::carry)) << "4 cm off";
+  EXPECT_FALSE(carried({.aside = 0}).done(CarryTask::carry)) << "set down where it was";
+  EXPECT_FALSE(carried({.tilt = 0.2}).done(CarryTask::carry)) << "tilted by 11 degrees";
   EXPECT_NEAR(carried({.tilt = 0.2}).tilt, 0.2, 1e-6);
-  EXPECT_FALSE(carried({.left = false}).done()) << "by one hand";
+  EXPECT_FALSE(carried({.left = false}).done(CarryTask::carry)) << "by one hand";
   EXPECT_EQ(carried({.left = false}).both, 0);
-  EXPECT_FALSE(carried({.sets_down = false}).done()) << "still up";
+  EXPECT_FALSE(carried({.sets_down = false}).done(CarryTask::carry)) << "still up";
 }
 
 }  // namespace

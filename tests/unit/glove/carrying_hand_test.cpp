@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "services/glove/core/mirrored_scene.hpp"
@@ -74,10 +75,50 @@ TEST(CarryingHand, PressesFromBothSidesAllTheWay) {
     }
 }
 
+// The left hand holds the tube out half-way, with its fingers around it, until the right hand has
+// held it for a second; then it opens and goes, before the right one moves.
+TEST(CarryingHand, HandsOverWhatBothHold) {
+  model::CatalogueObject tube;
+  tube.name = "Tube";
+  tube.shape = {model::ShapeKind::cylinder, Vector3d(0.023, 0.023, 0.32)};
+  Room room{model::Catalogue({tube}), {}};
+  const Vector3d stood(-0.1, 0.03, 0.16);
+  room.scene.objects.push_back({"Tube", make_pose(stood)});
+  room.scene.demonstrator.target = "Tube";
+  room.scene.demonstrator.carry_W = Vector3d(0.3, 0, 0);
+  room.scene.demonstrator.hands_over = true;
+  room.scene.demonstrator.X_OG =
+      make_pose(Vector3d(0, 0, 0.08), model::grasp_axes(-Vector3d::UnitX(), -Vector3d::UnitY()));
+  const CarryingHand giver = hand_of(room, true), taker = hand_of(room, false);
+  const auto closed = [](const CarryingHand& hand, double t) {
+    const auto closure = hand.hand(t).closure;
+    return *std::max_element(closure.begin(), closure.end());
+  };
+  const double full = closed(giver, 7);
+  EXPECT_GT(full, 0.2);
+  double both = 0, last_given = 0, first_moved = 100;
+  for (double t = 0; t < giver.cycle() + taker.cycle(); t += 0.01) {
+    const Vector3d left = palm(giver, t, true), right = palm(taker, t, false);
+    const bool gives = closed(giver, t) > 0.99 * full, takes = closed(taker, t) > 0.99 * full;
+    if (gives) last_given = t;
+    if (takes && right.x() > stood.x() + 0.151) first_moved = std::min(first_moved, t);
+    if (!gives || !takes) continue;
+    both += 0.01;
+    EXPECT_NEAR((right - left - Vector3d(0, 0, 0.16)).norm(), 0, 1e-9) << t;
+    EXPECT_NEAR((right - stood - Vector3d(0.15, 0, 0.08 + 0.12)).norm(), 0, 1e-9) << t;
+  }
+  EXPECT_GT(both, 1);
+  EXPECT_GT(first_moved, last_given + 1);
+  const Vector3d at_last = palm(taker, taker.cycle() - 3, false);
+  EXPECT_NEAR(at_last.x() - stood.x(), 0.3, 1e-6);
+  EXPECT_EQ(closed(taker, 100), 0);
+  EXPECT_TRUE(palm(giver, 100, true).isApprox(palm(giver, giver.cycle(), true)));
+}
+
 TEST(CarryingHand, IsSmoothAndComesBack) {
   const Room room = with_crate(0.3, {0.3, 0, 0});
   const CarryingHand hand = hand_of(room, false);
-  const double cycle = CarryingHand::cycle();
+  const double cycle = hand.cycle();
   for (double t = 0; t < 2 * cycle; t += 0.005)
     EXPECT_LT((palm(hand, t + 0.005, false) - palm(hand, t, false)).norm(), 0.005 * 0.6) << t;
   EXPECT_LT((palm(hand, 2 * cycle, false) - palm(hand, 0, false)).norm(), 1e-6);

@@ -4,6 +4,7 @@
 
 #include <CLI/CLI.hpp>
 #include <iostream>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <numbers>
 
@@ -15,40 +16,52 @@ namespace {
 
 std::string to_json(const Carried& carried, const CarryOptions& options) {
   return nlohmann::ordered_json{
-      {"task", "carry"},      {"hands", {{"left", options.left}, {"right", options.right}}},
-      {"seed", options.seed}, {"lifted_m", carried.lifted},
-      {"off_m", carried.off}, {"tilt_rad", carried.tilt},
-      {"both", carried.both}, {"done", carried.done()}}
+      {"task", options.task == CarryTask::carry ? "carry" : "hand-over"},
+      {"hands", {{"left", options.left}, {"right", options.right}}},
+      {"seed", options.seed},
+      {"lifted_m", carried.lifted},
+      {"off_m", carried.off},
+      {"tilt_rad", carried.tilt},
+      {"both", carried.both},
+      {"held", carried.held},
+      {"handed_over", carried.handed_over},
+      {"done", carried.done(options.task)}}
       .dump();
 }
 
-std::string to_line(const Carried& carried) {
+std::string to_line(const Carried& carried, CarryTask task) {
+  const bool carries = task == CarryTask::carry;
+  const std::string_view did = carries ? "carried" : "handed over";
   return fmt::format(
-      "{}: lifted by {:.0f} mm, {} {:.0f} mm from its place, tilted by {:.1f} degrees, in both "
-      "hands {:.0f} % of the way",
-      carried.done() ? "carried" : "not carried", 1000 * carried.lifted,
+      "{}{}: lifted by {:.0f} mm, {} {:.0f} mm from its place, tilted by {:.1f} degrees, in {} "
+      "{:.0f} % of the way",
+      carried.done(task) ? "" : "not ", did, 1000 * carried.lifted,
       carried.set_down ? "set down" : "is", 1000 * carried.off,
-      carried.tilt * 180 / std::numbers::pi, 100 * carried.both);
+      carried.tilt * 180 / std::numbers::pi, carries ? "both hands" : "a hand",
+      100 * (carries ? carried.both : carried.held));
 }
 
 }  // namespace
 
 int carry_command(const std::vector<std::string>& arguments) {
   CLI::App app{
-      "Two robot hands in one world carry a crate that is too wide for one of them, as a person\n"
-      "with two gloves shows it: a device, a glove, a mapping and a gate for each. Exit code 0:\n"
-      "lifted by 10 cm, carried 30 cm aside, set down within 3 cm, level within 10 degrees;\n"
-      "1: not so, 2: wrong use, 3: the environment is broken.",
+      "Two robot hands in one world carry a crate that is too wide for one of them, or hand a tube\n"
+      "from the left one to the right one, as a person with two gloves shows it: a device, a\n"
+      "glove, a mapping and a gate for each. Exit code 0: lifted by 10 cm, carried 30 cm aside,\n"
+      "set down within 3 cm, level within 10 degrees; 1: not so, 2: wrong use, 3: the environment\n"
+      "is broken.",
       "prehend demo --hands"};
   CarryOptions options;
-  std::string hands, task = "carry";
+  std::string hands;
   bool json = false, quiet = false;
   options.lab.add_to(app);
   app.add_option("--hands", hands,
                  "left:HAND,right:HAND; a left one may be named as its mirror image")
       ->required();
-  app.add_option("--task", task, "carry")->check(CLI::IsMember({"carry"}));
-  app.add_option("--seed", options.seed, "draws the crate, where it stands, person and noise");
+  app.add_option("--task", options.task, "carry or hand-over")
+      ->transform(CLI::CheckedTransformer(std::map<std::string, CarryTask>{
+          {"carry", CarryTask::carry}, {"hand-over", CarryTask::hand_over}}));
+  app.add_option("--seed", options.seed, "draws the object, where it stands, person and noise");
   app.add_option("--glove", options.glove,
                  "DEVICE of both, see `prehend glove devices`: what has an emulator is emulated");
   app.add_option("--timeout", options.timeout, "s until it must stand again")
@@ -65,8 +78,8 @@ int carry_command(const std::vector<std::string>& arguments) {
   const auto carried = carry(options, screen.progress());
   screen.clear();
   if (!carried) return service::complain(carried.error());
-  std::cout << (json ? to_json(*carried, options) : to_line(*carried)) << std::endl;
-  return carried->done() ? exit_done : exit_no;
+  std::cout << (json ? to_json(*carried, options) : to_line(*carried, options.task)) << std::endl;
+  return carried->done(options.task) ? exit_done : exit_no;
 }
 
 }  // namespace prehend::cli

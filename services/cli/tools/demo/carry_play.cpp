@@ -27,15 +27,16 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr const char* crate = "Crate";
 const Vector3d aside(0.30, 0, 0);  // m
-/// Where it is pressed: so much of half its height above its middle, that it hangs level.
+/// Where a crate is pressed: so much of half its height above its middle, that it hangs level.
 constexpr double pressed_above = 0.3;
+/// Where a tube is taken: so much of half its height above its middle, and below it.
+constexpr double taken_above = 0.5;
 
 /// A crate that no hand holds alone.
 model::CatalogueObject drawn_crate(Random& random) {
   model::CatalogueObject object;
-  object.name = crate;
+  object.name = "Crate";
   object.shape = {
       model::ShapeKind::box,
       Vector3d(random.uniform(0.26, 0.34), random.uniform(0.22, 0.28), random.uniform(0.22, 0.28))};
@@ -44,13 +45,33 @@ model::CatalogueObject drawn_crate(Random& random) {
   return object;
 }
 
+/// A tube on which two hands find room, one above the other.
+model::CatalogueObject drawn_tube(Random& random) {
+  model::CatalogueObject object;
+  object.name = "Tube";
+  const double radius = random.uniform(0.020, 0.026);
+  object.shape = {model::ShapeKind::cylinder,
+                  Vector3d(radius, radius, random.uniform(0.30, 0.36))};
+  object.mass = random.uniform(0.1, 0.3);
+  object.material = "plastic";
+  return object;
+}
+
+/// Where the right hand takes a tube that stands: from its own side.
+Pose taking_pose(const model::Shape& tube) {
+  const Vector3d toward = -Vector3d::UnitX();
+  return make_pose(Vector3d(0, 0, taken_above * model::half_extents(tube).z()),
+                   model::grasp_axes(toward, toward.cross(Vector3d::UnitZ())));
+}
+
 std::string entry_of(const model::CatalogueObject& object) {
   const Vector3d& size = object.shape.size;
   return fmt::format(
-      "[[object]]\nname = \"{}\"\nshape = \"box\"\nsize = [{:.4f}, {:.4f}, {:.4f}]\nmass = {:.3f}\n"
+      "[[object]]\nname = \"{}\"\nshape = \"{}\"\nsize = [{:.4f}, {:.4f}, {:.4f}]\nmass = {:.3f}\n"
       "material = \"{}\"\n[object.appearance]\ncolours = [[0.68, 0.51, 0.33]]\npattern = "
       "\"plain\"\nseed = 1\n",
-      object.name, size.x(), size.y(), size.z(), object.mass, object.material);
+      object.name, model::to_string(object.shape.kind), size.x(), size.y(), size.z(), object.mass,
+      object.material);
 }
 
 /// The lab of a play, and what is heard of it.
@@ -66,7 +87,7 @@ class CarryPlay {
     const auto over = stage_.until(
         "carrying", [&] { return judge_.is_over(); },
         [&] {
-          return Error{fmt::format("the {} was not lifted and set down again", crate), "demo", "",
+          return Error{fmt::format("the {} was not lifted and set down again", object_), "demo", "",
                        exit_no};
         });
     if (!over && over.error().exit != exit_no) return tl::unexpected(over.error());
@@ -85,7 +106,7 @@ class CarryPlay {
     if (!glove) return wrong_use(glove.error().what, glove.error().where, glove.error().hint);
     glove_ = std::move(*glove);
     if (!glove_.emulator && glove_.line != "none")
-      return wrong_use("has nobody who carries a crate", "--glove " + glove_.name,
+      return wrong_use("has nobody who carries an object", "--glove " + glove_.name,
                        "choose one that is emulated: `prehend glove devices`");
     return {};
   }
@@ -93,12 +114,14 @@ class CarryPlay {
   /// Scene and catalogue, which all are told of.
   Expected<void> set_up() {
     Random random(options_.seed * 7919 + 17);
-    const model::CatalogueObject object = drawn_crate(random);
+    const bool pressed = options_.task == CarryTask::carry;
+    const model::CatalogueObject object = pressed ? drawn_crate(random) : drawn_tube(random);
+    object_ = object.name;
     const auto catalogue_file = stage_.folder() / "catalogue.toml";
     const auto scene_file = stage_.folder() / "scene.toml";
     if (auto written = write_file(catalogue_file, entry_of(object)); !written) return written;
     auto scene = model::make_scene(model::Catalogue({object}), options_.seed,
-                                   {.target = crate, .graspable = {crate}, .distractors = 0});
+                                   {.target = object_, .graspable = {object_}, .distractors = 0});
     if (!scene) return tl::unexpected(scene.error());
     const double height = model::half_extents(object.shape).z();
     scene->objects.front().X_WO = make_pose(
@@ -106,9 +129,11 @@ class CarryPlay {
     scene->demonstrator.carry_W = aside;
     const auto hand = model::HandModel::load(model::hand_directory(options_.right));
     if (!hand) return tl::unexpected(hand.error());
-    const auto X_OG = pressing_pose(*hand, object.shape, pressed_above * height);
+    const auto X_OG = pressed ? pressing_pose(*hand, object.shape, pressed_above * height)
+                              : taking_pose(object.shape);
     if (!X_OG) return wrong_use("does not reach the crate", options_.right);
     scene->demonstrator.X_OG = *X_OG;
+    scene->demonstrator.hands_over = !pressed;
     if (auto written = write_setting(*scene, scene_file); !written) return written;
     stage_.set("lab.catalogue=" + catalogue_file.string());
     stage_.set("lab.scene=" + scene_file.string());
@@ -151,7 +176,7 @@ class CarryPlay {
                               [](const v1::PadTouch& pad) { return pad.touching(); }));
     }
     for (const auto& sample : objects_->take()) {
-      if (sample.info.gone || sample.data.body().to_string() != crate) continue;
+      if (sample.info.gone || sample.data.body().to_string() != object_) continue;
       if (const auto X_WO = convert::from_message(sample.data.X_WO()))
         judge_.see(*X_WO, from_ns(sample.data.stamp_ns()));
     }
@@ -220,6 +245,7 @@ class CarryPlay {
   const CarryOptions& options_;
   stage::Stage& stage_;
   CarryJudge judge_;
+  std::string object_;  // that is carried
   std::string scene_file_;
   std::vector<GloveRow> gloves_;  // that there are
   GloveRow glove_;

@@ -11,7 +11,8 @@ namespace prehend::cli {
 
 struct CarryOptions {
   service::LabArguments lab;
-  std::uint64_t seed = 1;   // of where the crate stands, its size and weight, of person and noise
+  CarryTask task = CarryTask::carry;
+  std::uint64_t seed = 1;   // of where the object stands, its size and weight, of person and noise
   std::string left, right;  // robot hands
   std::string glove;    // kind of both, see `prehend glove devices`; empty: one that is emulated
   double timeout = 60;  // s, until it must stand again
@@ -20,8 +21,9 @@ struct CarryOptions {
   bool watch = false;   // with a console, and it goes on until it is interrupted
 };
 
-/// A person with two gloves presses a crate between both palms and carries it aside; two robot
-/// hands in one world do the same: a glove, a mapping and a gate for each.
+/// A person with two gloves presses a crate between both palms and carries it aside, or hands a
+/// tube from one hand to the other; two robot hands in one world do the same: a glove, a mapping
+/// and a gate for each.
 Expected<Carried> carry(const CarryOptions& options, const stage::Progress& progress);
 
 /// The hands of «left:HAND,right:HAND». A left hand that is none, by its name, is the mirror image

@@ -52,7 +52,7 @@ void add_choices(CLI::App& app) {
                  "a task (pick-and-place), or a file of one: it is shown, and done again "
                  "elsewhere;\nprehend demo --task pick-and-place --help tells more");
   app.add_option("--hands",
-                 "left:HAND,right:HAND: two hands carry a crate together;\n"
+                 "left:HAND,right:HAND: two hands carry a crate together, or hand a tube over;\n"
                  "prehend demo --hands left:HAND,right:HAND --help tells more");
   app.add_flag_callback(
       "--targets", [] {}, "only say what `cmake --build` must make for this");
