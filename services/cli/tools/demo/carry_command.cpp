@@ -52,12 +52,14 @@ int carry_command(const std::vector<std::string>& arguments) {
       "is broken.",
       "prehend demo --hands"};
   CarryOptions options;
-  std::string hands;
+  std::vector<std::string> hands;
   bool json = false, quiet = false;
   options.lab.add_to(app);
   app.add_option("--hands", hands,
                  "left:HAND,right:HAND; a left one may be named as its mirror image")
-      ->required();
+      ->required()
+      ->delimiter(',')
+      ->allow_extra_args(false);
   app.add_option("--task", options.task, "carry or hand-over")
       ->transform(CLI::CheckedTransformer(std::map<std::string, CarryTask>{
           {"carry", CarryTask::carry}, {"hand-over", CarryTask::hand_over}}));

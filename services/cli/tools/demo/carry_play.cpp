@@ -9,7 +9,6 @@
 #include <set>
 
 #include "common/base/file_text.hpp"
-#include "common/base/log.hpp"
 #include "common/base/random.hpp"
 #include "common/convert/convert.hpp"
 #include "common/dds/participant.hpp"
@@ -19,6 +18,7 @@
 #include "common/service/membership.hpp"
 #include "services/cli/tools/demo/chosen_hand.hpp"
 #include "services/cli/tools/demo/emulated_glove.hpp"
+#include "services/cli/tools/demo/page.hpp"
 #include "services/cli/tools/demo/pressing.hpp"
 #include "services/cli/tools/demo/setting.hpp"
 
@@ -190,7 +190,7 @@ class CarryPlay {
           !started)
         return started;
     if (options_.watch)
-      if (auto started = start_console(); !started) return started;
+      if (auto started = show_page(stage_); !started) return started;
     const std::string left = hand_setting(options_.left), right = hand_setting(options_.right);
     auto started = stage_.start_service(
         "simulation", {fmt::format("simulation.hands=[\"left:{}\", \"right:{}\"]", left, right)});
@@ -211,23 +211,6 @@ class CarryPlay {
       started = start_glove(side);
     }
     return started;
-  }
-
-  Expected<void> start_console() {
-    if (auto started = stage_.start_service("console"); !started) return started;
-    const auto log = stage_.folder() / "console.log";
-    return stage_
-        .until(
-            "starting the console",
-            [&] { return read_file(log).value_or("").find("http") != std::string::npos; },
-            [&] {
-              return Error{"did not come up", "console", ""};
-            })
-        .map([&] {
-          const std::string said = read_file(log).value_or("");
-          const std::size_t at = said.find("http");
-          log::info("watch it at {}; Ctrl-C ends it", said.substr(at, said.find('\n', at) - at));
-        });
   }
 
   Expected<void> start_glove(const std::string& side) {
@@ -258,20 +241,17 @@ class CarryPlay {
 
 }  // namespace
 
-Expected<void> read_hands(const std::string& text, CarryOptions& options) {
+Expected<void> read_hands(const std::vector<std::string>& entries, CarryOptions& options) {
   const std::string some = model::hand_names().front();
   const std::string hint = fmt::format("as --hands left:{},right:{}", some, some);
   std::map<std::string, std::string> hands;
-  for (std::size_t from = 0; from <= text.size();) {
-    const std::size_t end = std::min(text.find(',', from), text.size());
-    const std::string entry = text.substr(from, end - from);
+  for (const std::string& entry : entries) {
     const std::size_t colon = entry.find(':');
     const std::string side = entry.substr(0, colon);
     if (colon == std::string::npos || colon + 1 == entry.size() ||
         (side != "left" && side != "right") || hands.contains(side))
       return wrong_use("«" + entry + "» is no hand", "--hands", hint);
     hands[side] = entry.substr(colon + 1);
-    from = end + 1;
   }
   if (hands.size() != 2) return wrong_use("names one hand", "--hands", hint);
   std::string& left = hands["left"];

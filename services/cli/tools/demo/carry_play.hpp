@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include "common/service/arguments.hpp"
 #include "common/stage/stage.hpp"
@@ -26,8 +27,8 @@ struct CarryOptions {
 /// and a gate for each.
 Expected<Carried> carry(const CarryOptions& options, const stage::Progress& progress);
 
-/// The hands of «left:HAND,right:HAND». A left hand that is none, by its name, is the mirror image
+/// The hands of «left:HAND» and «right:HAND». A left hand that is none, by its name, is the mirror image
 /// of that hand.
-Expected<void> read_hands(const std::string& text, CarryOptions& options);
+Expected<void> read_hands(const std::vector<std::string>& entries, CarryOptions& options);
 
 }  // namespace prehend::cli

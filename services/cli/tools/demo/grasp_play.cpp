@@ -4,13 +4,13 @@
 
 #include <algorithm>
 
-#include "common/base/file_text.hpp"
 #include "common/base/log.hpp"
 #include "common/model/catalogue.hpp"
 #include "common/model/hand_model.hpp"
 #include "common/stage/arm.hpp"
 #include "services/cli/tools/demo/chosen_hand.hpp"
 #include "services/cli/tools/demo/emulated_glove.hpp"
+#include "services/cli/tools/demo/page.hpp"
 #include "services/cli/tools/demo/setting.hpp"
 
 namespace prehend::cli {
@@ -222,14 +222,9 @@ Expected<void> GraspPlay::start_recorder(const std::string& truth) {
       .and_then([&] { return await_service("recorder"); });
 }
 
-/// Up before the others, so that all can be watched. It says where, as its first line.
+/// Up before the others, so that all can be watched.
 Expected<void> GraspPlay::start_console(const std::string& truth) {
-  if (auto started = stage_.start_service("console", {truth}); !started) return started;
-  if (auto up = await_service("console"); !up) return up;
-  const auto said = read_file(stage_.folder() / "console.log");
-  const std::size_t at = said ? said->find("http") : std::string::npos;
-  if (at != std::string::npos)
-    log::info("watch it at {}; Ctrl-C ends it", said->substr(at, said->find('\n', at) - at));
+  if (auto shown = show_page(stage_, {truth}); !shown) return shown;
   // Whom the page's buttons for teaching speak to; nobody waits for it.
   return stage_.start_service("teacher");
 }
