@@ -14,9 +14,9 @@ constexpr double lift = 0.10, near = 0.03, level = 10 * std::numbers::pi / 180, 
 }  // namespace
 
 bool Carried::done(CarryTask task) const {
-  const bool by_them =
-      task == CarryTask::carry ? both >= nearly_all : held >= nearly_all && handed_over;
-  return set_down && lifted >= lift && off <= near && tilt <= level && by_them;
+  const bool as_asked = task == CarryTask::carry ? both >= nearly_all && tilt <= level
+                                                 : held >= nearly_all && handed_over;
+  return set_down && lifted >= lift && off <= near && as_asked;
 }
 
 void CarryJudge::see(const Pose& X_WO, Time stamp) {
@@ -29,10 +29,10 @@ void CarryJudge::see(const Pose& X_WO, Time stamp) {
   const Eigen::Vector3d way = X_WO.translation() - X_WO_first_->translation();
   carried_.lifted = std::max(carried_.lifted, way.z());
   carried_.off = (way - carry_W_).head<2>().norm();
+  const bool left = touches_["left"], right = touches_["right"];
   if (way.z() > off_table) {
     const Eigen::Vector3d up = X_WO.linear() * X_WO_first_->linear().transpose().col(2);
     carried_.tilt = std::max(carried_.tilt, std::acos(std::clamp(up.z(), -1.0, 1.0)));
-    const bool left = touches_["left"], right = touches_["right"];
     in_air_ += elapsed;
     if (left && right) by_both_ += elapsed;
     if (left || right) by_one_ += elapsed;
@@ -40,6 +40,8 @@ void CarryJudge::see(const Pose& X_WO, Time stamp) {
     carried_.held = in_air_ > 0 ? by_one_ / in_air_ : 0;
     left_alone_ |= left && !right;
     carried_.handed_over = left_alone_ && right && !left;
+    stands_since_ = stamp;
+  } else if (left || right || way.z() < -off_table) {  // held, or fallen over
     stands_since_ = stamp;
   } else if (carried_.lifted > 4 * off_table) {
     carried_.set_down = to_seconds(stamp - stands_since_) > stands_for;

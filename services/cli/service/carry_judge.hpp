@@ -24,8 +24,8 @@ struct Carried {
   bool handed_over = false;
   bool set_down = false;
 
-  /// Lifted by 10 cm and set down 3 cm from its place or nearer, level within 10°, in the hands
-  /// that the task is for.
+  /// Lifted by 10 cm and set down 3 cm from its place or nearer; carried by both hands, level within
+  /// 10°, or handed over.
   bool done(CarryTask task) const;
 };
 
@@ -41,7 +41,7 @@ class CarryJudge {
   /// Where the object is at that time; later than before.
   void see(const Pose& X_WO, Time stamp);
 
-  /// It stands again, and has for half a second.
+  /// It stands again, and has for half a second by itself.
   bool is_over() const { return carried_.set_down; }
   const Carried& carried() const { return carried_; }
 

@@ -32,6 +32,10 @@ Carried carried(const Way& way) {
   if (!way.sets_down) return judge.carried();
   for (double t = 0; t < 1; t += 0.01) at(2 + t, way.aside, way.lift * (1 - t), way.tilt * (1 - t));
   for (double t = 0; t < 1; t += 0.01) at(3 + t, way.aside, 0, 0);
+  EXPECT_FALSE(judge.is_over()) << "while it is held";
+  judge.feel("left", false);
+  judge.feel("right", false);
+  for (double t = 0; t < 1; t += 0.01) at(4 + t, way.aside, 0, 0);
   EXPECT_EQ(judge.is_over(), way.lift > 0.02);
   return judge.carried();
 }
@@ -47,15 +51,17 @@ TEST(CarryJudge, SaysWhatWasDone) {
 }
 
 /// Handed from the left hand to the right one, both holding it in between; or let go of too soon.
-Carried handed_over(double left_until, double right_from, bool gives = true) {
+Carried handed_over(double left_until, double right_from, bool gives = true, bool falls = false) {
   CarryJudge judge(Vector3d(0.3, 0, 0));
-  for (double t = 0; t < 4; t += 0.01) {
-    judge.feel("left", gives ? t < left_until : t > left_until);
-    judge.feel("right", gives ? t > right_from : t < right_from);
+  for (double t = 0; t < 5; t += 0.01) {
+    judge.feel("left", t < 4 && (gives ? t < left_until : t > left_until));
+    judge.feel("right", t < 4 && (gives ? t > right_from : t < right_from));
     const double up = std::min({0.12, 0.12 * t, std::max(0.0, 0.12 * (3 - t))});
-    judge.see(make_pose(Vector3d(std::min(0.3, 0.15 * t), 0, 0.15 + up)), Time(seconds(1000 + t)));
+    const double fallen = falls && t > 4.2 ? 0.12 : 0;
+    judge.see(make_pose(Vector3d(std::min(0.3, 0.15 * t), 0, 0.15 + up - fallen)),
+              Time(seconds(1000 + t)));
   }
-  EXPECT_TRUE(judge.is_over());
+  EXPECT_NE(judge.is_over(), falls);
   return judge.carried();
 }
 
@@ -69,6 +75,7 @@ TEST(CarryJudge, KnowsAHandOver) {
   EXPECT_FALSE(handed_over(9, 9).done(CarryTask::hand_over)) << "carried by the left hand alone";
   EXPECT_FALSE(handed_over(1.5, 2.0, false).done(CarryTask::hand_over)) << "the other way";
   EXPECT_FALSE(handed_over(9, 0).done(CarryTask::hand_over)) << "carried by both";
+  EXPECT_FALSE(handed_over(2.0, 1.5, true, true).done(CarryTask::hand_over)) << "fell over";
 }
 
 TEST(CarryJudge, TellsEachWayInWhichItGoesWrong) {

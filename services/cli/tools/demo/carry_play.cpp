@@ -32,6 +32,7 @@ const Vector3d aside(0.30, 0, 0);  // m
 constexpr double pressed_above = 0.3;
 /// Where a tube is taken: so much of half its height above its middle, and below it.
 constexpr double taken_above = 0.5;
+constexpr Duration sees_every = std::chrono::milliseconds(50);
 
 /// A crate that no hand holds alone.
 model::CatalogueObject drawn_crate(Random& random) {
@@ -87,7 +88,7 @@ class CarryPlay {
     const auto over = stage_.until(
         "carrying", [&] { return judge_.is_over(); },
         [&] {
-          return Error{fmt::format("the {} was not lifted and set down again", object_), "demo", "",
+          return Error{fmt::format("the {} was not lifted and set down again", object_.name), "demo", "",
                        exit_no};
         });
     if (!over && over.error().exit != exit_no) return tl::unexpected(over.error());
@@ -115,22 +116,21 @@ class CarryPlay {
   Expected<void> set_up() {
     Random random(options_.seed * 7919 + 17);
     const bool pressed = options_.task == CarryTask::carry;
-    const model::CatalogueObject object = pressed ? drawn_crate(random) : drawn_tube(random);
-    object_ = object.name;
+    object_ = pressed ? drawn_crate(random) : drawn_tube(random);
     const auto catalogue_file = stage_.folder() / "catalogue.toml";
     const auto scene_file = stage_.folder() / "scene.toml";
-    if (auto written = write_file(catalogue_file, entry_of(object)); !written) return written;
-    auto scene = model::make_scene(model::Catalogue({object}), options_.seed,
-                                   {.target = object_, .graspable = {object_}, .distractors = 0});
+    if (auto written = write_file(catalogue_file, entry_of(object_)); !written) return written;
+    auto scene = model::make_scene(model::Catalogue({object_}), options_.seed,
+                                   {.target = object_.name, .graspable = {object_.name}, .distractors = 0});
     if (!scene) return tl::unexpected(scene.error());
-    const double height = model::half_extents(object.shape).z();
+    const double height = model::half_extents(object_.shape).z();
     scene->objects.front().X_WO = make_pose(
         Vector3d(-0.15 + random.uniform(-0.04, 0.04), random.uniform(-0.05, 0.05), height));
     scene->demonstrator.carry_W = aside;
     const auto hand = model::HandModel::load(model::hand_directory(options_.right));
     if (!hand) return tl::unexpected(hand.error());
-    const auto X_OG = pressed ? pressing_pose(*hand, object.shape, pressed_above * height)
-                              : taking_pose(object.shape);
+    const auto X_OG = pressed ? pressing_pose(*hand, object_.shape, pressed_above * height)
+                              : taking_pose(object_.shape);
     if (!X_OG) return wrong_use("does not reach the crate", options_.right);
     scene->demonstrator.X_OG = *X_OG;
     scene->demonstrator.hands_over = !pressed;
@@ -156,6 +156,11 @@ class CarryPlay {
     if (!statuses || !objects || !touches) return fail("cannot listen to the lab", "demo");
     statuses_.emplace(std::move(*statuses));
     objects_.emplace(std::move(*objects));
+    if (options_.task == CarryTask::hand_over) {
+      auto sightings = participant_->writer(dds::object_detection);
+      if (!sightings) return tl::unexpected(sightings.error());
+      sightings_.emplace(std::move(*sightings));
+    }
     touches_.emplace(std::move(*touches));
     stage_.on_look([this] {
       hear();
@@ -176,10 +181,27 @@ class CarryPlay {
                               [](const v1::PadTouch& pad) { return pad.touching(); }));
     }
     for (const auto& sample : objects_->take()) {
-      if (sample.info.gone || sample.data.body().to_string() != object_) continue;
-      if (const auto X_WO = convert::from_message(sample.data.X_WO()))
-        judge_.see(*X_WO, from_ns(sample.data.stamp_ns()));
+      if (sample.info.gone || sample.data.body().to_string() != object_.name) continue;
+      const auto X_WO = convert::from_message(sample.data.X_WO());
+      if (!X_WO) continue;
+      judge_.see(*X_WO, from_ns(sample.data.stamp_ns()));
+      if (sightings_) show(sample.data);
     }
+  }
+
+  /// As a camera would that sees all, also what hands hide: its markers, say.
+  void show(const v1::ObjectState& state) {
+    if (from_ns(state.stamp_ns()) - shown_ < sees_every) return;
+    shown_ = from_ns(state.stamp_ns());
+    v1::ObjectDetection sighting;
+    sighting.track(1);
+    sighting.stamp_ns(state.stamp_ns());
+    sighting.name(object_.name);
+    sighting.shape(convert::to_message(object_.shape.kind));
+    sighting.size(convert::to_message(object_.shape.size));
+    sighting.X_WO(state.X_WO());
+    sighting.probability(1);
+    sightings_->write(sighting);
   }
 
   Expected<void> start() {
@@ -228,11 +250,13 @@ class CarryPlay {
   const CarryOptions& options_;
   stage::Stage& stage_;
   CarryJudge judge_;
-  std::string object_;  // that is carried
+  model::CatalogueObject object_;  // that is carried
   std::string scene_file_;
   std::vector<GloveRow> gloves_;  // that there are
   GloveRow glove_;
   std::optional<dds::Participant> participant_;
+  std::optional<dds::Writer<v1::ObjectDetection>> sightings_;
+  Time shown_{};  // the last of them
   std::optional<dds::Reader<v1::ServiceStatus>> statuses_;
   std::optional<dds::Reader<v1::ObjectState>> objects_;
   std::optional<dds::Reader<v1::HandTouch>> touches_;
