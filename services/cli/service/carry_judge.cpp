@@ -9,14 +9,15 @@ namespace {
 
 constexpr double off_table = 0.005;  // m
 constexpr double stands_for = 0.5;   // s
+constexpr double holds_for = 1;      // s
 constexpr double lift = 0.10, near = 0.03, level = 10 * std::numbers::pi / 180, nearly_all = 0.95;
+constexpr double never_dropped = 0.99;
 
 }  // namespace
 
 bool Carried::done(CarryTask task) const {
-  const bool as_asked = task == CarryTask::carry ? both >= nearly_all && tilt <= level
-                                                 : held >= nearly_all && handed_over;
-  return set_down && lifted >= lift && off <= near && as_asked;
+  if (task == CarryTask::hand_over) return lifted >= lift && held >= never_dropped && handed_over;
+  return set_down && lifted >= lift && off <= near && both >= nearly_all && tilt <= level;
 }
 
 void CarryJudge::see(const Pose& X_WO, Time stamp) {
@@ -39,12 +40,15 @@ void CarryJudge::see(const Pose& X_WO, Time stamp) {
     carried_.both = in_air_ > 0 ? by_both_ / in_air_ : 0;
     carried_.held = in_air_ > 0 ? by_one_ / in_air_ : 0;
     left_alone_ |= left && !right;
-    carried_.handed_over = left_alone_ && right && !left;
-    stands_since_ = stamp;
-  } else if (left || right || way.z() < -off_table) {  // held, or fallen over
-    stands_since_ = stamp;
+    by_right_ = left_alone_ && right && !left ? by_right_ + elapsed : 0;
+    carried_.handed_over |= by_right_ > holds_for;
+    left_since_ = stamp;
+  } else if (left || right) {
+    left_since_ = stamp;
   } else if (carried_.lifted > 4 * off_table) {
-    carried_.set_down = to_seconds(stamp - stands_since_) > stands_for;
+    const bool rests = to_seconds(stamp - left_since_) > stands_for;
+    carried_.set_down = rests && way.z() > -off_table;
+    carried_.fell = rests && !carried_.set_down;
   }
 }
 

@@ -20,12 +20,14 @@ struct Carried {
   double tilt = 0;    // rad, at most, while it was off the table
   double both = 0;    // share of that time in which both hands touched it
   double held = 0;    // in which one did, or both
-  /// The left hand alone held it at first, and the right hand alone in the end.
+  /// The left hand alone held it at first, later the right hand alone for a second or more, in the
+  /// air.
   bool handed_over = false;
-  bool set_down = false;
+  bool set_down = false;  // it stands again by itself
+  bool fell = false;      // it lies
 
-  /// Lifted by 10 cm and set down 3 cm from its place or nearer; carried by both hands, level within
-  /// 10°, or handed over.
+  /// Lifted by 10 cm, and set down 3 cm from its place or nearer, level within 10° in both hands,
+  /// or handed over without falling from them.
   bool done(CarryTask task) const;
 };
 
@@ -41,8 +43,8 @@ class CarryJudge {
   /// Where the object is at that time; later than before.
   void see(const Pose& X_WO, Time stamp);
 
-  /// It stands again, and has for half a second by itself.
-  bool is_over() const { return carried_.set_down; }
+  /// It stands again, or lies, and has for half a second by itself.
+  bool is_over() const { return carried_.set_down || carried_.fell; }
   const Carried& carried() const { return carried_; }
 
  private:
@@ -51,8 +53,8 @@ class CarryJudge {
   std::map<std::string, bool> touches_;
   bool left_alone_ = false;
   Carried carried_;
-  Time last_{}, stands_since_{};
-  double in_air_ = 0, by_both_ = 0, by_one_ = 0;  // s
+  Time last_{}, left_since_{};        // alone, on the table
+  double in_air_ = 0, by_both_ = 0, by_one_ = 0, by_right_ = 0;  // s
 };
 
 }  // namespace prehend::cli

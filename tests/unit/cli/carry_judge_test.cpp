@@ -53,15 +53,17 @@ TEST(CarryJudge, SaysWhatWasDone) {
 /// Handed from the left hand to the right one, both holding it in between; or let go of too soon.
 Carried handed_over(double left_until, double right_from, bool gives = true, bool falls = false) {
   CarryJudge judge(Vector3d(0.3, 0, 0));
-  for (double t = 0; t < 5; t += 0.01) {
-    judge.feel("left", t < 4 && (gives ? t < left_until : t > left_until));
-    judge.feel("right", t < 4 && (gives ? t > right_from : t < right_from));
-    const double up = std::min({0.12, 0.12 * t, std::max(0.0, 0.12 * (3 - t))});
-    const double fallen = falls && t > 4.2 ? 0.12 : 0;
+  for (double t = 0; t < 6; t += 0.01) {
+    judge.feel("left", t < 4.5 && (gives ? t < left_until : t > left_until));
+    judge.feel("right", t < 4.5 && (gives ? t > right_from : t < right_from));
+    const double up = std::min({0.12, 0.12 * t, std::max(0.0, 0.12 * (4 - t))});
+    const double fallen = falls && t > 4.5 ? 0.12 : 0;
     judge.see(make_pose(Vector3d(std::min(0.3, 0.15 * t), 0, 0.15 + up - fallen)),
               Time(seconds(1000 + t)));
   }
-  EXPECT_NE(judge.is_over(), falls);
+  EXPECT_TRUE(judge.is_over());
+  EXPECT_EQ(judge.carried().fell, falls);
+  EXPECT_NE(judge.carried().set_down, falls);
   return judge.carried();
 }
 
@@ -75,7 +77,9 @@ TEST(CarryJudge, KnowsAHandOver) {
   EXPECT_FALSE(handed_over(9, 9).done(CarryTask::hand_over)) << "carried by the left hand alone";
   EXPECT_FALSE(handed_over(1.5, 2.0, false).done(CarryTask::hand_over)) << "the other way";
   EXPECT_FALSE(handed_over(9, 0).done(CarryTask::hand_over)) << "carried by both";
-  EXPECT_FALSE(handed_over(2.0, 1.5, true, true).done(CarryTask::hand_over)) << "fell over";
+  EXPECT_FALSE(handed_over(3.5, 1.5).done(CarryTask::hand_over)) << "held for half a second";
+  EXPECT_TRUE(handed_over(2.0, 1.5, true, true).done(CarryTask::hand_over))
+      << "it fell over only when it was let go of on the table";
 }
 
 TEST(CarryJudge, TellsEachWayInWhichItGoesWrong) {

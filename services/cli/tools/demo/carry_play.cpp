@@ -50,9 +50,9 @@ model::CatalogueObject drawn_crate(Random& random) {
 model::CatalogueObject drawn_tube(Random& random) {
   model::CatalogueObject object;
   object.name = "Tube";
-  const double radius = random.uniform(0.020, 0.026);
+  const double radius = random.uniform(0.028, 0.034);
   object.shape = {model::ShapeKind::cylinder,
-                  Vector3d(radius, radius, random.uniform(0.30, 0.36))};
+                  Vector3d(radius, radius, random.uniform(0.30, 0.34))};
   object.mass = random.uniform(0.1, 0.3);
   object.material = "plastic";
   return object;
