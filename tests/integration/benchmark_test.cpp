@@ -39,6 +39,10 @@ class Benchmark : public Rig {
 };
 
 TEST_F(Benchmark, JudgesAnotherProcessInLockstepAsItsOwnMapping) {
+  // In a lab in which nobody else is, meanwhile.
+  stage::Process lonely = start_program(
+      "prehend",
+      with_lab({"benchmark", "--hand", "barrett", "--trials", "1", "--mapping", "external"}));
   const Answer mine =
       benchmark({"--trials", "2", "--mapping", "intelligent+placement", "--out", in("mine")});
   ASSERT_EQ(mine.exit_code, 0) << mine.log;
@@ -53,6 +57,13 @@ TEST_F(Benchmark, JudgesAnotherProcessInLockstepAsItsOwnMapping) {
                                    own(" --set mapping.intelligent=false"), "--out", in("direct")});
   ASSERT_EQ(direct.exit_code, 0) << direct.log;
   EXPECT_NE(results("direct"), results("mine"));
+  const auto gone = lonely.wait(seconds(60));
+  ASSERT_TRUE(gone);
+  EXPECT_EQ(gone->code, 3);
+  const std::string said = stage::last_lines(folder_ / "prehend.log", 3);
+  EXPECT_NE(said.find(name_ + ": nobody reads hand/posture and writes robot/command (does it run"),
+            std::string::npos)
+      << said;
 }
 
 TEST_F(Benchmark, JudgesByObjectsThatNobodyHasTrainedWith) {
@@ -140,6 +151,14 @@ TEST_F(Benchmark, SaysWhyNobodyCanBeJudged) {
   EXPECT_NE(ends.log.find("no licence"), std::string::npos) << ends.log;
   EXPECT_NE(ends.log.find("ended with code 7"), std::string::npos) << ends.log;
   EXPECT_EQ(benchmark({"--mapping", "telepathy"}).exit_code, 2);
+  const Answer nobody = run("prehend", {"benchmark", "--set", "mapping.hand="}, 20);
+  EXPECT_EQ(nobody.exit_code, 2);
+  EXPECT_NE(nobody.log.find("--hand: is no hand"), std::string::npos) << nobody.log;
+  std::ofstream(in("vast.toml")) << "[[object]]\nname = \"Globe\"\nshape = \"sphere\"\n"
+                                    "size = [0.5, 0.5, 0.5]\nmass = 1\nmaterial = \"plastic\"\n";
+  const Answer vast = benchmark({"--objects", in("vast.toml")});
+  EXPECT_EQ(vast.exit_code, 3);
+  EXPECT_NE(vast.log.find("barrett: there is no grasp to repeat"), std::string::npos) << vast.log;
   EXPECT_EQ(benchmark({"--takes", in("nowhere")}).exit_code, 3);
 }
 

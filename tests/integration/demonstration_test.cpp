@@ -134,8 +134,30 @@ TEST_F(DemonstrationLab, WhatIsWrongIsSaidInOneLineAndNothingIsLost) {
   ASSERT_EQ(demonstrate({"--name", "TEA", "--begin"}).exit_code, 0);
   EXPECT_NE(said({"--name", "COFFEE", "--begin"}).find("TEA: is being shown already"),
             std::string::npos);
+  EXPECT_NE(said({"--name", "COFFEE", "--end"}).find("COFFEE: is not being shown; TEA is"),
+            std::string::npos);
   EXPECT_NE(said({"--end"}).find("no hand was seen"), std::string::npos);
   EXPECT_FALSE(std::filesystem::exists(std::filesystem::path(tasks()) / "TEA.task"));
+}
+
+TEST_F(DemonstrationLab, WhatCannotBeMeantIsSaidAtOnce) {
+  const auto expect = [](int code, const std::string& words, const Answer& answer) {
+    EXPECT_EQ(answer.exit_code, code) << answer.log;
+    EXPECT_NE(answer.log.find(words), std::string::npos) << answer.log;
+  };
+  expect(2, "--name: needs a name", demonstrate({"--begin"}));
+  expect(2, "demonstration.objects: there is no «smelt» (choose seen or simulated)",
+         run("prehend-demonstration", lab_arguments({"demonstration.objects=smelt"}), 20));
+  const std::string home = std::getenv("HOME") ? std::getenv("HOME") : "/";
+  for (const char* name : {"HOME", "XDG_STATE_HOME", "STATE_DIRECTORY"}) ::unsetenv(name);
+  expect(3, "demonstration.tasks: there is no folder for tasks (name one)",
+         run("prehend-demonstration", lab_arguments(), 20));
+  ::setenv("HOME", home.c_str(), 1);
+  const std::string table = "lab.scene=" + scene(3);
+  for (const auto& [put, words] : {std::pair("Talc", "Talc: is no OBJECT=x,y or OBJECT=x,y,z"),
+                                   std::pair("Talc=here", "Talc=here: is no OBJECT=x,y"),
+                                   std::pair("Teapot=0,0", "Teapot: is not in the catalogue")})
+    expect(2, words, run("prehend-person", with_lab({"--put", put, "--set", table}), 20));
 }
 
 // Pressed once it begins, pressed again it ends; another button does nothing.
@@ -267,6 +289,10 @@ TEST_F(DemonstrationLab, APerformerDoesWhatIsOrderedAndEndsIt) {
   })) << "success is kept with the task";
 
   ASSERT_TRUE(eventually(10, [&] { return order({"TEA"}).exit_code == 0; }));
+  const Answer foreign = order({"COFFEE", "--end"});
+  EXPECT_EQ(foreign.exit_code, 1);
+  EXPECT_NE(foreign.output.find("COFFEE: is not being done; TEA is"), std::string::npos)
+      << foreign.output;
   ASSERT_EQ(order({"TEA", "--end"}).exit_code, 0);
   EXPECT_TRUE(eventually(60, [&] {
     return order({"TEA", "--end"}).exit_code == 1;
@@ -286,6 +312,25 @@ TEST_F(DemonstrationLab, ShownOnceDoneAgainElsewhere) {
   EXPECT_EQ(document["object"]["name"], "Talc");
   EXPECT_LT(document["object"]["position_error_m"].get<double>(), 0.01);
   EXPECT_EQ(document["understood"]["phases"].size(), 7u);
+}
+
+// Nobody grasps the crate; and of what the simulation says nothing is where the person takes it.
+TEST_F(DemonstrationLab, WhatThePersonOrTheWatcherSaysEndsTheDemo) {
+  const std::string objects = (folder_ / "objects.toml").string();
+  ASSERT_TRUE(write_file(
+      objects, read_file(share_directory() / "models/objects/catalogue.toml").value() +
+                   "\n[[object]]\nname = \"Crate\"\nshape = \"box\"\nsize = [0.15, 0.15, 0.1]\n"
+                   "mass = 0.5\nmaterial = \"wood\"\n"));
+  for (const auto& [object, set, code, words] :
+       {std::tuple("Crate", "lab.catalogue=" + objects, 3, "no hand can grasp 'Crate'"),
+        std::tuple("Talc", std::string("demonstration.objects=simulated"), 1, "demonstrate: ")}) {
+    const Answer answer = run("prehend",
+                              {"demo", "--task", "pick-and-place", "--object", object, "--set", set,
+                               "--domain", std::to_string(domain_)},
+                              120);
+    EXPECT_EQ(answer.exit_code, code);
+    EXPECT_NE(answer.log.find(words), std::string::npos) << answer.log;
+  }
 }
 
 /// Three objects, each to a place of its own on the table.

@@ -133,5 +133,19 @@ TEST_F(SetMode, OrdersForOthersAreNotAnswered) {
   EXPECT_TRUE(replies_.take().empty());
 }
 
+TEST_F(SetMode, SettingsThatCannotBeAreSaidByTheirKeys) {
+  for (const auto& [sets, words] :
+       {std::pair<Strings, std::string>({"mapping.hand="}, "mapping.hand: is no hand"),
+        {{"mapping.hand=barrett_left", "tracker.X_WT=[0, 0, 0]"},
+         "tracker.X_WT: needs seven numbers: x y z, then w x y z"},
+        {{"mapping.mode=telepathy"}, "mapping.mode: there is no «telepathy»"},
+        {{"mapping.clutch_speed=0"},
+         "mapping.clutch_speed, _turn_speed, _finger_speed: must be"}}) {
+    const Answer answer = run("prehend-mapping", lab_arguments(sets), 20);
+    EXPECT_EQ(answer.exit_code, 2) << sets.back();
+    EXPECT_THAT(answer.log, testing::HasSubstr(words));
+  }
+}
+
 }  // namespace
 }  // namespace prehend::integration

@@ -146,6 +146,9 @@ TEST_F(Teach, ByOrdersToTheTeacher) {
   const auto begun = answer("show tester");
   ASSERT_TRUE(begun.done()) << begun.message().to_string();
   EXPECT_EQ(begun.message().to_string(), "show «open»");
+  EXPECT_THAT(answer("again").message().to_string(), testing::HasSubstr("nothing was shown yet"));
+  EXPECT_THAT(answer("train tester").message().to_string(),
+              testing::HasSubstr("postures are being shown (end it first)"));
   std::size_t shown = 0;
   std::string file;
   for (const auto& [name, closure] : lessons_) {
@@ -191,6 +194,8 @@ TEST_F(Teach, ByOrdersToTheTeacher) {
   ASSERT_TRUE(until(90, [](const auto& one) {
     return one.phase() == v1::TRAINING_COMPUTING && one.share() > 0 && one.share() < 0.5;
   }));
+  EXPECT_THAT(answer("again").message().to_string(),
+              testing::HasSubstr("trains, and takes no order until that is done"));
   const std::int64_t asked = now_ns();
   busy.signal(SIGTERM);
   const auto end = busy.wait(seconds(15));
@@ -209,6 +214,14 @@ TEST_F(Teach, WhatCannotBeIsOneLine) {
   const Answer label = run("prehend-teach", {"-o", "x", "--from", "y", "--label", "open"}, 30);
   EXPECT_EQ(label.exit_code, 2);
   EXPECT_EQ(run("prehend-teach", {}, 30).exit_code, 2);
+  for (const auto& [set, words] :
+       {std::pair("mapping.hand=", "mapping.hand: is no hand"),
+        std::pair("teacher.users=1001", "teacher.users: is none of 0 to 1000"),
+        std::pair("lab.lockstep=true", "lab.lockstep: the teacher needs a lab that is live")}) {
+    const Answer teacher = run("prehend-teacher", lab_arguments({set}), 20);
+    EXPECT_EQ(teacher.exit_code, 2) << set;
+    EXPECT_THAT(teacher.log, testing::HasSubstr(words));
+  }
   EXPECT_EQ(run("prehend-teach", {"-o", "x", "--hand", "foot"}, 30).exit_code, 3);
 }
 

@@ -258,7 +258,7 @@ Expected<Recording> Recording::parse(std::string_view text, std::string_view nam
                                      const RecordingOptions& options) {
   if (!(options.rate > 0 && options.rate <= 1000))
     return fail("the rate must be above 0 and at most 1000 Hz", std::string(name),
-                "set recording_rate");
+                "set recording_rate of the scene");
   return RecordingReader(name, options).read(text);
 }
 

@@ -75,7 +75,8 @@ Expected<Feedback> from_message(const v1::GloveFeedback& message) {
   Feedback feedback{.stamp = from_ns(message.stamp_ns())};
   for (std::size_t f = 0; f < feedback.fingers.size(); ++f) {
     const v1::FingerFeedback& finger = message.fingers()[f];
-    if (!(finger.force() >= 0 && std::isfinite(finger.force()))) return fail("feedback not finite");
+    if (!(finger.force() >= 0 && std::isfinite(finger.force())))
+      return fail("feedback with a force below 0 or not finite");
     feedback.fingers[f] = {finger.force(), finger.contact(), finger.slip(), finger.limit()};
   }
   return feedback;

@@ -326,7 +326,7 @@ class Service::Topics {
 Expected<Service::Known> Service::Known::load(service::Shell& shell) {
   const service::Config& config = shell.config();
   const std::string& kind = config.text("mapping.hand");
-  if (kind.empty()) return fail("is no hand", "mapping.hand", model::hand_hint());
+  if (kind.empty()) return wrong_use("is no hand", "mapping.hand", model::hand_hint());
   const auto folder = model::hand_directory(kind), files = model::hand_files(folder);
   auto hand = model::HandModel::load(files);
   if (!hand) return tl::unexpected(hand.error());

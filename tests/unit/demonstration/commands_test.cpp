@@ -138,10 +138,12 @@ TEST_F(DemonstrationCommand, StrangersMayBringOtherKindsAndTasks) {
 TEST_F(DemonstrationCommand, SaysInOneLineWhatCannotBeDone) {
   const std::string empty = takes("empty", "");
   const std::string lonely = takes("lonely", test::to_csv(test::made_takes({.people = 1})));
+  std::filesystem::create_directories(folder / "bare");
   EXPECT_TRUE(write_file(folder / "torn.model", "half a mod"));
   for (const auto& [arguments, what] :
        {std::pair("evaluate " + in("nowhere"), "nowhere"),
         std::pair("evaluate " + empty + " --json", "is empty"),
+        std::pair("evaluate " + in("bare"), "has no file task*.csv (name the folder"),
         std::pair("train " + lonely + " --model " + in("m"), "fewer than two people"),
         std::pair("evaluate " + lonely + " --model " + in("torn.model"), "torn.model"),
         std::pair("evaluate " + lonely + " --train " + in("nowhere"), "nowhere")}) {

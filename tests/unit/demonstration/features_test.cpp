@@ -111,6 +111,7 @@ TEST(Features, WhatWasNeverMeasuredCountsAsTheMean) {
   EXPECT_EQ(scale->apply(x).norm(), 0);
   EXPECT_EQ(scale->apply(Eigen::Vector4d::Constant(1e9)).maxCoeff(), Whitening::farthest);
   EXPECT_FALSE(Whitening::fit(Eigen::MatrixXd(4, 0)));
+  EXPECT_EQ(Whitening::fit_within(samples, {0}, 0).error().what, "a class is missing for a sample");
 }
 
 // A hand that is seen by more than the recogniser was trained on must not confuse it.

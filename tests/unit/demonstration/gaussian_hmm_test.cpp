@@ -177,6 +177,9 @@ TEST(GaussianHmm, RefusesWhatIsNoModel) {
   }
   EXPECT_FALSE(GaussianHmm::left_to_right({}, 3, 0.1));
   EXPECT_FALSE(GaussianHmm::left_to_right({Sequence::Constant(2, 3, std::nan(""))}, 3, 0.1));
+  EXPECT_EQ(
+      GaussianHmm::left_to_right({Sequence::Zero(2, 3), Sequence::Zero(3, 3)}, 3, 0.1).error().what,
+      "observations are of different sizes");
 }
 
 }  // namespace

@@ -1,11 +1,15 @@
 #include "services/demonstration/core/recognition/recogniser.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
 
 #include <cmath>
 #include <filesystem>
+#include <functional>
 
+#include "common/proto/grasp_recogniser.pb.h"
+#include "common/proto/sealed_file.hpp"
 #include "services/demonstration/files/recogniser_file.hpp"
 #include "services/demonstration/tools/evaluation/trial.hpp"
 #include "services/demonstration/tools/training/trainer.hpp"
@@ -120,6 +124,83 @@ TEST(Recogniser, ComesBackFromItsFile) {
   const model::Shape cup{model::ShapeKind::cylinder, {0.021, 0.021, 0.09}};
   EXPECT_EQ(back->front().objects->of(cup), all.front().objects->of(cup));
   EXPECT_FALSE(load_recognisers(file));
+}
+
+using Message = messages::GraspRecogniser;
+using Spoil = std::function<void(Message&)>;
+
+/// What is said of the file of a recogniser that was spoilt and sealed again.
+std::string refusal(Method method, const Spoil& spoil) {
+  const auto file =
+      std::filesystem::path(testing::TempDir()) / ("odd" + std::to_string(getpid()) + ".model");
+  for (const Recogniser& recogniser : trained())
+    if (recogniser.method() == method) {
+      EXPECT_TRUE(save_recognisers(file, {{"1", recogniser, 6, 72}}));
+    }
+  messages::GraspRecogniserSet set;
+  EXPECT_TRUE(set.ParseFromString(proto::read_sealed(file, "grasp-recogniser").value()));
+  spoil(*set.mutable_recognisers(0));
+  EXPECT_TRUE(proto::write_sealed(file, "grasp-recogniser", set.SerializeAsString()));
+  const auto made = load_recognisers(file);
+  std::filesystem::remove(file);
+  return made ? "taken" : made.error().what;
+}
+
+TEST(Recogniser, AFileThatContradictsItselfIsRefusedByName) {
+  const auto classifier = [](Message& m) { return m.mutable_classifiers(0); };
+  const auto other_inputs = [&](Message& m) { classifier(m)->set_inputs("motion"); };
+  const std::vector<std::tuple<Method, Spoil, const char*>> spoilt{
+      {Method::posture, [](Message& m) { m.clear_classes(); }, "needs at least two kinds"},
+      {Method::posture, [](Message& m) { m.set_classes(1, m.classes(0)); }, "is there twice"},
+      {Method::posture, [](Message& m) { m.clear_classifiers(); }, "has no classifier"},
+      {Method::posture, [&](Message& m) { classifier(m)->set_weight(std::nan("")); },
+       "a classifier's weight is no number"},
+      {Method::posture, [](Message& m) { m.set_temperature(0); }, "temperature is not above 0"},
+      {Method::posture, [&](Message& m) { classifier(m)->mutable_scale()->add_mean(0); },
+       "as many means as deviations"},
+      {Method::posture,
+       [&](Message& m) {
+         auto& turn = *classifier(m)->mutable_scale()->mutable_turn();
+         turn.set_rows(0);
+         turn.add_values(1);
+       },
+       "numbers do not fill a matrix"},
+      {Method::posture, other_inputs, "a classifier's scale does not fit its inputs"},
+      {Method::posture, [&](Message& m) { classifier(m)->clear_networks(); },
+       "networks and hidden Markov models, or neither"},
+      {Method::posture, [](Message& m) { m.mutable_objects()->add_otherwise(1); },
+       "what objects say is of other classes"},
+      {Method::posture,
+       [](Message& m) {
+         for (int n = 0; n < m.classes_size(); ++n) m.mutable_objects()->add_otherwise(1);
+         m.mutable_objects()->add_sizes()->set_shape("teapot");
+       },
+       "unknown shape «teapot»"},
+      {Method::hmm, other_inputs, "a classifier's scale does not fit its inputs"},
+      {Method::hmm,
+       [&](Message& m) { classifier(m)->mutable_hidden_markov_models()->RemoveLast(); },
+       "not as many hidden Markov models as classes"},
+      {Method::hmm,
+       [&](Message& m) {
+         auto& model = *classifier(m)->mutable_hidden_markov_models(0);
+         for (messages::Numbers* each : {model.mutable_means(), model.mutable_variances()}) {
+           each->set_rows(1);
+           each->mutable_values()->Truncate(model.initial_size());
+         }
+       },
+       "a hidden Markov model does not fit its inputs"}};
+  for (const auto& [method, spoil, words] : spoilt)
+    EXPECT_THAT(refusal(method, spoil), testing::HasSubstr(words)) << to_string(method);
+}
+
+TEST(Recogniser, NeedsNetworksWhereItHasNoModels) {
+  for (const Recogniser& recogniser : trained()) {
+    if (recogniser.method() != Method::posture) continue;
+    Part part = recogniser.parts().front();
+    std::get<NetworkClassifier>(part.classifier).networks.clear();
+    EXPECT_EQ(Recogniser::create(Method::posture, recogniser.classes(), {part}, 1).error().what,
+              "a classifier has no network");
+  }
 }
 
 TEST(Recogniser, TheSameTakesGiveTheSameRecogniser) {

@@ -149,6 +149,11 @@ TEST(DrawnTakes, ThumbAndIndexAreAsFarApartAsTheObjectIsWide) {
   EXPECT_GT((n * xy - x * y) / std::sqrt((n * xx - x * x) * (n * yy - y * y)), 0.8);
 }
 
+TEST(DrawnTakes, NeedTheirKindsInTheTaxonomy) {
+  EXPECT_EQ(drawn_takes(model::GraspTaxonomy(), {}).error().message(),
+            "large diameter: is not in the taxonomy");
+}
+
 TEST(DrawnTakes, AreReadAsTheyWereWritten) {
   const auto made = drawn_takes(taxonomy(), {.people = 2, .trials = 1, .seed = 9}).value();
   const auto read = parse_takes(takes_csv(made), "task_kinds.csv", "_kinds");

@@ -187,6 +187,38 @@ TEST(Watcher, RefusesWhatCannotBe) {
   hand.X_WH.translation().x() = 1000;
   EXPECT_FALSE(watcher.see(hand, ""));
   EXPECT_FALSE(watcher.see(SeenObject{start, "Talc", {}, Pose::Identity()})) << "no shape";
+  SeenObject object{start, "0", catalogue().find("Talc")->shape, make_pose({0, 0, 11})};
+  EXPECT_EQ(watcher.see(object).error().what, "pose of an object not usable") << "far away";
+  object.X_WO = Pose::Identity();
+  EXPECT_TRUE(watcher.see(object));
+  EXPECT_EQ(watcher.see(object).error().what, "object older than the last");
+  Expected<void> last;
+  for (int n = 1; n < 100 && last; ++n) {
+    object.name = std::to_string(n);
+    last = watcher.see(object);
+  }
+  ASSERT_FALSE(last);
+  EXPECT_EQ(last.error().what, "too many objects at once");
+}
+
+TEST(Person, TakesWhatIsThereAndFitsAHand) {
+  const auto said = [](const model::Scene& there, const model::Catalogue& known,
+                       const std::vector<Transfer>& transfers) {
+    const auto made = Person::create(there, known, transfers, 1);
+    return made ? std::string("taken") : made.error().message();
+  };
+  model::CatalogueObject barrel;
+  barrel.name = "Barrel";
+  barrel.shape = {model::ShapeKind::cylinder, {0.4, 0.4, 1}};
+  model::Scene cellar;
+  cellar.objects.push_back({"Barrel", make_pose({0, 0, 0.5})});
+  EXPECT_EQ(said(scene(), catalogue(), {}), "person: shows nothing (name what is put where)");
+  EXPECT_THAT(said(scene(), catalogue(), {{"Teapot", {0, 0, 0}, 0}}),
+              HasSubstr("'Teapot' is not in the scene"));
+  EXPECT_THAT(said(cellar, catalogue(), {talc_to(0, 0)}),
+              HasSubstr("'Barrel' is not in the catalogue"));
+  EXPECT_THAT(said(cellar, model::Catalogue({barrel}), {{"Barrel", {0, 0, 0.5}, 0}}),
+              HasSubstr("no hand can grasp 'Barrel'"));
 }
 
 TEST(Watcher, KeepsNoMoreThanTheLongestDemonstration) {

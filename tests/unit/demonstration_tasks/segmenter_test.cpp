@@ -170,6 +170,8 @@ TEST(SemiMarkov, SaysWhenNothingIsPermitted) {
   EXPECT_FALSE(decode(Eigen::MatrixXd::Zero(2, 4), options)) << "longer than any state may be";
   EXPECT_TRUE(decode(Eigen::MatrixXd(2, 0), options)->stretches.empty());
   EXPECT_FALSE(decode(Eigen::MatrixXd::Zero(3, 3), options));
+  EXPECT_EQ(decode(Eigen::MatrixXd::Constant(2, 3, std::nan("")), options).error().what,
+            "a sample's score is no number");
   options.max_length[0] = 0;
   EXPECT_FALSE(decode(Eigen::MatrixXd::Zero(2, 3), options));
 }

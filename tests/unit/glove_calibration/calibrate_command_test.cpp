@@ -19,6 +19,7 @@ namespace prehend::glove {
 namespace {
 
 using Eigen::Vector3d;
+using namespace std::string_literals;
 
 constexpr double scale = 1.1;
 constexpr int pictures = 80;  // a pose, at 30 Hz; the first 20 on the way to it
@@ -133,6 +134,28 @@ TEST_F(Calibrate, FromHalfASetSaysWhatIsMissing) {
   EXPECT_EQ(answer.code, 1);
   EXPECT_FALSE(answer.complaint.empty());
   EXPECT_FALSE(std::filesystem::exists(in("a.toml")));
+}
+
+class GloveTool : public test::CommandTest {
+ protected:
+  GloveTool() : CommandTest(test::in_programs("prehend-glove-tool")) {}
+};
+
+TEST_F(GloveTool, SaysInOneLineWhatItCannotUse) {
+  {
+    recorder::dataset::WrittenRecording mcap(in("other.mcap"));
+    mcap.close();
+  }
+  for (const auto& [arguments, code, words] :
+       {std::tuple("calibrate --user anna -o " + in("a.toml") + " --from " + in("other.mcap"), 3,
+                   "other.mcap: holds no glove/frame"),
+        std::tuple("register --point 1,2"s, 2, "1,2: a point is not X,Y,Z in m"),
+        std::tuple("emulate --from telepathy"s, 3,
+                   "--from: 'telepathy' is no source (give synthetic or recording:FILE)")}) {
+    const auto answer = run(arguments);
+    EXPECT_EQ(answer.code, code) << arguments;
+    EXPECT_THAT(answer.complaint, ::testing::HasSubstr(words)) << arguments;
+  }
 }
 
 }  // namespace

@@ -86,6 +86,11 @@ TEST(Registration, IsWrittenIntoTheConfiguration) {
   EXPECT_EQ(line, "X_WT = [0.00000, 0.45000, 0.30000, 1.000000, 0.000000, 0.000000, 0.000000]");
 }
 
+TEST(Toucher, HasNoResultBeforeAllPointsWereTouched) {
+  EXPECT_EQ(Toucher(corners).result().error().message(),
+            "registration: 0 of 4 points were touched (no frames yet)");
+}
+
 // From frames to the pose: a hand goes from corner to corner and rests at each.
 TEST(Toucher, FindsTheTrackerFromFrames) {
   Random random(11);

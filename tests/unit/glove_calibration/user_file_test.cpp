@@ -58,6 +58,14 @@ TEST_F(UserFile, IsReadAsWritten) {
     EXPECT_LT((got[f].translation() - wanted[f].translation()).norm(), 1e-4);
 }
 
+TEST_F(UserFile, SaysWhereItCannotBeWritten) {
+  ASSERT_TRUE(save(folder_ / "good.toml", somebody()));
+  const auto saved = save(folder_ / "good.toml" / "in_a_file.toml", somebody());
+  ASSERT_FALSE(saved);
+  EXPECT_TRUE(saved.error().message().ends_with(
+      "in_a_file.toml: the file cannot be written (choose another with --out)"));
+}
+
 TEST_F(UserFile, RefusesWhatIsNoHand) {
   EXPECT_FALSE(load_user(folder_ / "nobody.toml"));
   ASSERT_TRUE(save(folder_ / "good.toml", somebody()));

@@ -4,6 +4,7 @@
 
 #include <filesystem>
 
+#include "common/serial/pseudo_terminal.hpp"
 #include "services/glove/devices/joint_emulator.hpp"
 #include "tests/unit/glove_devices/listener.hpp"
 
@@ -132,6 +133,21 @@ TEST(JointGlove, MirrorsALeftHandsTracker) {
   EXPECT_NEAR(frame.joint_angles[1], half_closed().joint_angles[1], 0.0134);
 }
 
+TEST(JointGlove, SaysWhenItHasAnotherNumberOfSensors) {
+  DeviceOptions options;
+  options.port = link_path("twenty");
+  auto line = serial::PseudoTerminal::open(options.port);
+  ASSERT_TRUE(line) << line.error().message();
+  Listener listener;
+  const auto device = make(options);
+  device->start(listener.sink());
+  std::string asked;
+  for (int n = 0; n < 1000 && asked.find("?S") == std::string::npos; ++n)
+    asked += line->read(std::chrono::milliseconds(10));
+  line->write(std::string("?S\x14\0", 4));
+  EXPECT_TRUE(listener.says("the glove says that it has 20 sensors (18 and 22 are known)"));
+}
+
 TEST(JointGlove, RefusesAWrongConfiguration) {
   const auto kind = find_device("joint_glove");
   DeviceOptions options;
@@ -143,6 +159,9 @@ TEST(JointGlove, RefusesAWrongConfiguration) {
   options.rate = 100;
   options.joint_gains = {{1, 2}, {3}};
   EXPECT_FALSE(kind->create(options));
+  options.baud = 300;
+  EXPECT_EQ(kind->create(options).error().message(),
+            "glove.baud: the glove knows 2400 to 115200 bits per second");
 }
 
 }  // namespace

@@ -300,6 +300,12 @@ TEST(NestOfBirds, RefusesAWrongConfiguration) {
   options.range = 72;
   options.mode = "guess";
   EXPECT_FALSE(kind->create(options));
+  options.mode = "point";
+  options.baud = 300;
+  EXPECT_EQ(kind->create(options).error().message(),
+            "glove.baud: the tracker knows 2400 to 115200 bits per second");
+  options.rate = 0;
+  EXPECT_EQ(kind->create(options).error().message(), "glove.rate: the rate must be 1 to 1000 Hz");
   EXPECT_FALSE(find_device("mind reader"));
 }
 

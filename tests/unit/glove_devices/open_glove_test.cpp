@@ -116,6 +116,22 @@ TEST_F(OpenGloveFeels, AllAreLetGoAtTheEnd) {
   EXPECT_TRUE(told.ends_with(open_glove::to_line(open_glove::HeldBack{}))) << told;
 }
 
+TEST(OpenGlove, NeedsAPort) {
+  EXPECT_EQ(create_open_glove({}).error().message(),
+            "glove.port: no port is named (name one such as /dev/ttyUSB0)");
+}
+
+/// Somebody who is not there.
+class NoHand final : public FrameSource {
+ public:
+  std::optional<Frame> frame(std::uint64_t) const override { return std::nullopt; }
+};
+
+TEST(Emulation, NeedsAFrameToBeginWith) {
+  EXPECT_EQ(emulate({}, NoHand(), [] { return true; }).error().message(),
+            "emulator: the source has no frame (choose another)");
+}
+
 TEST_F(OpenGloveFeels, WhoWantsNoForceFeelsNone) {
   options_.feedback_force = 0;
   start();

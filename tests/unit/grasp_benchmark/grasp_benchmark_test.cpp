@@ -52,6 +52,17 @@ void backwards_in_threads(std::size_t count, const std::function<void(std::size_
   for (std::size_t i = count; i-- > 0;) threads.emplace_back([&work, i] { work(i); });
 }
 
+TEST(GraspBenchmark, NeedsTheObjectsOfItsGrasps) {
+  auto odd = grasps();
+  for (RobotGrasp& grasp : odd) grasp.object = "Teapot";
+  const auto model =
+      loaded(load_mapping_model(test::in_share("trained/barrett.mapping"), barrett()));
+  const auto objects = loaded(grasping::CatalogueBodies::create(model::Catalogue()));
+  const auto results = run_grasp_benchmark({barrett(), model, odd, objects}, {}, in_order);
+  ASSERT_FALSE(results);
+  EXPECT_EQ(results.error().message(), "Teapot: is not in the catalogue");
+}
+
 TEST(RecordedTake, FollowsFromItsSeed) {
   const RobotGrasp& grasp = grasps().front();
   const auto one = record_take(grasp, 5, {}), same = record_take(grasp, 5, {}),

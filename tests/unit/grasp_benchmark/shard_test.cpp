@@ -1,12 +1,15 @@
 // Shards of the grasp benchmark as files: what was saved is read again to the last bit, and only
 // what belongs together is merged. Trials are made up; that real ones come to the same as one run
 // is the business of study_test.cpp.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
 
 #include <limits>
 
 #include "common/base/file_text.hpp"
+#include "common/proto/benchmark_shard.pb.h"
+#include "common/proto/sealed_file.hpp"
 #include "services/mapping/tools/judging/benchmark_shard.hpp"
 #include "services/mapping/tools/judging/benchmark_summary.hpp"
 
@@ -149,6 +152,25 @@ TEST_F(Shards, AreRefusedWhenTheyAreDamagedOrContradictThemselves) {
   BenchmarkShard twice = shard(1, 2);
   twice.done.back() = twice.done.front();
   EXPECT_FALSE(load_shard(saved(twice, "c.shard"))) << "a take is there twice";
+}
+
+TEST_F(Shards, AreRefusedWhereTheyAreNoneOrFew) {
+  const auto odd = folder_ / "odd.shard";
+  ASSERT_TRUE(proto::write_sealed(odd, "benchmark-shard", "\xff"));
+  EXPECT_EQ(load_shard(odd).error().message(),
+            odd.string() + ": holds no shard (run this shard again)");
+  messages::BenchmarkShard message;
+  message.add_trials()->set_mode("telepathy");
+  ASSERT_TRUE(proto::write_sealed(odd, "benchmark-shard", message.SerializeAsString()));
+  EXPECT_EQ(load_shard(odd).error().what, "knows a mode that is none");
+  EXPECT_EQ(merge_shards({}).error().message(), "--merge: names no shard");
+  fs::remove(odd);
+  EXPECT_EQ(shard_progress(folder_).error().message(),
+            folder_.string() + ": holds no shards (has none begun?)");
+  saved(shard(1, 3), "1.shard");
+  saved(shard(2, 4), "2.shard");
+  EXPECT_THAT(shard_progress(folder_).error().message(),
+              testing::HasSubstr("2.shard: is shard 2/4, not one of 3 (compared with "));
 }
 
 TEST(ShardNumber, IsReadFromText) {

@@ -184,6 +184,15 @@ TEST_F(ModelFile, WithPartsMissingIsRefused) {
   EXPECT_THAT(refusal(), testing::HasSubstr("wrong number of limits"));
   rewrite([](auto& message) { message.set_upper(2, 9); });
   EXPECT_THAT(refusal(), testing::HasSubstr("limits that are not the hand's"));
+  rewrite([](auto& message) { message.add_precision(1); });
+  EXPECT_THAT(refusal(), testing::HasSubstr("wrong number of weights for precision grasps"));
+  rewrite([](auto& message) {
+    message.clear_precision();
+    for (int n = 0; n <= feature_count; ++n) message.add_precision(std::nan(""));
+  });
+  EXPECT_THAT(refusal(), testing::HasSubstr("weights for precision grasps are not finite"));
+  rewrite([](auto& message) { *message.mutable_closing() = message.networks(0); });
+  EXPECT_THAT(refusal(), testing::HasSubstr("closing: wrong number of inputs or outputs"));
 }
 
 TEST_F(ModelFile, OfAnotherKindOrAbsentIsRefused) {

@@ -166,13 +166,17 @@ TEST(Schemes, ExistForEveryHandAndThoseOfTheThesisForBarrett) {
 
 class BadScheme : public testing::Test {
  protected:
-  /// What the file is refused for after one text in it became another.
-  std::string refusal(const std::string& from, const std::string& to) {
+  /// What the file is refused for after one text in it became another, and perhaps also a second
+  /// one.
+  std::string refusal(const std::string& from, const std::string& to, const std::string& also = "",
+                      const std::string& by = "") {
     std::ifstream in(folder / "barrett.toml");
     std::string text((std::istreambuf_iterator<char>(in)), {});
     const auto place = text.find(from);
     EXPECT_NE(place, std::string::npos) << from;
     text.replace(place, from.size(), to);
+    EXPECT_NE(text.find(also), std::string::npos) << also;
+    text.replace(text.find(also), also.size(), by);
     const auto file = std::filesystem::path(testing::TempDir()) / "prehend_scheme_test.toml";
     std::ofstream(file) << text;
     const auto loaded = Scheme::load(file, barrett());
@@ -212,6 +216,15 @@ TEST_F(BadScheme, IsRefusedByName) {
   EXPECT_THAT(refusal("upper = 45", "upper = nan"),
               HasSubstr("limit.upper is not a finite number"));
   EXPECT_THAT(refusal("\"precision\"", "\"pliers\""), HasSubstr("unknown grasp type «pliers»"));
+  EXPECT_THAT(refusal(", \"precision\"", "", "robot = [15, 0, 0, 0]",
+                      "robot = [15, 0, 0, 0]\ntypes = [\"power wrap\"]"),
+              HasSubstr("has no preshape for precision grasps"));
+  EXPECT_THAT(
+      refusal("hand = \"barrett\"", "hand = \"barrett\"\nlimit = [1]", "[[limit]]", "[other]"),
+      HasSubstr("limit: is not a table"));
+  EXPECT_THAT(refusal("dofs = [\"spread\"]", "dofs = []"), HasSubstr("limit: names no DoF"));
+  EXPECT_THAT(refusal("human = [0, 0, 0, 1, 1]", "splay = 2\nhuman = [0, 0, 0, 1, 1]"),
+              HasSubstr("closed «little»: «splay» is outside 0 to 1"));
 }
 
 }  // namespace

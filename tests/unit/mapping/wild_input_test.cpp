@@ -4,17 +4,33 @@
 // 1e-12 for sums of a few numbers, 1e-7 for an angle near 0, which is the arc cosine of nearly 1.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <filesystem>
 #include <tuple>
 #include <vector>
 
+#include "common/convert/convert.hpp"
 #include "common/model/placement.hpp"
+#include "services/mapping/service/messages.hpp"
 #include "tests/unit/mapping/fixtures.hpp"
 
 namespace prehend::mapping {
 namespace {
 
 using std::chrono::milliseconds;
+
+TEST(MappingMessages, PosesThatAreNoneAreRefused) {
+  v1::HandPosture posture;
+  posture.X_WH(convert::to_message(make_pose({0, 0, 0.2})));
+  EXPECT_TRUE(posture_from_message(posture));
+  posture.X_WH().position().z(std::nan(""));
+  EXPECT_EQ(posture_from_message(posture).error().what, "pose of the hand not usable");
+  v1::HandState state;
+  state.X_WB(convert::to_message(make_pose({0, 0, 0.2})));
+  EXPECT_TRUE(state_from_message(state));
+  state.X_WB().orientation().w(0);
+  EXPECT_EQ(state_from_message(state).error().what, "pose of the robot not usable");
+}
 
 class WildInput : public testing::TestWithParam<std::tuple<std::string, int>> {};
 

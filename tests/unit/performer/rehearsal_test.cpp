@@ -11,10 +11,12 @@
 #include <set>
 
 #include "common/arm/mounting.hpp"
+#include "common/grasping/catalogue_bodies.hpp"
 #include "common/grasping/preshapes.hpp"
 #include "common/model/placement.hpp"
 #include "services/demonstration/tools/trials/trial.hpp"
 #include "services/performer/core/reproduction/alike.hpp"
+#include "services/performer/tools/trials/lab_things.hpp"
 #include "services/performer/tools/trials/trial.hpp"
 #include "tests/unit/performer/fixtures.hpp"
 
@@ -102,6 +104,43 @@ TEST(Rehearsal, SaysWhatCannotBeDone) {
       rehearse(barrett(), put("Carton box", "Teapot", {0, 0, 0.05}), things, resting());
   ASSERT_FALSE(nowhere);
   EXPECT_THAT(nowhere.error().message(), HasSubstr("Teapot: is not in this lab"));
+}
+
+TEST(TaskPerformer, NeedsAllThatTheTaskNames) {
+  const Thing talc = thing("Talc", 0.1, 0.05);
+  const Shapes shapes = shapes_of({talc});
+  const Places places{{"Talc", talc.X_WO}};
+  const auto said = [&](const Shapes& known, const Places& there, std::size_t grasps) {
+    const auto made =
+        TaskPerformer::create(barrett(), put("Talc", tasks::the_table, {0, 0, 0.0525}), known,
+                              there, std::vector<RobotGrasp>(grasps), resting());
+    return made ? std::string("taken") : made.error().message();
+  };
+  EXPECT_EQ(said(shapes, places, 2), "put: needs a grasp for each step");
+  EXPECT_EQ(said(shapes, {}, 1), "Talc: is not in this lab (the task put needs it)");
+  EXPECT_EQ(said({}, places, 1), "Talc: has no known shape");
+}
+
+TEST(TaskPerformer, IsNotWaitedForLongerThanItMayTake) {
+  const Thing talc = thing("Talc", 0.1, 0.05);
+  auto world = grasping::World::create(barrett(), resting().X_WB, resting().dof).value();
+  ASSERT_TRUE(world->add_body(talc.body, talc.X_WO));
+  auto performer = TaskPerformer::create(
+      barrett(), put("Talc", tasks::the_table, {0, 0, 0.0525}), shapes_of({talc}),
+      places_of(*world), {grasp_candidates(barrett(), talc.body.shape, from_the_side()).front()},
+      resting());
+  ASSERT_TRUE(performer) << performer.error().message();
+  EXPECT_EQ(perform_in(*world, *performer, 0.05).error().what, "takes longer than it should");
+}
+
+TEST(LabThings, OfASceneAreThoseOfTheCatalogue) {
+  const auto bodies = grasping::CatalogueBodies::create(objects()).value();
+  model::Scene scene;
+  scene.objects = {{"Talc", Pose::Identity()}};
+  EXPECT_EQ(LabThings(barrett(), bodies, false).of(scene)->size(), 1u);
+  scene.objects.push_back({"Teapot", Pose::Identity()});
+  EXPECT_EQ(LabThings(barrett(), bodies, false).of(scene).error().message(),
+            "Teapot: is not in the catalogue");
 }
 
 TEST(TaskPerformer, FailsWhereTheObjectDoesNotComeAlong) {

@@ -27,8 +27,7 @@ struct Answer {
 Answer run(const std::string& arguments) {
   Answer answer;
   FILE* pipe = popen(
-      (prehend::test::in_programs("prehend-study") + " " + arguments + " 2>/dev/null").c_str(),
-      "r");
+      (prehend::test::in_programs("prehend-study") + " 2>/dev/null " + arguments).c_str(), "r");
   if (!pipe) return answer;
   char buffer[4096];
   while (const auto count = std::fread(buffer, 1, sizeof buffer, pipe))
@@ -142,6 +141,14 @@ TEST(Study, IsTheSameInShards) {
   EXPECT_EQ(run("--progress " + shards).code, 1);
   // A file of another seed is not gone on with.
   EXPECT_EQ(run(asked + " --seed 2 --shard 2/2 --out " + shards).code, 3);
+  // Nor is one of another part.
+  std::filesystem::copy(shards + "/shard-2-of-2.shard", shards + "/shard-1-of-2.shard");
+  const Answer foreign = run(asked + " --shard 1/2 --out " + shards + " 2>&1 1>/dev/null");
+  EXPECT_EQ(foreign.code, 3);
+  EXPECT_NE(foreign.out.find("is another shard: 2/2 (move it away to begin anew)"),
+            std::string::npos)
+      << foreign.out;
+  std::filesystem::remove(shards + "/shard-1-of-2.shard");
   ASSERT_EQ(run(asked + " --shard 1/2 --out " + shards).code, 0);
   const Answer progress = run("--json --progress " + shards);
   EXPECT_EQ(progress.code, 0);

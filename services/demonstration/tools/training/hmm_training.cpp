@@ -1,6 +1,5 @@
 #include <array>
 #include <limits>
-#include <optional>
 
 #include "services/demonstration/tools/training/material.hpp"
 
@@ -68,7 +67,7 @@ Expected<Classifier> fit(const Material& material, Inputs inputs, const Choice& 
 }  // namespace
 
 Expected<Trained> train_hmms(const Material& material, Inputs inputs) {
-  std::optional<Choice> chosen;
+  Choice chosen = choices.front();
   Eigen::MatrixXd unseen;
   double least = std::numeric_limits<double>::infinity();
   for (const Choice& choice : choices) {
@@ -88,8 +87,7 @@ Expected<Trained> train_hmms(const Material& material, Inputs inputs) {
     chosen = choice;
     unseen = std::move(scores);
   }
-  if (!chosen) return fail("hidden Markov models tell nothing of these takes");
-  auto classifier = fit(material, inputs, *chosen, every_fold);
+  auto classifier = fit(material, inputs, chosen, every_fold);
   if (!classifier) return tl::unexpected(classifier.error());
   return Trained{std::move(*classifier), std::move(unseen)};
 }

@@ -36,7 +36,8 @@ class Track {
                              const dds::TopicInfo& topic, const dds::RawSample& first) {
     recording::Stream stream{dds::raw_topic(topic), {1}, first.instance, "benchmark"};
     const auto* type = types.find(stream.topic.type);
-    if (!type) return fail("is not in share/prehend/idl", stream.topic.type);
+    if (!type)
+      return fail("is not in share/prehend/idl", stream.topic.type, "is all of it installed?");
     const auto schema = writer.add_schema(recording::types::ros2_name(type->name), "ros2msg",
                                           recording::types::ros2msg(*type));
     if (!schema) return tl::unexpected(schema.error());
