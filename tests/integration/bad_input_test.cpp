@@ -103,6 +103,15 @@ TEST_F(BadInput, SensorsAtWrongPlaces) {
                  3, "two sensors at 'thumb'");
 }
 
+TEST_F(BadInput, WhatAServiceCannotWorkWith) {
+  expect_refusal("planner", lab_arguments({"mapping.hand=", "simulation.hand="}), 3,
+                 "mapping.hand: is no hand (choose one of ");
+  expect_refusal("recognition", lab_arguments({"recognition.rate=0"}), 3,
+                 "recognition.rate: must lie in 0 to 200 Hz (10 is usual)");
+  expect_refusal("recognition", lab_arguments({"recognition.source=folder", "lab.lockstep=true"}),
+                 3, "recognition.source: in lockstep pictures come by topic only (set ");
+}
+
 TEST_F(BadInput, GarbageOnThePort) {
   const std::string port = (folder_ / "tracker").string();
   auto tracker = start_program(

@@ -211,6 +211,17 @@ TEST_F(Cameras, StreamThatGoesIsSaidAndTakenUpAgain) {
   EXPECT_FALSE(recognition.exit());
 }
 
+TEST_F(Cameras, ABoardThatIsNeverShownIsWaitedForAsLongAsIsSaid) {
+  StreamCamera camera(20);
+  camera.show(table());
+  const Answer answer =
+      run("prehend-camera", {"calibrate", "video:" + camera.address(), "--limit", "1"}, 30);
+  EXPECT_NE(answer.exit_code, 0);
+  EXPECT_NE(answer.log.find("calibration: only 0 of 20 views within 1 s (the board is not"),
+            std::string::npos)
+      << answer.log;
+}
+
 TEST_F(Cameras, ObjectLearnedFromTheRunningLabIsRecognised) {
   const std::filesystem::path model = folder_ / "objects.model", known = folder_ / "known.toml";
   std::filesystem::copy_file(test::in_share("trained/objects.model"), model);

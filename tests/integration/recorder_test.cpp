@@ -128,6 +128,11 @@ TEST_F(Recorder, WrongUseAndBrokenRecordingsAreOneClearLine) {
     EXPECT_EQ(answer.output, "");
   }
   std::ofstream(file("broken.mcap")) << "this is no recording";
+  const Answer taken = run("prehend", with_lab({"record", "-o", file("broken.mcap")}), 20);
+  EXPECT_EQ(taken.exit_code, 2) << taken.log;
+  EXPECT_NE(taken.log.find("broken.mcap: is there already (choose another name, or give --force)"),
+            std::string::npos)
+      << taken.log;
   for (const char* command : {"replay", "check"})
     for (const char* name : {"broken.mcap", "missing.mcap"}) {
       const Answer answer = run("prehend", {command, file(name), "--quiet"}, 20);

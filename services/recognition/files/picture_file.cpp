@@ -103,7 +103,8 @@ Expected<Picture> load_picture(const std::filesystem::path& file) {
   if (!std::filesystem::is_regular_file(file, error))
     return fail("is no file", file.string(), "check the path");
   const auto size = std::filesystem::file_size(file, error);
-  if (error || size > 256'000'000) return fail("is too large for a picture", file.string());
+  if (error || size > 256'000'000)
+    return fail("is too large for a picture", file.string(), "more than 256 MB");
   const auto bytes = read_file(file);
   if (!bytes) return tl::unexpected(bytes.error());
   return decode_picture({reinterpret_cast<const std::uint8_t*>(bytes->data()), bytes->size()},

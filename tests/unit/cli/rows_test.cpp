@@ -48,6 +48,10 @@ TEST(Rows, AreFoundByName) {
   const auto none = find_row(rows, "c", "--glove");
   ASSERT_FALSE(none);
   EXPECT_EQ(none.error().message(), "--glove: there is no 'c' (choose one of a, b)");
+  const auto nothing = glove_row({rows.back()}, "");
+  ASSERT_FALSE(nothing);
+  EXPECT_EQ(nothing.error().message(),
+            "--glove: no device can be emulated (name one, and plug it in)");
 }
 
 }  // namespace

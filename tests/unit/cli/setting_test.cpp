@@ -2,7 +2,9 @@
 #include "services/cli/tools/demo/setting.hpp"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
+#include <fstream>
 #include <set>
 
 #include "common/model/catalogue.hpp"
@@ -78,6 +80,24 @@ TEST(Setting, UnknownObjectAndHandAreNamed) {
   wrong = options(1);
   wrong.hand = models / "hands" / "claw";
   EXPECT_NE(make_setting(wrong).error().message().find("claw"), std::string::npos);
+}
+
+TEST(Setting, WhatNoHandHoldsAndWhereNothingIsWrittenAreNamed) {
+  const auto scene = make_setting(options(1));
+  ASSERT_TRUE(scene);
+  EXPECT_EQ(write_setting(*scene, "/nowhere/scene.toml").error().message(),
+            "/nowhere/scene.toml: cannot be written (is there room, and may you?)");
+  SettingOptions wrong = options(1);
+  wrong.catalogue =
+      std::filesystem::path(testing::TempDir()) / (std::to_string(getpid()) + ".toml");
+  std::ofstream(wrong.catalogue) << "[[object]]\nname = \"Ball\"\nshape = \"sphere\"\n"
+                                    "size = [0.4, 0.4, 0.4]\nmass = 1\nmaterial = \"plastic\"\n";
+  const auto nothing = make_setting(wrong);
+  std::filesystem::remove(wrong.catalogue);
+  ASSERT_FALSE(nothing);
+  EXPECT_NE(nothing.error().message().find("barrett: the hand can hold nothing of the catalogue"),
+            std::string::npos)
+      << nothing.error().message();
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 // noise of two grey levels, a board held in many places and slants before a lens with distortion.
 // Corners are found to about 0.05 px; over 20 views of 54 corners that leaves the focal length
 // uncertain by less than 0.5 px of 620, and the tolerances are four times that.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -167,19 +168,23 @@ TEST(Calibration, FindsLensAndPlaceOfTheCameraThatDrewTheBoards) {
     }
 }
 
+/// The board's corners, with that much noise, px.
+BoardView seen(const CameraModel& camera, const Pose& X_WB, double noise, Random& random) {
+  BoardView view;
+  for (int k = 0; k < board.columns * board.rows; ++k)
+    view.push_back(*camera.project(X_WB * Eigen::Vector3d(k % board.columns * board.square,
+                                                          k / board.columns * board.square, 0)) +
+                   Eigen::Vector2d(random.normal(noise), random.normal(noise)));
+  return view;
+}
+
 TEST(Calibration, AViewThatFitsNotIsLeftOut) {
   const CameraModel truth = true_camera();
   Random random(3);
   std::vector<BoardView> views;
   for (int i = 0; i < 9; ++i) {
     const Pose X_WB = held(truth, random);
-    BoardView view;
-    for (int k = 0; k < board.columns * board.rows; ++k) {
-      const auto pixel = truth.project(X_WB * Eigen::Vector3d(k % board.columns * board.square,
-                                                              k / board.columns * board.square, 0));
-      view.push_back(*pixel + Eigen::Vector2d(random.normal(0.05), random.normal(0.05)));
-    }
-    views.push_back(view);
+    views.push_back(seen(truth, X_WB, 0.05, random));
   }
   for (std::size_t k = 0; k < views[4].size(); ++k) views[4][k].x() += k % 3 == 0 ? 6 : -4;
   const auto made = calibrate(views, board, truth.width, truth.height);
@@ -205,6 +210,29 @@ TEST(Calibration, ViewsThatDetermineNothingAreRefused) {
   EXPECT_FALSE(calibrate(flat, board, 640, 480));
   EXPECT_FALSE(locate_camera(truth, flat.front(), board, {}));
   EXPECT_FALSE(locate_camera(truth, {}, board, {}));
+}
+
+// It looks the same from near as through a longer lens.
+TEST(Calibration, ABoardThatIsHardlySlantedLeavesTheFocalLengthOpen) {
+  const CameraModel truth = true_camera();
+  Random random(5);
+  std::vector<std::string> refusals;
+  for (const double slant : {0.03, 0.06, 0.1})
+    for (const double noise : {0.5, 1.0, 2.0}) {
+      std::vector<BoardView> views;
+      for (int i = 0; i < 6; ++i) {
+        const Eigen::Matrix3d R_CB(
+            Eigen::AngleAxisd(random.uniform(-slant, slant), Eigen::Vector3d::UnitX()) *
+            Eigen::AngleAxisd(random.uniform(-slant, slant), Eigen::Vector3d::UnitY()));
+        views.push_back(
+            seen(truth, truth.X_WC * make_pose({-0.1, -0.06, 0.5}, R_CB), noise, random));
+      }
+      const auto made = calibrate(views, board, truth.width, truth.height);
+      refusals.push_back(made ? "taken" : made.error().message());
+    }
+  EXPECT_THAT(refusals,
+              testing::Contains("calibration: the focal length stays open by more than 5 % (slant "
+                                "the board by 30 to 45 degrees, each way)"));
 }
 
 /// `prehend camera calibrate` in a folder of its own, with pictures and a configuration.
@@ -304,6 +332,11 @@ TEST_F(CalibrateCommand, ALensOfAnotherSizePlacesNothing) {
   EXPECT_EQ(run(place + "camera.width=480 --set camera.height=640"), 2);
   EXPECT_NE(text("err").find("640x480"), std::string::npos) << text("err");
   EXPECT_NE(text("err").find("480x640"), std::string::npos) << text("err");
+  shoot("2.png", Picture(320, 240));
+  EXPECT_NE(run(pictures_.string() + " --place -0.1,0.05,0.3"), 0);
+  EXPECT_NE(text("err").find("2.png: has 320x240 px, those before 640x480 (all pictures of a"),
+            std::string::npos)
+      << text("err");
 }
 
 // Pictures with and without a turn in their EXIF tags, the pixels the same.

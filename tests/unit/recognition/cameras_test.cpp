@@ -144,7 +144,10 @@ TEST(Cameras, FramesOfEveryDepthBecomePictures) {
   EXPECT_FALSE(to_picture(cv::Mat(20, 30, CV_8UC2, cv::Scalar(0, 0)), "test"));
   EXPECT_FALSE(to_picture(cv::Mat(4, 4, CV_8UC3, cv::Scalar(0, 0, 0)), "test"));
   EXPECT_FALSE(to_picture(cv::Mat(), "test"));
-  EXPECT_FALSE(to_picture(cv::Mat(1, 41'000'000, CV_8UC1, cv::Scalar(0)), "test"));
+  const auto huge = to_picture(cv::Mat(8, 5'100'000, CV_8UC1, cv::Scalar(0)), "test");
+  ASSERT_FALSE(huge);
+  EXPECT_EQ(huge.error().message(),
+            "test: gives a picture of more than 40 million pixels (choose a smaller format)");
 }
 
 TEST(Cameras, FileIsPlayedAtTheRateThatIsAsked) {

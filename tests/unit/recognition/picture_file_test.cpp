@@ -154,6 +154,24 @@ TEST_F(PictureFile, HugeOnesAreRefusedBeforeTheyAreUnpacked) {
   EXPECT_NE(refused.error().what.find("40 million"), std::string::npos);
   ASSERT_TRUE(save_png(folder_ / "tiny.png", gradient(4, 4)));
   EXPECT_FALSE(load_picture(folder_ / "tiny.png"));
+  // A kind whose header is not looked at, with a bit a pixel; and a file that is no picture at all.
+  std::ofstream(folder_ / "wide.pbm", std::ios::binary) << "P4 8000 5001\n"
+                                                        << std::string(5001000, 0);
+  std::ofstream(folder_ / "huge.png") << "x";
+  std::filesystem::resize_file(folder_ / "huge.png", 257'000'000);  // with holes
+  for (const auto& [name, says] :
+       {std::pair("wide.pbm", ": has more than 40 million pixels (make it smaller)"),
+        std::pair("huge.png", ": is too large for a picture (more than 256 MB)")})
+    EXPECT_EQ(load_picture(folder_ / name).error().message(), (folder_ / name).string() + says);
+}
+
+TEST_F(PictureFile, WhereNothingCanBeWrittenIsSaid) {
+  for (const auto& written : {save_png("/nowhere/a.png", gradient(16, 16)),
+                              save_jpeg("/nowhere/a.png", gradient(16, 16))}) {
+    ASSERT_FALSE(written);
+    EXPECT_EQ(written.error().message(),
+              "/nowhere/a.png: cannot be written (is the folder there and writable?)");
+  }
 }
 
 TEST_F(PictureFile, ShrinkKeepsTheRatioAndNeverGrows) {
@@ -185,6 +203,9 @@ TEST_F(PictureFile, MissingCamerasAreErrors) {
     options.path = path;
     EXPECT_FALSE(open_camera(options, catalogue(), nullptr)) << source;
   }
+  options.source = topic_camera().name;
+  EXPECT_EQ(open_camera(options, catalogue(), nullptr).error().message(),
+            "recognition.source: there is nothing to open (its pictures come by topic)");
 }
 
 TEST_F(PictureFile, VideoOfAHandPlaysToItsEnd) {

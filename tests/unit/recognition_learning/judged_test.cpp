@@ -55,7 +55,13 @@ TEST(Report, ShowsFailuresAndEscapesNames) {
   ASSERT_TRUE(written) << written.error().message();
   std::ifstream in(folder / "index.html");
   const std::string page{std::istreambuf_iterator<char>(in), {}};
+  std::filesystem::remove(folder / "index.html");
+  std::filesystem::create_directory(folder / "index.html");
+  const auto blocked = write_report(folder, "a", {"one", "two"}, some(), 0.5);
   std::filesystem::remove_all(folder);
+  ASSERT_FALSE(blocked);
+  EXPECT_EQ(blocked.error().message(),
+            (folder / "index.html").string() + ": cannot be written (is the place writable?)");
   EXPECT_NE(page.find("a &lt;b&gt; &amp; c"), std::string::npos);
   EXPECT_EQ(page.find("<two>"), std::string::npos);
   std::size_t figures = 0;

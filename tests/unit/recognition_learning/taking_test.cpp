@@ -133,6 +133,12 @@ TEST_F(Table, WhatIsAddedToACatalogueIsThereThroughALinkToo) {
   EXPECT_FALSE(append_to_catalogue(link, odd));
   EXPECT_TRUE(model::Catalogue::load(real));
   EXPECT_FALSE(append_to_catalogue(folder / "absent.toml", object));
+  std::filesystem::create_directory(folder / "real.toml.new");  // where it would be written first
+  odd.name = "Another";
+  const auto blocked = append_to_catalogue(real, odd);
+  ASSERT_FALSE(blocked);
+  EXPECT_THAT(blocked.error().message(),
+              testing::HasSubstr("real.toml.new: cannot be written (is the place writable?)"));
   std::filesystem::remove_all(folder);
 }
 

@@ -6,6 +6,7 @@
 #include <functional>
 
 #include "common/recording/mcap/record_stream.hpp"
+#include "tests/support/foreign/foreign.hpp"
 #include "tests/unit/recorder/recording_command.hpp"
 
 namespace prehend::recorder {
@@ -194,6 +195,20 @@ TEST_F(RecordingCommand, WhatIsNotExportedIsNamedByItsEncoding) {
   EXPECT_EQ(none.code, 1);
   EXPECT_THAT(none.complaint, HasSubstr("no message could be exported"));
   EXPECT_FALSE(std::filesystem::exists(scratch_ / "none"));  // no folder that stays empty
+  test::write_recording(scratch_ / "theirs.mcap", test::Stack::json);
+  const Answer theirs = run("prehend recording export theirs.mcap --topic /run");
+  EXPECT_EQ(theirs.code, 1);
+  EXPECT_THAT(theirs.complaint, HasSubstr("/run: 4 messages are left out: encoding «json» tells no "
+                                          "columns; --format jsonl takes it"));
+}
+
+TEST_F(RecordingCommand, ATableWhoseFileCannotBeWrittenIsNamed) {
+  make("a.mcap");
+  std::filesystem::create_directories(scratch_ / "tables/robot-command.csv");
+  const Answer answer = run("prehend recording export a.mcap -o tables");
+  EXPECT_EQ(answer.code, 3);
+  EXPECT_THAT(answer.complaint,
+              HasSubstr("tables/robot-command.csv: cannot be written (is there room, and"));
 }
 
 // Guards full disks behind standard output: half a document was an answer.

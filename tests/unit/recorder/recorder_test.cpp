@@ -203,6 +203,10 @@ TEST_F(Recording, ASnapshotIsWrittenWithoutTheRecorder) {
   ASSERT_TRUE(written) << written.error().message();
   EXPECT_EQ(numbers(written->path.filename(), "world/state"), (Numbers{1}));
   EXPECT_EQ(numbers(written->path.filename(), "world/frame"), (Numbers{2}));
+  const auto again = taken->write();
+  ASSERT_FALSE(again);
+  EXPECT_EQ(again.error().message(),
+            written->path.string() + ": is there already (choose another name or remove it)");
   recorder.add(*written);
   EXPECT_EQ(recorder.messages(), 2u);
   EXPECT_EQ(recorder.files().size(), 1u);

@@ -247,6 +247,44 @@ TEST_F(RecordingCommand, RecordsAreWrittenBackByteForByte) {
   EXPECT_THAT(answer.complaint, HasSubstr("too many lists inside each other"));
 }
 
+std::string little_endian(std::uint64_t value) {
+  std::string bytes;
+  for (int i = 0; i < 8; ++i, value >>= 8) bytes += static_cast<char>(value & 0xff);
+  return bytes;
+}
+
+std::string record_of(char opcode, const std::string& content) {
+  return opcode + little_endian(content.size()) + content;
+}
+
+TEST_F(RecordingCommand, RecordsThatAreWrongAreSaid) {
+  const std::string header =
+      "{\"type\": \"Header\", \"fields\": [[\"library\", \"\"], "
+      "[\"profile\", \"\"]]}";
+  testing::write_bytes(scratch_ / "open.json", "{\"records\": [" + header + "]}");
+  testing::write_bytes(
+      scratch_ / "flat.json",
+      "{\"meta\": {\"variant\": {\"features\": 7}}, \"records\": [" + header + "]}");
+  make_unfinished("killed.mcap");
+  // A header; a chunk without times and compression, and in it another one.
+  const std::string inner = record_of(6, "");
+  testing::write_bytes(
+      scratch_ / "nested.mcap",
+      "\x89MCAP0\r\n" + record_of(1, std::string(8, 0)) +
+          record_of(6, std::string(16, 0) + little_endian(inner.size()) + std::string(8, 0) +
+                           little_endian(inner.size()) + inner));
+  for (const auto& [command, says] :
+       {std::pair("write open.json -o x.mcap",
+                  "open.json: no DataEnd among the records (end them "),
+        std::pair("write flat.json -o x.mcap", "flat.json: meta: meta.variant.features is no list"),
+        std::pair("records killed.mcap", ": the file has no footer (prehend recording recover"),
+        std::pair("records nested.mcap", ": a chunk inside a chunk")}) {
+    const Answer wrong = run(std::string("prehend recording ") + command);
+    EXPECT_EQ(wrong.code, 1) << command;
+    EXPECT_THAT(wrong.complaint, HasSubstr(says)) << command;
+  }
+}
+
 TEST_F(RecordingCommand, TheExamplesOfTheReadmeRun) {
   make("demo.mcap");
   make("other.mcap");

@@ -114,5 +114,19 @@ TEST(Hands, ThatAreNeverLedTogetherHaveNoEpisode) {
   EXPECT_THAT(rows.error().what, HasSubstr("right: "));
 }
 
+// Each hand waits for its object, and while it does the other one's object has not been told of for
+// too long.
+TEST(Hands, WhoseObjectsAreToldInTurnsHaveNoCommonBegin) {
+  RecordingLog left = lead_for(5000), right = lead_for(5000);
+  for (const int t : {300, 2500}) left.objects["Cup"].add(ms(t), Pose::Identity());
+  left.objects["Box"].add(ms(900), Pose::Identity());
+  for (const int t : {-500, 1800}) right.objects["Crate"].add(ms(t), Pose::Identity());
+  const auto rows = make_rows({{"left", &left}, {"right", &right}}, from_to(0, 5000), {.rate = 10});
+  ASSERT_FALSE(rows);
+  EXPECT_EQ(rows.error().message(),
+            "what stands around its hands is not told together (export each hand by itself: --hand "
+            "NAME)");
+}
+
 }  // namespace
 }  // namespace prehend::recorder::dataset

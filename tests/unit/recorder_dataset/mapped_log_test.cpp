@@ -115,6 +115,10 @@ TEST(MappedRows, BeginWhenAllHasBeenTold) {
   ASSERT_FALSE(before);
   EXPECT_THAT(before.error().what, HasSubstr("late is not told in an episode"));
   EXPECT_FALSE(make_rows(log, {at_ms(600), at_ms(610), "", "", {}}, {.rate = 10}));
+  const auto endless = make_rows(log, {at_ms(600), at_ms(1'000'000'000), "", "", {}}, {.rate = 10});
+  ASSERT_FALSE(endless);
+  EXPECT_EQ(endless.error().message(),
+            "an episode is of more than a million rows (are its times right?)");
 }
 
 TEST(Split, HasThePartsThatAreAskedFor) {

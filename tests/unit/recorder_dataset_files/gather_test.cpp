@@ -114,7 +114,13 @@ TEST_F(GatherTest, OneThatCannotBeUsedIsPassedBy) {
   EXPECT_EQ(all->dataset.episodes.size(), 1u);
   ASSERT_EQ(all->passed_by.size(), 1u);
   EXPECT_THAT(all->passed_by[0].message(), HasSubstr("mute.mcap"));
-  EXPECT_FALSE(gather_all({(scratch_ / "mute.mcap").string()}));
+  const std::string mutes = (scratch_ / "mute.mcap").string();
+  EXPECT_FALSE(gather_all({mutes}));
+  const auto none = gather_all({mutes, mutes});
+  ASSERT_FALSE(none);
+  EXPECT_EQ(none.error().exit, exit_no);
+  EXPECT_THAT(none.error().message(),
+              HasSubstr("mute.mcap: no episode in any of these recordings ("));
 }
 
 }  // namespace

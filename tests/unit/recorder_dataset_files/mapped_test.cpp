@@ -7,10 +7,14 @@
 #include <nlohmann/json.hpp>
 #include <opencv2/imgcodecs.hpp>
 
+#include "common/recording/mcap/writer.hpp"
 #include "services/recorder/tools/dataset/columns_file.hpp"
 #include "services/recorder/tools/dataset/export.hpp"
 #include "services/recorder/tools/dataset/gather.hpp"
+#include "services/recorder/tools/dataset/hdf5_file.hpp"
+#include "services/recorder/tools/dataset/layouts.hpp"
 #include "services/recorder/tools/dataset/pictures.hpp"
+#include "services/recorder/tools/dataset/video_file.hpp"
 #include "tests/support/foreign/foreign.hpp"
 #include "tests/unit/recording/scratch.hpp"
 
@@ -148,6 +152,80 @@ TEST_F(MappedTest, RobomimicAndLerobotNameTheParts) {
   asked.format = "aloha";
   asked.output = (scratch_ / "aloha").string();
   EXPECT_EQ(write_dataset(asked), 0);
+}
+
+TEST_F(MappedTest, PicturesThatAreGoneOrSpoiltAreSaid) {
+  const auto asked = options(test::Stack::json, test::columns_of_recording(true), true);
+  const auto all = gather(asked);
+  ASSERT_TRUE(all) << all.error().message();
+  test::write_recording(asked.sources[0], test::Stack::json, "no picture");
+  const auto spoilt = read_rows(all->dataset.episodes[0], "front", {64, 48},
+                                [](const Rgb&) { return Expected<void>(); });
+  ASSERT_FALSE(spoilt);
+  EXPECT_EQ(spoilt.error().message(), asked.sources[0] + ": no picture of front can be decoded");
+  test::write_recording(asked.sources[0], test::Stack::json);
+  const auto gone = write_aloha(all->dataset, scratch_ / "out", [] {});
+  ASSERT_FALSE(gone);
+  EXPECT_EQ(gone.error().message(), asked.sources[0] + ": no picture of front");
+}
+
+TEST_F(MappedTest, ARobotOfOtherJointsIsNoPartOfTheSet) {
+  auto asked = options(test::Stack::json,
+                       "[[state]]\ntopic = \"/joint_states\"\nfield = \"position\"\nnames = "
+                       "\"name\"\n[[action]]\ntopic = \"/command\"\nfield = \"position\"\nnames = "
+                       "\"name\"\n");
+  asked.sources.push_back((scratch_ / "other.mcap").string());
+  auto writer = recording::mcap::Writer::create(asked.sources[1]).value();
+  const auto schema = test::joints_schema(test::Stack::json);
+  const auto id = writer.add_schema(schema.name, schema.encoding, schema.data).value();
+  const auto data = test::message(test::Stack::json, test::Joints{{"c"}, {1}, {}});
+  for (const char* topic : {"/joint_states", "/command"}) {
+    const auto channel =
+        writer.add_channel(id, topic, test::encoding_of(test::Stack::json)).value();
+    for (const std::uint64_t t : {0u, 500u, 1000u})
+      ASSERT_TRUE(writer.write(recording::mcap::Message{channel, 1, t * 1'000'000, 0, data}));
+  }
+  ASSERT_TRUE(writer.close());
+  const auto all = gather(asked);
+  ASSERT_FALSE(all);
+  EXPECT_THAT(all.error().message(),
+              HasSubstr("other.mcap: its states or actions have other elements than those before "
+                        "(name those that all have: only = [...] in "));
+}
+
+TEST_F(MappedTest, WhatIsAskedForWronglyIsSaid) {
+  auto asked = options(test::Stack::json, test::columns_of_recording(false));
+  asked.hands = {"left"};
+  EXPECT_EQ(check(asked).error().message(),
+            "--hand: is for our own topics (--columns names topics)");
+  asked.hands = {};
+  asked.episodes = {"2..x"};
+  EXPECT_EQ(check(asked).error().message(),
+            "--episode 2..x: is no part of a recording (FROM..TO, seconds after its begin, as "
+            "2.5..10)");
+  asked.episodes = {};
+  const std::string unfinished = asked.output + ".unfinished";
+  testing::write_bytes(unfinished, std::string("of another export"));
+  ::testing::internal::CaptureStderr();
+  EXPECT_EQ(write_dataset(asked), exit_wrong_use);
+  EXPECT_THAT(::testing::internal::GetCapturedStderr(),
+              HasSubstr(unfinished + ": is there already (of an export that was killed? remove"));
+}
+
+// A name that is taken, a name twice in a file, and a folder that is not there.
+TEST_F(MappedTest, FilesOfTrainingDataThatCannotBeWrittenAreSaid) {
+  const auto path = scratch_ / "a.hdf5";
+  auto file = Hdf5File::create(path);
+  ASSERT_TRUE(file);
+  EXPECT_EQ(Hdf5File::create(path).error().message(),
+            path.string() + ": cannot be written (is the folder writable?)");
+  for (int i = 0; i < 2; ++i) file->write("/twice", std::vector<std::string>{"x"});
+  EXPECT_EQ(file->close().error().message(),
+            path.string() + ": cannot be written (is the disk full?)");
+  const auto video = VideoFile::create("/nowhere/a.mp4", {64, 48}, 10);
+  ASSERT_FALSE(video);
+  EXPECT_EQ(video.error().message(),
+            "/nowhere/a.mp4: cannot be written: No such file or directory");
 }
 
 TEST_F(MappedTest, WhatCannotBeMappedIsSaid) {

@@ -166,6 +166,31 @@ TEST_F(ReadLogTest, TasksThatTheRobotDid) {
   EXPECT_EQ(runs[1].success, false);
 }
 
+TEST_F(ReadLogTest, StatesOfAnotherHandAndTimesOfAnotherAgeAreSaid) {
+  command(0, "hand", {0.1, 0.2});
+  file_->write(dds::robot_command, from_ns(8'100'000'000'000'000'000), v2::HandCommand());
+  v1::HandState state;
+  state.hand("hand");
+  state.model("barrett");
+  state.dof({0, 1, 2});
+  state.X_WB().orientation().w(1);
+  {
+    const auto read = this->read("hand");
+    ASSERT_TRUE(read) << read.error().message();
+    ASSERT_EQ(read->damage.size(), 1u);
+    EXPECT_THAT(read->damage[0].message(), HasSubstr("1 messages of robot/command cannot be used "
+                                                     "(its time is in another age)"));
+  }
+  std::filesystem::remove(path_);
+  SetUp();
+  command(0, "hand", {0.1, 0.2});
+  write(dds::robot_state, 10, state);
+  const auto read = this->read();
+  ASSERT_FALSE(read);
+  EXPECT_EQ(read.error().message(),
+            path_.string() + ": its robot/command and robot/state are of different hands");
+}
+
 TEST_F(ReadLogTest, DemonstrationsBetweenTheOperatorsMarks) {
   command(0, "hand", {0});
   const auto order = [&](int t, v1::OperatorAction action, const std::string& target,

@@ -24,17 +24,21 @@ class WrittenRecording {
 
   template <class Topic, class Message>
   void write(const Topic& topic, int t, const Message& message) {
+    write(topic, ms(t), message);
+  }
+  template <class Topic, class Message>
+  void write(const Topic& topic, Time t, const Message& message) {
     dds::RawSample sample;
     sample.kind = dds::RawSample::Kind::data;
     sample.payload = dds::encode(topic, message);
     sample.instance[15] = 1;
     sample.writer[0] = 7;
     sample.sequence = ++sequence_;
-    sample.sent = ms(t);
+    sample.sent = t;
     const dds::RawTopic raw = dds::raw_topic(topic);
     // A source's address stands for it.
     const Source& source = sources_.try_emplace(raw.name, Source{raw, "lab"}).first->second;
-    ASSERT_TRUE(file_.write(source, sample, ms(t)));
+    ASSERT_TRUE(file_.write(source, sample, t));
   }
 
   void command(int t, const std::string& hand, std::vector<double> dof,

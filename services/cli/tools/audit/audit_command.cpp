@@ -28,11 +28,11 @@ constexpr std::uintmax_t max_size = 256 << 20;
 Expected<void> read(const std::filesystem::path& file, Found& found) {
   std::error_code code;
   if (std::filesystem::exists(file, code) && !std::filesystem::is_regular_file(file, code))
-    return fail("is no file", file.string());
+    return fail("is no file", file.string(), "name a log of the folder, or none for all");
   if (const auto size = std::filesystem::file_size(file, code); !code && size > max_size)
-    return fail("is too large for a log", file.string());
+    return fail("is too large for a log", file.string(), "more than 256 MB");
   std::ifstream stream(file);
-  if (!stream) return fail("cannot be read", file.string());
+  if (!stream) return fail("cannot be read", file.string(), "is it there, and may you?");
   for (std::string line; std::getline(stream, line);) {
     if (line.empty()) continue;
     auto record = audit::parse(line);

@@ -57,7 +57,8 @@ Expected<GloveRow> glove_row(const std::vector<GloveRow>& rows, const std::strin
   if (!name.empty()) return find_row(rows, name, "--glove");
   const auto first =
       std::find_if(rows.begin(), rows.end(), [](const GloveRow& row) { return row.emulator; });
-  if (first == rows.end()) return fail("no device can be emulated", "--glove");
+  if (first == rows.end())
+    return fail("no device can be emulated", "--glove", "name one, and plug it in");
   return *first;
 }
 

@@ -38,7 +38,8 @@ Expected<model::Scene> make_setting(const SettingOptions& options) {
     if (model::nearest_grasp(object.shape, Pose::Identity(), hand->reach()))
       wishes.graspable.push_back(object.name);
   if (wishes.graspable.empty())
-    return fail("the hand can hold nothing of the catalogue", options.hand.string());
+    return fail("the hand can hold nothing of the catalogue", options.hand.string(),
+                "choose another --hand, or add a smaller object to " + options.catalogue.string());
   auto scene = model::make_scene(*catalogue, options.seed, wishes);
   if (!scene) return scene;
   scene->demonstrator.reach = hand->reach();
@@ -57,7 +58,7 @@ Expected<void> write_setting(const model::Scene& scene, const std::filesystem::p
   std::ofstream stream(file);
   stream << model::to_toml(scene);
   stream.flush();
-  if (!stream) return fail("cannot be written", file.string());
+  if (!stream) return fail("cannot be written", file.string(), "is there room, and may you?");
   return {};
 }
 

@@ -190,6 +190,7 @@ int install(const std::string& store, const std::string& file) {
   const auto text = read_file(file);
   if (!text) return complain(text.error(), exit_broken);
   auto bundle = Bundle::parse(*text);
+  if (!bundle) bundle.error().where = file;
   if (!bundle) return complain(bundle.error(), exit_no);
   const auto folder = install_keys(store, std::move(*bundle), now());
   if (!folder) return complain(folder.error(), exit_no);

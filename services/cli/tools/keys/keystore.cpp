@@ -23,6 +23,7 @@ namespace files = dds::key_files;
 
 namespace {
 
+constexpr const char* name_hint = "small letters, digits, - and _, at most 48";
 constexpr const char* authority_key = "authority-key.pem";
 constexpr auto authority_validity = std::chrono::days(3650);
 constexpr const char* next_key = "next-key.pem";  // asked for, and not yet granted
@@ -75,7 +76,9 @@ std::string Bundle::text() const {
 }
 
 Expected<Bundle> Bundle::parse(std::string_view text) {
-  const auto wrong = [] { return fail("is not what `prehend keys sign` writes"); };
+  const auto wrong = [] {
+    return fail("is not what `prehend keys sign` writes", {}, "fetch the file again");
+  };
   if (text.size() > max_bundle) return wrong();
   const auto document = nlohmann::json::parse(text, nullptr, false);
   if (!document.is_object() || !document.contains("name") || !document["name"].is_string() ||
@@ -93,8 +96,7 @@ Expected<Bundle> Bundle::parse(std::string_view text) {
 }
 
 Expected<std::string> request_key(const fs::path& store, const std::string& name) {
-  if (!good_name(name))
-    return fail("is no name for a key", name, "small letters, digits, - and _, at most 48");
+  if (!good_name(name)) return fail("is no name for a key", name, name_hint);
   const auto made = keys::request(name);
   if (!made) return tl::unexpected(made.error());
   std::error_code code;
@@ -191,8 +193,7 @@ std::vector<std::string> Keystore::names() const {
 
 Expected<void> Keystore::add(const std::string& name, dds::Role role, Duration validity, bool renew,
                              Time now, const dds::Scope& scope) const {
-  if (!good_name(name))
-    return fail("is no name for a key", name, "small letters, digits, - and _, at most 48");
+  if (!good_name(name)) return fail("is no name for a key", name, name_hint);
   std::error_code code;
   if (fs::exists(folder_ / name, code) && !renew) {
     const auto all = entries(now);
@@ -249,7 +250,7 @@ Expected<Bundle> Keystore::sign(const std::string& request, std::optional<dds::R
                                 Duration validity, Time now, const dds::Scope& scope) const {
   const auto name = keys::name_in(request);
   if (!name) return tl::unexpected(name.error());
-  if (!good_name(*name)) return fail("asks for a name that is none for a key", *name);
+  if (!good_name(*name)) return fail("asks for a name that is none for a key", *name, name_hint);
   if (!role) role = dds::role_named(*name);
   if (!role) return fail("says no role", *name, "give --role");
   const auto authority = identity();
@@ -305,7 +306,7 @@ Expected<void> Keystore::refresh(Time now) const {
 }
 
 Expected<void> Keystore::revoke(const std::string& name, Time now) const {
-  if (!good_name(name)) return fail("is no name for a key", name);
+  if (!good_name(name)) return fail("is no name for a key", name, "`prehend keys show` lists them");
   const auto certificate = read(files::authority), list = read(files::revoked),
              gone = read(fs::path(name) / files::certificate);
   if (!gone) return fail("there is no key of this name", name, "`prehend keys show` lists them");

@@ -59,7 +59,6 @@ std::string projection(const std::string& name, const Eigen::Matrix3Xd& points,
 Expected<void> draw_wrench_space(const Eigen::MatrixXd& wrenches,
                                  const analysis::Resistance& resistance,
                                  const std::filesystem::path& png) {
-  if (wrenches.rows() != 6 || !wrenches.allFinite()) return fail("wrenches must be six and finite");
   const Eigen::VectorXd& hardest = resistance.weakest_direction;
   const std::string epsilon =
       resistance.force_closure ? fmt::format("ε = {:.4g}", resistance.epsilon) : "no force closure";

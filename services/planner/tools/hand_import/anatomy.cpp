@@ -93,8 +93,8 @@ Expected<Anatomy> find_anatomy(const Robot& robot, const SearchEffort& effort,
   if (!hand) return tl::unexpected(hand.error());
   const Skeleton skeleton(*hand);
   if (skeleton.fingers().empty() || skeleton.fingers().size() > 32)
-    return fail("no fingertips found", "robot " + robot.name,
-                "a finger is a chain of moving links that ends somewhere");
+    return fail(fmt::format("{} fingertips found, not 1 to 32", skeleton.fingers().size()),
+                "robot " + robot.name, "a finger is a chain of moving links that ends somewhere");
   Anatomy found;
   found.dofs = find_closing(skeleton);
   for (const FingerChain& finger : skeleton.fingers()) {

@@ -58,7 +58,7 @@ Expected<std::vector<Vector3d>> read_mesh(const path& file) {
   collect(*scene, *scene->mRootNode, aiMatrix4x4(), points);
   if (points.empty() ||
       !std::all_of(points.begin(), points.end(), [](const Vector3d& p) { return p.allFinite(); }))
-    return fail("has no vertices, or some that are not finite", file.string());
+    return fail("has no vertices, or some that are not finite", file.string(), "export it again");
   return points;
 }
 

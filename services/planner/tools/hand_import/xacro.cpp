@@ -94,7 +94,8 @@ Expected<std::string> expand_xacro(const std::filesystem::path& file,
   if (!code && errno == ENOENT)
     return fail("is xacro, and there is no program xacro here", file.string(), expand_it, exit_no);
   if (!code)
-    return fail(std::string("xacro cannot be run: ") + std::strerror(errno), file.string());
+    return fail(std::string("xacro cannot be run: ") + std::strerror(errno), file.string(),
+                expand_it);
   if (*code != 0)
     return fail("xacro cannot expand it: " + last_line(content(complaints.get())), file.string(),
                 "--xacro NAME:=VALUE gives an argument", exit_no);

@@ -139,16 +139,18 @@ Expected<CameraPlace> locate_camera(const CameraModel& camera, const BoardView& 
   const cv::Mat distortion(1, 5, CV_64F, const_cast<double*>(camera.distortion.data()));
   cv::Vec3d turn, shift;
   cv::Mat R;
+  bool found = false;
   try {
-    if (!cv::solvePnP(objects, to_cv(view), matrix_of(camera), distortion, turn, shift, false,
-                      cv::SOLVEPNP_IPPE) ||
-        !cv::solvePnP(objects, to_cv(view), matrix_of(camera), distortion, turn, shift, true,
-                      cv::SOLVEPNP_ITERATIVE))
-      return fail("the board's place cannot be found", "calibration", "take another picture");
+    found = cv::solvePnP(objects, to_cv(view), matrix_of(camera), distortion, turn, shift, false,
+                         cv::SOLVEPNP_IPPE) &&
+            cv::solvePnP(objects, to_cv(view), matrix_of(camera), distortion, turn, shift, true,
+                         cv::SOLVEPNP_ITERATIVE);
     cv::Rodrigues(turn, R);
   } catch (const cv::Exception&) {
-    return fail("the board's place cannot be found", "calibration", "take another picture");
+    found = false;
   }
+  if (!found)
+    return fail("the board's place cannot be found", "calibration", "take another picture");
   Eigen::Matrix3d R_CB;
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j < 3; ++j) R_CB(i, j) = R.at<double>(i, j);

@@ -102,7 +102,8 @@ Expected<void> write_report(const std::filesystem::path& folder, const std::stri
   }
   if (failures == 0) page << "<p>None.</p>\n";
   page.flush();
-  if (!page) return fail("cannot be written", (folder / "index.html").string());
+  if (!page)
+    return fail("cannot be written", (folder / "index.html").string(), "is the place writable?");
   return {};
 }
 

@@ -105,17 +105,17 @@ constexpr std::string_view rendered = "rendered";  // of --source
 struct ShapeQuestion {
   model::ShapeKind kind;
   std::size_t numbers;
-  const char* question;
+  const char* sizes;
   Eigen::Vector3d (*size)(const std::vector<double>&);
 };
 constexpr std::array questions{
-    ShapeQuestion{model::ShapeKind::box, 3, "Depth, length, height in mm?",
+    ShapeQuestion{model::ShapeKind::box, 3, "depth, length, height",
                   [](const std::vector<double>& s) { return Eigen::Vector3d(s[0], s[1], s[2]); }},
-    ShapeQuestion{model::ShapeKind::cylinder, 2, "Radius, height in mm?",
+    ShapeQuestion{model::ShapeKind::cylinder, 2, "radius, height",
                   [](const std::vector<double>& s) { return Eigen::Vector3d(s[0], s[0], s[1]); }},
-    ShapeQuestion{model::ShapeKind::sphere, 1, "Radius in mm?",
+    ShapeQuestion{model::ShapeKind::sphere, 1, "radius",
                   [](const std::vector<double>& s) { return Eigen::Vector3d(s[0], s[0], s[0]); }},
-    ShapeQuestion{model::ShapeKind::cone, 3, "Radius below, radius above, height in mm?",
+    ShapeQuestion{model::ShapeKind::cone, 3, "radius below, radius above, height",
                   [](const std::vector<double>& s) { return Eigen::Vector3d(s[0], s[1], s[2]); }}};
 
 /// What bounds the mesh; the shape that was asked for, if any, of that size.
@@ -125,7 +125,7 @@ Expected<model::Shape> shape_of_mesh(const AddArguments& arguments) {
   const model::Shape made = model::bounding_shape(*mesh);
   const Eigen::Vector3d mm = 1e3 * model::bounds(*mesh).sizes();
   if (mm.maxCoeff() > max_size * 1e3 || mm.maxCoeff() < 5)
-    return fail(fmt::format("is {:.3g} x {:.3g} x {:.3g} mm large", mm.x(), mm.y(), mm.z()),
+    return fail(fmt::format("is {:.6g} x {:.6g} x {:.6g} mm large", mm.x(), mm.y(), mm.z()),
                 arguments.mesh, "--scale says how many metres a unit of the file is: 0.001 for mm");
   if (!arguments.size.empty() || !arguments.shape.empty())
     return fail("has its shape and size from its mesh", arguments.name,
@@ -155,8 +155,8 @@ Expected<model::Shape> shape_of(AddArguments& arguments) {
   if (known == questions.end()) return fail("is no shape", arguments.shape, model::shape_words());
   if (arguments.size.empty()) {
     if (!asks)
-      return fail("needs a size", arguments.name, std::string("--size, in m: ") + known->question);
-    std::string line = ask(known->question);
+      return fail("needs a size", arguments.name, std::string("--size, in m: ") + known->sizes);
+    std::string line = ask(fmt::format("Size in mm ({})?", known->sizes));
     std::replace(line.begin(), line.end(), ',', ' ');
     std::istringstream numbers(line);
     for (double v; numbers >> v;) arguments.size.push_back(v / 1000);
@@ -164,7 +164,8 @@ Expected<model::Shape> shape_of(AddArguments& arguments) {
   model::Shape made;
   if (arguments.size.size() == known->numbers) made = {*kind, known->size(arguments.size)};
   if (!model::is_valid(made) || made.size.maxCoeff() > max_size)
-    return fail("is no size in metres", arguments.shape, known->question);
+    return fail("has no such size", arguments.shape,
+                fmt::format("--size, in m up to {}: {}", max_size, known->sizes));
   return made;
 }
 

@@ -50,7 +50,8 @@ Expected<DescriptorOptions> DescriptorChoice::options(const Dataset& dataset) co
   made.parts = parts_.value_or(made.parts);
   made.same_pairs = same_pairs_.value_or(made.same_pairs);
   if (!distances_.empty()) made.distances = distances_;
-  if (made.distances.size() > 16) return fail("more than 16 distances", "--distances");
+  if (made.distances.size() > 16)
+    return fail("more than 16 distances", "--distances", "name fewer");
   return made;
 }
 

@@ -17,6 +17,7 @@
 #include "services/recognition/core/learning/answer.hpp"
 #include "services/recognition/core/learning/folds.hpp"
 #include "services/recognition/files/model_file.hpp"
+#include "services/recognition/files/picture_file.hpp"
 #include "services/recognition/tools/evaluation/report.hpp"
 #include "services/recognition/tools/evaluation/trial.hpp"
 #include "services/recognition/tools/objects/commands.hpp"
@@ -41,7 +42,7 @@ Expected<Dataset> read(const std::string& folder) {
   for (const Error& error : dataset->left_out) log::warning("left out: {}", error.message());
   std::size_t views = 0;
   for (const TrainingClass& c : dataset->classes) views += c.views.size();
-  if (views == 0) return fail("no picture could be read", folder);
+  if (views == 0) return fail("no picture could be read", folder, picture_kinds);
   return dataset;
 }
 

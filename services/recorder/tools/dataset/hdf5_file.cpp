@@ -100,7 +100,7 @@ Expected<Hdf5File> Hdf5File::create(const std::filesystem::path& path) {
   auto state = std::make_unique<State>();
   state->name = path.string();
   state->file = Handle(H5Fcreate(path.c_str(), H5F_ACC_EXCL, H5P_DEFAULT, H5P_DEFAULT), H5Fclose);
-  if (state->file < 0) return fail("cannot be written", path.string());
+  if (state->file < 0) return fail("cannot be written", path.string(), "is the folder writable?");
   return Hdf5File(std::move(state));
 }
 

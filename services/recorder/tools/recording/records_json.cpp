@@ -348,7 +348,8 @@ Expected<void> print_records(const std::filesystem::path& path, std::ostream& ou
   while (result) {
     const auto raw = records.next();
     if (!raw || !*raw) {
-      result = raw ? fail("the file has no footer", file->at(records.position()))
+      result = raw ? fail("the file has no footer", file->at(records.position()),
+                          "prehend recording recover makes a whole one of it")
                    : tl::unexpected(raw.error());
       break;
     }
@@ -389,7 +390,7 @@ Expected<void> write_records(std::string_view text, const std::filesystem::path&
     if (!ended) return tl::unexpected(ended.error());
     if (*ended) return writer->close();
   }
-  return fail("no DataEnd among the records");
+  return fail("no DataEnd among the records", {}, "end them with one");
 }
 
 }  // namespace prehend::recorder

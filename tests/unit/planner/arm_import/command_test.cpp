@@ -92,6 +92,23 @@ TEST_F(ArmCommand, AddsAnArmThatThenHasAName) {
   EXPECT_FALSE(Json::parse(solved.output)["solutions"].empty());
   EXPECT_EQ(run("add " + urdf + " --name mine").code, 2);  // it is there already
   EXPECT_EQ(run("add " + urdf + " --name puma560").code, 2);
+  const Answer twice =
+      run("add " + urdf + " --name mine --output " + in("data/prehend/models/arms/mine"));
+  EXPECT_EQ(twice.code, 2);
+  EXPECT_NE(twice.complaint.find("arms/mine: there is an arm already (remove it"),
+            std::string::npos)
+      << twice.complaint;
+  const Answer homeless = prehend::test::answer_to("env -u HOME -u XDG_DATA_HOME " +
+                                                       prehend::test::in_programs("prehend arm") +
+                                                       " add " + urdf + " --name mine",
+                                                   folder);
+  EXPECT_NE(homeless.complaint.find("HOME: nobody says where your data lie (set it, or use"),
+            std::string::npos)
+      << homeless.complaint;
+  const Answer handless = run("reach puma560 --hand nobody");
+  EXPECT_EQ(handless.code, 2);
+  EXPECT_NE(handless.complaint.find("'nobody': there is no such hand"), std::string::npos)
+      << handless.complaint;
 }
 
 TEST_F(ArmCommand, NoArmIsNo) {

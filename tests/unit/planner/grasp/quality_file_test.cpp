@@ -116,4 +116,21 @@ TEST(QualityFile, RefusesNonsense) {
   }
 }
 
+TEST(QualityFile, SaysWhatIsWrong) {
+  const auto with = [](const std::string& contact, const std::string& more) {
+    return R"({"contacts":[{"position_m":[0,0,0],"normal":[1,0,0],"friction":1)" + contact +
+           R"(}],"torque_scale_m":1)" + more + "}";
+  };
+  for (const auto& [text, says] : std::vector<std::pair<std::string, std::string>>{
+           {with(R"(,"tangent":[0,1])", ""), "contact 0: \"tangent\" is not three finite numbers"},
+           {with("", R"(,"hand":"barrett","joints":["x"],"X_OB":{"position_m":[0,0,0],
+                      "orientation_wxyz":[1,0,0,0]})"),
+            "\"joints\" are not finite numbers"},
+           {R"({"contacts":3})", "\"contacts\" must be a list of at most "}}) {
+    const auto grasp = planner::read_grasp(written(text));
+    ASSERT_FALSE(grasp) << says;
+    EXPECT_NE(grasp.error().message().find(says), std::string::npos) << grasp.error().message();
+  }
+}
+
 }  // namespace

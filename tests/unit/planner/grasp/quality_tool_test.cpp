@@ -25,10 +25,8 @@ struct Result {
   std::string output;
 };
 
-/// Runs `prehend-grasp quality` with these arguments; standard error goes where the test's goes.
-Result run(const std::string& arguments, const std::string& before = {}) {
-  const std::string command =
-      before + prehend::test::in_programs("prehend-grasp quality ") + arguments;
+/// Runs shell text; standard error goes where the test's goes.
+Result answer(const std::string& command) {
   Result result;
   std::FILE* pipe = ::popen(command.c_str(), "r");
   if (!pipe) return result;
@@ -38,6 +36,11 @@ Result run(const std::string& arguments, const std::string& before = {}) {
   const int status = ::pclose(pipe);
   result.code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
   return result;
+}
+
+/// `prehend-grasp quality` with these arguments.
+Result run(const std::string& arguments, const std::string& before = {}) {
+  return answer(before + prehend::test::in_programs("prehend-grasp quality ") + arguments);
 }
 
 std::string written(const Json& document) {
@@ -137,6 +140,21 @@ TEST(QualityTool, Picture) {
   }
   EXPECT_EQ(run(file + option + " 2>&1", "PATH=/nowhere ").code, 3);
   EXPECT_FALSE(fs::exists(png));
+}
+
+// What `classify` and `taxonomy` are given is no plan, no grasp, of no hand, and no task.
+TEST(QualityTool, TheTaxonomysCommandsSayWhatTheyCannotUse) {
+  const std::string program = prehend::test::in_programs("prehend-grasp ");
+  const std::string file = written(ring(3, 0.6));
+  for (const auto& [arguments, says] : std::vector<std::pair<std::string, std::string>>{
+           {"taxonomy --task dance", "dance: is no kind of task (there are "},
+           {"classify " + file, ".json: names no hand (write it with prehend grasp export"},
+           {"classify " + prehend::test::in_sources("README.md"),
+            "README.md: is neither a plan nor a grasp as JSON: "}}) {
+    const Result refused = answer(program + arguments + " 2>&1");
+    EXPECT_EQ(refused.code, 2) << arguments;
+    EXPECT_NE(refused.output.find(says), std::string::npos) << refused.output;
+  }
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "services/planner/tools/hand_import/anatomy.hpp"
 #include "services/planner/tools/hand_import/check.hpp"
 #include "tests/unit/planner/hand_import/made_hands.hpp"
 
@@ -140,8 +141,30 @@ TEST(HandCheck, NamesMeshesThatAreNotThere) {
 TEST(HandCheck, RefusesWhatIsNoUrdf) {
   for (const std::string text : {"", "solid stl", "<sdf/>", "<robot>", "<robot name='a'"})
     EXPECT_FALSE(planner::read_robot(text)) << text;
+  EXPECT_EQ(planner::read_robot("<robot>\n<xacro:if/></robot>").error().message(),
+            "line 2: is xacro (`xacro FILE > FILE.urdf` makes a URDF of it)");
   EXPECT_FALSE(planner::is_usable(findings_of("<robot/>")));
   EXPECT_FALSE(planner::is_usable(findings_of("<robot><link name='a'/></robot>")));
+}
+
+// A brush is no hand.
+TEST(Anatomy, OfMoreFingersThanAHandHasIsRefused) {
+  const std::string block =
+      "<collision><geometry><box size='.1 .1 .1'/></geometry></collision><inertial><mass "
+      "value='.1'/><inertia ixx='1e-4' iyy='1e-4' izz='1e-4' ixy='0' ixz='0' iyz='0'/></inertial>";
+  std::string urdf = "<robot name='brush'><link name='palm'>" + block + "</link>";
+  for (int i = 0; i < 33; ++i) {
+    const std::string hair = "hair" + std::to_string(i);
+    urdf += "<link name='" + hair + "'>" + block + "</link><joint name='of_" + hair +
+            "' type='revolute'><parent link='palm'/><child link='" + hair +
+            "'/><axis xyz='1 0 0'/><limit lower='0' upper='1' effort='1' velocity='1'/>" +
+            (i > 0 ? "<mimic joint='of_hair0'/>" : "") + "</joint>";
+  }
+  const auto found = planner::find_anatomy(planner::read_robot(urdf + "</robot>").value());
+  ASSERT_FALSE(found);
+  EXPECT_EQ(found.error().message(),
+            "robot brush: 33 fingertips found, not 1 to 32 (a finger is a chain of moving links "
+            "that ends somewhere)");
 }
 
 }  // namespace

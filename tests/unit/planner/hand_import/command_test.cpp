@@ -125,6 +125,12 @@ TEST(HandCommand, HumanFingersAreToldByLinks) {
     EXPECT_THAT(refused.complaint, testing::HasSubstr("--fingers")) << wrong;
     EXPECT_FALSE(std::filesystem::exists(folder / "made")) << wrong;
   }
+  std::ofstream(folder / "made") << "a file where the folder would be";
+  const Answer blocked = add("thumb=left_finger");
+  EXPECT_EQ(blocked.code, 3);
+  EXPECT_THAT(blocked.complaint,
+              testing::HasSubstr("made/hand.urdf: cannot be written (is there room"));
+  std::filesystem::remove(folder / "made");
   EXPECT_EQ(add("thumb=left_finger,middle=right_finger").code, 0);
   const auto hand = prehend::model::HandModel::load(folder / "made");
   ASSERT_TRUE(hand) << hand.error().message();

@@ -232,6 +232,9 @@ TEST(Mjcf, Includes) {
     EXPECT_TRUE(
         finding(read("<mujoco><include file='" + file + "'/></mujoco>", files), "missing-include"))
         << file;
+  const auto binary = planner::read_mjcf(std::string("<mujoco>\0</mujoco>", 18), files);
+  ASSERT_FALSE(binary);
+  EXPECT_EQ(binary.error().message(), "holds a zero byte (XML is text)");
 }
 
 struct Broken {

@@ -77,6 +77,16 @@ TEST_F(Reading, MeshesThatWereNotFetched) {
   const std::string message = mesh("pointer.stl").error().message();
   EXPECT_NE(message.find("is a Git LFS pointer"), std::string::npos) << message;
   EXPECT_NE(message.find("git lfs pull"), std::string::npos) << message;
+  put("words.stl", "no mesh");
+  put("nan.obj", "v nan 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  for (const auto& [name, says] :
+       {std::pair("words.stl", "is no mesh that can be read"),
+        std::pair("nan.obj", "has no vertices, or some that are not finite (export it again)")}) {
+    const auto points = mesh(name);
+    ASSERT_FALSE(points) << name;
+    EXPECT_NE(points.error().message().find(name + std::string(": ") + says), std::string::npos)
+        << points.error().message();
+  }
 }
 
 TEST(ReadingNumbers, TooSmallIsZeroAndTooLargeIsNone) {
@@ -106,7 +116,13 @@ TEST_F(Reading, XacroSaysThatItMustBeExpanded) {
   const path file = put("hand.urdf.xacro", xacro_text);
   setenv("PATH", folder.c_str(), 1);
   const auto robot = planner::read_robot_file(file);
+  put("xacro", "no program");
+  const auto blocked = planner::read_robot_file(file);
   setenv("PATH", before.c_str(), 1);
+  ASSERT_FALSE(blocked);
+  EXPECT_NE(blocked.error().message().find("hand.urdf.xacro: xacro cannot be run: Permission"),
+            std::string::npos)
+      << blocked.error().message();
   ASSERT_FALSE(robot);
   EXPECT_NE(robot.error().message().find("is xacro"), std::string::npos);
   EXPECT_NE(robot.error().message().find("xacro FILE > FILE.urdf"), std::string::npos);
@@ -128,6 +144,16 @@ TEST_F(Reading, XacroIsExpandedByItsProgram) {
   EXPECT_EQ(robot->name, "side:=left; false");  // no shell has read it
   ASSERT_FALSE(refused);
   EXPECT_NE(refused.error().message().find("why not"), std::string::npos);
+}
+
+TEST_F(Reading, AMissingPartOfMujocosFileIsNamed) {
+  const auto robot = planner::read_robot_file(
+      put("hand.xml",
+          "<mujoco><include file='rest.xml'/><worldbody><body name='b'/></worldbody></mujoco>"));
+  ASSERT_TRUE(robot) << robot.error().message();
+  ASSERT_FALSE(robot->findings.empty());
+  EXPECT_NE(robot->findings[0].what.find("there is no such file"), std::string::npos)
+      << robot->findings[0].what;
 }
 
 }  // namespace

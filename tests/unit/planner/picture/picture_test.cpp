@@ -102,6 +102,9 @@ TEST(GraspPicture, ShowsHandObjectAndContacts) {
   std::filesystem::remove(file);
   EXPECT_FALSE(save("/nowhere/at/all.png", scene->drawing.draw(view, 64, 64, 1)));
 
+  const auto shapeless = draw_grasp(*hand, {"Ghost", {}, 0.15, "plastic", {}}, grasp);
+  ASSERT_FALSE(shapeless);
+  EXPECT_EQ(shapeless.error().message(), "Ghost: has no valid shape");
   grasp.joints.resize(3);
   EXPECT_FALSE(draw_grasp(*hand, talc, grasp));
 }

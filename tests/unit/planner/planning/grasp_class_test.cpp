@@ -89,6 +89,16 @@ TEST(GraspClass, RefusesWhatIsNoGraspOfTheHand) {
   const auto looks = looks_of(dlr(), foreign, from_above, {}, taxonomy());
   ASSERT_FALSE(looks);
   EXPECT_NE(looks.error().what.find("tail"), std::string::npos);
+  // A taxonomy of one kind alone: what presses from one side.
+  const auto flat = model::GraspTaxonomy::parse(
+      "[[class]]\nname = \"platform\"\nfeix = 22\nkind = \"power\"\nform = \"flat\"\n"
+      "opposition = \"palm\"\nopposed = [\"index\"]\nthumb = \"free\"\napproach = "
+      "\"above\"\nblocks = []\n"
+      "shapes = [\"box\"]\nwidth = [0.1, 0.2]\nrobot = \"precision\"\n");
+  ASSERT_TRUE(flat) << flat.error().message();
+  const auto none = looks_of(dlr(), ring(0.01, {0, 180}), from_above, {}, *flat);
+  ASSERT_FALSE(none);
+  EXPECT_EQ(none.error().what, "no class of the taxonomy is of this kind and form");
 }
 
 TEST(GraspClass, EveryPlannedGraspIsOfSomeKind) {

@@ -7,9 +7,11 @@
 
 #include <cstdlib>
 #include <fstream>
+#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "common/base/random.hpp"
+#include "common/proto/grasp.pb.h"
 #include "services/planner/tools/grasp/quality_file.hpp"
 #include "services/planner/tools/planning/export.hpp"
 #include "tests/unit/planner/planning/plans.hpp"
@@ -93,6 +95,40 @@ TEST(GraspFile, AnotherFileIsRefusedWithAReason) {
   std::filesystem::remove(file);
   ASSERT_FALSE(read);
   EXPECT_NE(read.error().message().find("nothing.grasps"), std::string::npos);
+}
+
+// Each fault in what is behind the seal has its own words.
+TEST(GraspFile, WhatIsSpoiltIsNamed) {
+  using Saved = messages::SavedPlan;
+  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+  const std::vector<std::pair<void (*)(Saved&), std::string>> faults{
+      {[](Saved& p) { p.add_size(1); }, "size of the object: wrong number of values"},
+      {[](Saved& p) { p.set_size(0, nan); }, "size of the object: values are not finite"},
+      {[](Saved& p) { p.set_shape("cloud"); }, "object: is of no known shape"},
+      {[](Saved& p) { p.set_size(2, -1); }, "object: has no valid shape"},
+      {[](Saved& p) { p.set_mass(0); }, "object: mass must be positive"},
+      {[](Saved& p) { p.set_material("air"); }, "object: unknown material"},
+      {[](Saved& p) { p.set_closed(1u << 31); }, "plan: counts are out of range"},
+      {[](Saved& p) { p.mutable_grasps(0)->set_volume(nan); }, "grasp: quality is not finite"},
+      {[](Saved& p) { p.mutable_grasps(0)->mutable_hold()->set_slip(-1); },
+       "hold test: values must be 0 or more"},
+      {[](Saved& p) { p.mutable_grasps(0)->mutable_contacts(0)->set_force(-1); },
+       "contact: values must be 0 or more"},
+      {[](Saved& p) { p.mutable_grasps(0)->mutable_contacts(0)->set_normal(0, 9); },
+       "contact: normal is not of unit length"},
+      {[](Saved& p) {
+         for (int i = 0; i < 1001; ++i) p.mutable_grasps(0)->add_contacts();
+       },
+       "grasp: too many contacts"}};
+  const std::string bytes = serialise(barrett_on_talc());
+  for (const auto& [spoil, says] : faults) {
+    Saved plan;
+    ASSERT_TRUE(plan.ParseFromString(bytes));
+    spoil(plan);
+    const auto read = parse_plan(plan.SerializeAsString());
+    ASSERT_FALSE(read) << says;
+    EXPECT_EQ(read.error().message(), says);
+  }
 }
 
 TEST(Export, JsonIsWhatQualityReads) {
