@@ -124,7 +124,7 @@ TEST(Hands, WhoseObjectsAreToldInTurnsHaveNoCommonBegin) {
   const auto rows = make_rows({{"left", &left}, {"right", &right}}, from_to(0, 5000), {.rate = 10});
   ASSERT_FALSE(rows);
   EXPECT_EQ(rows.error().message(),
-            "what stands around its hands is not told together (export each hand by itself: --hand "
+            "what is told of its hands has no time in common (export each hand by itself: --hand "
             "NAME)");
 }
 

@@ -86,7 +86,7 @@ Expected<Rows> make_rows(const std::vector<HandLog>& hands, const Episode& episo
     if (std::ranges::all_of(of_each, [&](const Rows& rows) { return rows.begin == common.begin; }))
       return side_by_side(hands, std::move(of_each));
   }
-  return fail("what stands around its hands is not told together", "",
+  return fail("what is told of its hands has no time in common", "",
               "export each hand by itself: --hand NAME");
 }
 
