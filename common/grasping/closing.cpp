@@ -115,7 +115,7 @@ HoldResult squeeze_and_hold(World& world, const VectorXd& contact, const Closing
 Expected<ClosedGrasp> close_hand(const model::HandModel& hand, const Body& object, const Pose& X_BO,
                                  const Eigen::VectorXd& preshape, const ClosingOptions& options) {
   if (!(options.longest > 0) || !(options.speed > 0) || !(options.squeeze >= 0))
-    return fail("time and speed must be positive", "closing");
+    return fail("time and speed must be positive, the squeeze 0 or more", "closing");
   if (!options.down_B.allFinite() || options.down_B.norm() < 1e-9)
     return fail("down needs a direction", "closing");
   WorldOptions world_options;

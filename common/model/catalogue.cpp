@@ -66,7 +66,7 @@ Expected<CatalogueObject> read_object(const toml::table& table,
   object.name = table["name"].value_or("");
   if (object.name.empty() || object.name.size() > 64) return fail("needs a name of 1 to 64 bytes");
   const auto kind = shape_from_string(table["shape"].value_or(""));
-  if (!kind) return fail("shape is no " + shape_words());
+  if (!kind || *kind == ShapeKind::unknown) return fail("shape is no " + shape_words());
   object.shape.kind = *kind;
   const auto size = three_numbers(table["size"]);
   if (!size) return fail("size needs three numbers in metres");

@@ -121,7 +121,7 @@ Expected<GraspTaxonomy> GraspTaxonomy::parse(std::string_view text) {
   for (const toml::node& entry : *entries) {
     const std::string where = fmt::format("class {}", made.classes_.size() + 1);
     const toml::table* table = entry.as_table();
-    if (!table) return fail("is no table", where);
+    if (!table) return fail("is no table", where, "write [[class]]");
     auto read = read_class(*table);
     if (!read) return fail(read.error().what, where, "see common/models/grasps/taxonomy.toml");
     if (made.find(read->name)) return fail("two classes named " + read->name, where);
@@ -129,13 +129,13 @@ Expected<GraspTaxonomy> GraspTaxonomy::parse(std::string_view text) {
   }
   if (const toml::table* hands = root["robot"].as_table())
     for (const auto& [hand, types] : *hands) {
+      const std::string where = fmt::format("robot.{}", hand.str());
       const toml::table* table = types.as_table();
-      if (!table) return fail("is no table", fmt::format("robot.{}", hand.str()));
+      if (!table) return fail("is no table", where, "write [" + where + "]");
       for (const auto& [type, other] : *table) {
         const std::string instead = other.value_or("");
         if (!is_robot_type(type.str()) || !is_robot_type(instead))
-          return fail(fmt::format("a type is none of {}", fmt::join(robot_types, ", ")),
-                      fmt::format("robot.{}", hand.str()));
+          return fail(fmt::format("a type is none of {}", fmt::join(robot_types, ", ")), where);
         made.instead_[std::string(hand.str())][std::string(type.str())] = instead;
       }
     }

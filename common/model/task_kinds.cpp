@@ -58,7 +58,7 @@ Expected<TaskKinds> TaskKinds::parse(std::string_view text) {
   for (const toml::node& entry : *entries) {
     const std::string where = fmt::format("task {}", made.kinds_.size() + 1);
     const toml::table* table = entry.as_table();
-    if (!table) return fail("is no table", where);
+    if (!table) return fail("is no table", where, "write [[task]]");
     auto read = read_kind(*table);
     if (!read) return fail(read.error().what, where, "see common/models/tasks/tasks.toml");
     if (std::any_of(made.kinds_.begin(), made.kinds_.end(),

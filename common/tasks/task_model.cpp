@@ -20,7 +20,8 @@ Expected<void> check_step(const Step& step, std::size_t count) {
   if (step.reference == step.object) return fail("puts an object relative to itself");
   if (step.grasp.size() > max_name) return fail("the name of its grasp is too long");
   if (!is_finite(step.X_OG) || !is_finite(step.X_RO)) return fail("a pose is not finite");
-  if (!(step.spread >= 0) || !std::isfinite(step.spread)) return fail("its spread is below 0");
+  if (!(step.spread >= 0) || !std::isfinite(step.spread))
+    return fail("its spread is not a length of 0 or more");
   if (!(step.via_height >= 0 && step.via_height <= max_height))
     return fail("its via height is not between 0 and 2 m");
   for (const std::size_t before : step.after)

@@ -222,7 +222,9 @@ constexpr std::int64_t max_demonstrations = 1'000'000;
 Expected<Pose> pose_in(const toml::table& table, std::string_view key, const std::string& where) {
   const toml::table* pose = table[key].as_table();
   const std::string here = where + ", " + std::string(key);
-  if (!pose) return fail("is missing", here);
+  if (!pose)
+    return fail("is missing or no table", here,
+                "as { position_m = [0, 0, 0], turn_deg = [0, 0, 0] }");
   if (auto ok = model::only_keys(*pose, {"position_m", "turn_deg"}, here, {}); !ok)
     return tl::unexpected(ok.error());
   const auto position = model::numbers(pose->get("position_m"), 3, here + ".position_m");
@@ -256,7 +258,8 @@ Expected<std::vector<std::size_t>> after_in(const toml::table& table, const std:
   if (!after) return fail("after is no list of steps", where, "as [1, 2]");
   for (const toml::node& node : *after) {
     const auto number = node.value<std::int64_t>();
-    if (!number || *number < 1) return fail("comes after what is no step", where);
+    if (!number || *number < 1)
+      return fail("comes after what is no step", where, "steps count from 1");
     made.push_back(static_cast<std::size_t>(*number - 1));
   }
   return made;

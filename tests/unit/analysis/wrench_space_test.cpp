@@ -14,6 +14,7 @@
 #include <limits>
 #include <numbers>
 
+#include "common/analysis/convex_hull.hpp"
 #include "common/base/random.hpp"
 #include "tests/support/shared_data.hpp"
 
@@ -141,6 +142,10 @@ TEST(WrenchSpace, RefusesWhatIsNotFinite) {
   w(3, 3) = std::numeric_limits<double>::infinity();
   EXPECT_FALSE(wrench_quality(w));
   EXPECT_FALSE(grasp_quality(tripod(1), {}));
+  EXPECT_EQ(grasp_quality(tripod(1), model::Shape{}).error().what, "the object has no valid shape");
+  EXPECT_EQ(convex_hull(MatrixXd::Random(3, 2)).error().what, "convex hull failed");
+  EXPECT_EQ(wrench_quality(MatrixXd::Ones(1, 3)).error().what,
+            "wrenches need at least two dimensions");
 }
 
 TEST(WrenchSpace, AgreesWithGraspIt) {

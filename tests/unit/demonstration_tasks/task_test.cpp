@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <limits>
 
 #include "common/base/random.hpp"
 #include "common/tasks/files/task_file.hpp"
@@ -120,6 +121,34 @@ TEST(TaskModel, OrderKeepsWhatMustComeFirst) {
   EXPECT_EQ(check(task).error().where, "t, step 3");
 }
 
+TEST(TaskModel, SaysWhatIsWrongWithAStep) {
+  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+  tasks::Step sound;
+  sound.object = "cup";
+  std::vector<tasks::Step> wrong(8, sound);
+  wrong[0].reference.clear();
+  wrong[1].reference = "cup";
+  wrong[2].grasp.assign(65, 'g');
+  wrong[3].X_OG.translation().x() = nan;
+  wrong[4].X_RO.translation().x() = nan;
+  wrong[5].spread = -1;
+  wrong[6].spread = nan;
+  wrong[7].via_height = 2.1;
+  const std::vector<std::string> told{"needs a reference, an object or the table",
+                                      "puts an object relative to itself",
+                                      "the name of its grasp is too long",
+                                      "a pose is not finite",
+                                      "a pose is not finite",
+                                      "its spread is not a length of 0 or more",
+                                      "its spread is not a length of 0 or more",
+                                      "its via height is not between 0 and 2 m"};
+  for (std::size_t i = 0; i < wrong.size(); ++i) {
+    const auto made = check(tasks::TaskModel{"t", 1, {sound, wrong[i]}});
+    ASSERT_FALSE(made) << told[i];
+    EXPECT_EQ(made.error().message(), "t, step 2: " + told[i]);
+  }
+}
+
 TEST(TaskFile, ComesBackBitForBitAndDamageIsTold) {
   Random random(4);
   const auto task = learn_task("lay \"the\" table", {lay_the_table(random), lay_the_table(random)});
@@ -167,6 +196,22 @@ TEST(TaskFile, KeepsWhatItWasLearntFromAndHowItWent) {
   EXPECT_EQ(back->runs[1].stamp, from_ns(6));
 }
 
+// A file may come from elsewhere: what it was learnt from is not checked when it is written.
+TEST(TaskFile, ShownStepsHoldFiniteNumbers) {
+  Random random(4);
+  std::vector<tasks::ShownTask> shown{lay_the_table(random), lay_the_table(random)};
+  const auto task = learn_task("lay", shown);
+  shown[0][0].highest = std::numeric_limits<double>::infinity();
+  const auto file =
+      std::filesystem::path(testing::TempDir()) / ("n" + std::to_string(getpid()) + ".task");
+  ASSERT_TRUE(tasks::save_record(file, {*task, shown, {}}));
+  const auto back = tasks::load_record(file);
+  std::filesystem::remove(file);
+  ASSERT_FALSE(back);
+  EXPECT_NE(back.error().what.find("a number is not finite"), std::string::npos)
+      << back.error().message();
+}
+
 TEST(TaskFile, NamesAreNamesOfFiles) {
   EXPECT_EQ(tasks::task_path("lay the table", "tasks")->string(), "tasks/lay the table.task");
   EXPECT_EQ(tasks::task_path("some/where.task", "tasks")->string(), "some/where.task");
@@ -193,6 +238,8 @@ TEST(TaskToml, ComesBackAndSaysWhatIsWrong) {
       refused("position_m = [", "position_m = [nan, ").find("position_m is not a finite number"),
       std::string::npos);
   EXPECT_NE(refused("after = []", "after = [9]").find("after step 9"), std::string::npos);
+  EXPECT_NE(refused("after = []", "after = [0]").find("comes after what is no step"),
+            std::string::npos);
   EXPECT_NE(refused("name = ", "name ").find("lay.toml"), std::string::npos);
   // A value of another type passed as an absent one, and the step lost what it said.
   for (const char* by : {"after = 1", "after = \"1\""})
@@ -211,6 +258,10 @@ TEST(TaskToml, ComesBackAndSaysWhatIsWrong) {
     const std::string told = another(key, value);
     EXPECT_NE(told.find(key), std::string::npos) << key << " = " << value << ": " << told;
   }
+  for (const char* key : {"place", "grasp_frame"})
+    EXPECT_NE(another(key, "3").find(std::string(key) + ": is missing or no table"),
+              std::string::npos)
+        << another(key, "3");
   EXPECT_EQ(another("upright", "true"), "taken");
   EXPECT_EQ(another("demonstrations", "1000000"), "taken");
   // What nobody can have shown.

@@ -92,6 +92,8 @@ TEST(GraspTaxonomy, SaysWhatIsWrongAndInWhichClass) {
         std::tuple("feix = 1\n", "feix = 34\n", "feix"),
         std::tuple("width = [0.055, 0.13]", "width = [0.13, 0.055]", "width"),
         std::tuple("\"index\", \"middle\"", "\"index\", \"index\"", "opposed"),
+        std::tuple("shapes = [\"cylinder\", \"box\"]", "shapes = []",
+                   "opposed and shapes may not be empty"),
         std::tuple("blocks = []", "blocks = \"all\"", "blocks"),
         std::tuple("robot = \"power wrap\"", "robot = \"wrap\"", "robot")}) {
     const auto made = GraspTaxonomy::parse(with(from, to));
@@ -103,6 +105,13 @@ TEST(GraspTaxonomy, SaysWhatIsWrongAndInWhichClass) {
   EXPECT_FALSE(GraspTaxonomy::parse("class = 3"));
   EXPECT_FALSE(GraspTaxonomy::parse("[[class"));
   EXPECT_FALSE(GraspTaxonomy::parse(text() + "\n[robot.x]\n\"wrap\" = \"precision\"\n"));
+  for (const auto& [toml, told] :
+       {std::pair(std::string("class = [3]"), "class 1: is no table (write [[class]])"),
+        std::pair(text() + "\n[robot]\nx = 3\n", "robot.x: is no table (write [robot.x])")}) {
+    const auto made = GraspTaxonomy::parse(toml);
+    ASSERT_FALSE(made) << told;
+    EXPECT_EQ(made.error().message(), told);
+  }
   const auto twice =
       GraspTaxonomy::parse(with("name = \"small diameter\"", "name = \"large diameter\""));
   ASSERT_FALSE(twice);

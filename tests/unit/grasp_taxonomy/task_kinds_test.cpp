@@ -73,6 +73,7 @@ TEST(TaskKinds, SaysWhatIsWrongAndWhere) {
   };
   EXPECT_NE(said("[[task").find("TOML"), std::string::npos);
   EXPECT_NE(said("task = 3").find("has no [[task]]"), std::string::npos);
+  EXPECT_EQ(said("task = [3]"), "task 1: is no table (write [[task]])");
   EXPECT_NE(said("[[task]]\nname = \"Pour\"\nkeep_free = []").find("task 1"), std::string::npos);
   EXPECT_NE(said("[[task]]\nname = \"pour\"").find("keep_free is no list"), std::string::npos);
   EXPECT_NE(said("[[task]]\nname = \"pour\"\nkeep_free = [\"lid\"]").find("none of"),

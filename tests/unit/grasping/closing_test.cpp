@@ -102,6 +102,14 @@ TEST(CloseHand, SaysWhyThereIsNoGrasp) {
   ClosingOptions options;
   options.down_B.setZero();
   EXPECT_FALSE(close_hand(barrett(), talc, in_base(false, 0), VectorXd::Zero(4), options));
+  for (double ClosingOptions::*number :
+       {&ClosingOptions::longest, &ClosingOptions::speed, &ClosingOptions::squeeze}) {
+    options = {};
+    options.*number = -1;
+    const auto none = close_hand(barrett(), talc, in_base(false, 0), VectorXd::Zero(4), options);
+    ASSERT_FALSE(none);
+    EXPECT_EQ(none.error().what, "time and speed must be positive, the squeeze 0 or more");
+  }
 }
 
 }  // namespace

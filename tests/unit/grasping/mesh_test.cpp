@@ -114,6 +114,8 @@ TEST(Measure, RefusesWhatIsOpen) {
   Mesh open = box(1, 1, 1);
   open.triangles.pop_back();
   EXPECT_FALSE(model::measure(open));
+  const Mesh flat{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}, {0, 2, 1}}};
+  EXPECT_EQ(model::measure(flat).error().what, "mesh encloses no volume");
 }
 
 TEST_F(MeshFile, StlAndObjGiveTheSameSolid) {
@@ -159,6 +161,14 @@ TEST(ConvexPartsOf, AConvexMeshIsItsHull) {
   EXPECT_EQ(parts->parts.size(), 1u);
   EXPECT_NEAR(parts->concavity, 0, 1e-9);
   EXPECT_EQ(parts->parts.front().size(), 8u);
+}
+
+TEST(ConvexPartsOf, AreAtLeastOneAndMayExceedTheSolid) {
+  for (const PartsOptions& wrong : {PartsOptions{.max_excess = 0}, PartsOptions{.max_parts = 0}}) {
+    const auto parts = convex_parts(box(1, 1, 1), wrong);
+    ASSERT_FALSE(parts);
+    EXPECT_EQ(parts.error().what, "parts must be at least 1, their excess positive");
+  }
 }
 
 TEST(ConvexPartsOf, AnAngleIsTwoBars) {

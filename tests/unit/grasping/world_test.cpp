@@ -231,8 +231,20 @@ TEST(World, RefusesNonsense) {
   EXPECT_FALSE(World::create(barrett(), Pose::Identity(), VectorXd::Constant(4, nan)));
   EXPECT_FALSE(World::create(barrett(), make_pose(Vector3d(nan, 0, 0)), VectorXd::Zero(4)));
   EXPECT_FALSE(World::create(barrett(), Pose::Identity(), VectorXd::Zero(4), {.rate = 0}));
+  WorldOptions adrift;
+  adrift.gravity_W.x() = nan;
+  EXPECT_EQ(World::create(barrett(), Pose::Identity(), VectorXd::Zero(4), adrift).error().what,
+            "gravity must be finite");
   auto world = empty_world(make_pose(Vector3d(0, 0, 1)));
   Body bad = talc;
+  for (const double friction : {-0.1, nan}) {
+    bad.friction = friction;
+    EXPECT_EQ(world->add_body(bad, standing(talc)).error().what, "friction must be 0 or more");
+  }
+  bad = talc;
+  bad.mesh.emplace();
+  EXPECT_EQ(world->add_body(bad, standing(talc)).error().what, "mesh is not valid");
+  bad = talc;
   bad.mass = -1;
   EXPECT_FALSE(world->add_body(bad, standing(talc)));
   bad = talc;

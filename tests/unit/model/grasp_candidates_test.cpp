@@ -56,6 +56,15 @@ TEST_F(GraspCandidatesTest, AnswerFromAnySideOfWhatIsRound) {
     }
 }
 
+TEST_F(GraspCandidatesTest, AreKeptOfAThousandObjectsAndOfThemAnew) {
+  for (std::uint32_t track = 0; track < 1000; ++track)
+    ASSERT_TRUE(book.observe({track, can, {}}, barrett())) << track;
+  EXPECT_TRUE(book.observe({999, can, {planned_grasp(from_aside)}}, barrett()));
+  const auto beyond = book.observe({1000, can, {}}, barrett());
+  ASSERT_FALSE(beyond);
+  EXPECT_EQ(beyond.error().what, "grasp candidates of too many objects");
+}
+
 TEST_F(GraspCandidatesTest, OfABoxAnswerFromBothEndsAndNotFromOthers) {
   const Vector3d x = Vector3d::UnitX(), y = Vector3d::UnitY();
   const Pose along_y = grasp_along(brick, y, x);

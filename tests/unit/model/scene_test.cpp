@@ -147,6 +147,18 @@ TEST(Catalogue, BadObjectsAreNamedWithTheirLine) {
            std::pair(object("box", "[1, 1, 1]", "mass = 1\nappearance = {colours = [[9, 9, 9]]}\n"),
                      "a colour needs"),
            std::pair(sound + sound, "line 7: two objects named A"),
+           std::pair(std::string(), "has no [[object]]"),
+           std::pair(std::string("object = [3]"), "object is no table (write [[object]])"),
+           std::pair(std::string("[[object]]"), "object 1: needs a name of 1 to 64 bytes"),
+           std::pair(object("ball", "[1, 1, 1]"), "shape is no cylinder, box, sphere or cone"),
+           std::pair(object("unknown", "[1, 1, 1]"), "shape is no cylinder, box, sphere or cone"),
+           std::pair(object("box", "[1, 1]"), "size needs three numbers in metres"),
+           std::pair(object("box", "[1, 1, 0]"), "sizes must be positive"),
+           std::pair(object("box", "[1, 1, 1]", "mass = 0\n"), "mass must be positive, in kg"),
+           std::pair(object("box", "[1, 1, 1]", "mesh = 3\n"), "mesh needs the name of a file"),
+           std::pair(
+               std::string("[[object]]\nname = \"A\"\nshape = \"box\"\nsize = [1, 1, 1]\nmass = 1"),
+               "needs a material"),
        }) {
     const auto read = Catalogue::load(write(text));
     ASSERT_FALSE(read) << text;

@@ -262,6 +262,33 @@ TEST(McapFile, WithoutChunksAnyPrefixIsReadableUpToItsLastWholeMessage) {
   }
 }
 
+TEST(McapFile, WhatIsNotWhereItsIndexSaysIsTold) {
+  const Scratch scratch;
+  {
+    Writer writer = Writer::create(scratch / "a.mcap").value();
+    write_all(writer, some_messages(2));
+  }
+  const Reader reader = Reader::open(scratch / "a.mcap").value();
+  Bytes buffer;
+  EXPECT_EQ(reader.attachment({}, buffer).error().what, "there is no attachment here");
+  EXPECT_EQ(reader.metadata({}).error().what, "there is no metadata here");
+  const File file = File::open(scratch / "a.mcap").value();
+  std::filesystem::resize_file(scratch / "a.mcap", 10);
+  EXPECT_EQ(file.read(0, 20).error().what, "the file was cut while it was read");
+}
+
+TEST(McapFile, AnIdIsOfOneChannelAndTheHighestIsTheLast) {
+  const Scratch scratch;
+  Writer writer = Writer::create(scratch / "a.mcap").value();
+  Channel channel;
+  channel.id = 65535;
+  ASSERT_TRUE(writer.write(channel));
+  ASSERT_TRUE(writer.write(channel)) << "the same once more";
+  channel.topic = "other";
+  EXPECT_EQ(writer.write(channel).error().what, "channel 65535 is something else");
+  EXPECT_EQ(writer.add_channel(0, "next", "cdr").error().what, "more than 65535 channels");
+}
+
 TEST(McapFile, WhatWasFlushedIsReadableWhileTheWriterGoesOn) {
   const Scratch scratch;
   const auto messages = some_messages(10);
