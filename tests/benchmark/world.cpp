@@ -1,6 +1,7 @@
-// How fast the world steps while each hand grips an object, alone and beside its like, as a multiple of real time at 500 Hz,
-// and what contacts and bodies cost. A step is deterministic, so the figures differ by the machine
-// alone; floors: Barrett 10, DLR 5, Robonaut 3 times real time on one core.
+// How fast the world steps while each hand grips an object, alone and beside its like, as a
+// multiple of real time at 500 Hz, and what contacts and bodies cost. A step is deterministic, so
+// the figures differ by the machine alone; floors: Barrett 10, DLR 5, Robonaut 3 times real time on
+// one core.
 #include "common/grasping/world.hpp"
 
 #include <benchmark/benchmark.h>
@@ -20,8 +21,8 @@ using namespace prehend::grasping;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
 
-/// So many hands, apart from each other, that have closed on a Talc each, at their grasp frames moved
-/// `ahead` m along z, and squeeze.
+/// So many hands, apart from each other, that have closed on a Talc each, at their grasp frames
+/// moved `ahead` m along z, and squeeze.
 std::unique_ptr<World> gripping(const model::HandModel& model, double ahead, int hands) {
   const auto& postures = model.postures();
   const VectorXd& preshape = postures.at(postures.contains("power") ? "power" : "open");

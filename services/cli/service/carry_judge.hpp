@@ -53,7 +53,7 @@ class CarryJudge {
   std::map<std::string, bool> touches_;
   bool left_alone_ = false;
   Carried carried_;
-  Time last_{}, left_since_{};        // alone, on the table
+  Time last_{}, left_since_{};                                   // alone, on the table
   double in_air_ = 0, by_both_ = 0, by_one_ = 0, by_right_ = 0;  // s
 };
 

@@ -43,6 +43,7 @@ Choice chosen_by(std::vector<std::string> arguments) {
 std::string targets_of(const Choice& choice) {
   if (!choice.task.empty() && choice.hands.empty()) return "task_lab";
   std::string targets = "lab";
+  if (choice.task == "hand-over") targets += " prehend-person";
   if (!choice.record.empty()) targets += " prehend-record";
   if (!choice.robot.empty()) targets += " prehend-robot prehend-robot-tool";
   if (choice.mode == "planned") targets += " prehend-planner";

@@ -115,10 +115,11 @@ HandState CarryingHand::hand(double time) const {
 
   const double carried = back ? 1 - now(&Step::carried) : now(&Step::carried);
   HandState state;
-  state.X_WH = moved(X_WH_, carried * carry_W_ + now(&Step::lifted) * lifted_by * Vector3d::UnitZ() +
-                                (1 - now(&Step::there)) * beside * out_W_ +
-                                (1 - now(&Step::near)) * (waits_above * Vector3d::UnitZ() -
-                                                          waits_back * Vector3d::UnitY()));
+  state.X_WH =
+      moved(X_WH_, carried * carry_W_ + now(&Step::lifted) * lifted_by * Vector3d::UnitZ() +
+                       (1 - now(&Step::there)) * beside * out_W_ +
+                       (1 - now(&Step::near)) *
+                           (waits_above * Vector3d::UnitZ() - waits_back * Vector3d::UnitY()));
   for (std::size_t finger = 0; finger < closure_.size(); ++finger)
     state.closure[finger] = now(&Step::closed) * closure_[finger];
   return state;

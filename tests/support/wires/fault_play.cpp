@@ -19,9 +19,9 @@ using std::chrono::milliseconds;
 constexpr Duration period = milliseconds(10);  // of commands
 constexpr int strange_id = 3;                  // of a device that answers for another
 constexpr Duration held_up = milliseconds(500);
-constexpr double begins = 4;                   // s: when the fault comes
-constexpr double recovers_for = 8;             // s, after its end
-constexpr double led_again_for = 4;            // s
+constexpr double begins = 4;         // s: when the fault comes
+constexpr double recovers_for = 8;   // s, after its end
+constexpr double led_again_for = 4;  // s
 
 // --- the faults
 

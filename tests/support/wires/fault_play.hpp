@@ -10,8 +10,8 @@
 namespace prehend::test {
 
 /// A fault as `prehend robot emulate` makes it, without the dashes; with «10 %» and without: of a
-/// tenth of the answers, and of all. Those of ros2_control alone: «other joints», «out of range»; of both
-/// ends together, as a busy machine does it, for half a second: «held-up».
+/// tenth of the answers, and of all. Those of ros2_control alone: «other joints», «out of range»;
+/// of both ends together, as a busy machine does it, for half a second: «held-up».
 struct PlayedFault {
   std::string_view name;
   bool (*befalls)(const WiredHand& wired);

@@ -15,18 +15,17 @@ namespace prehend::cli {
 namespace {
 
 std::string to_json(const Carried& carried, const CarryOptions& options) {
-  return nlohmann::ordered_json{
-      {"task", options.task == CarryTask::carry ? "carry" : "hand-over"},
-      {"hands", {{"left", options.left}, {"right", options.right}}},
-      {"seed", options.seed},
-      {"lifted_m", carried.lifted},
-      {"off_m", carried.off},
-      {"tilt_rad", carried.tilt},
-      {"both", carried.both},
-      {"held", carried.held},
-      {"handed_over", carried.handed_over},
-      {"set_down", carried.set_down},
-      {"done", carried.done(options.task)}}
+  return nlohmann::ordered_json{{"task", options.task == CarryTask::carry ? "carry" : "hand-over"},
+                                {"hands", {{"left", options.left}, {"right", options.right}}},
+                                {"seed", options.seed},
+                                {"lifted_m", carried.lifted},
+                                {"off_m", carried.off},
+                                {"tilt_rad", carried.tilt},
+                                {"both", carried.both},
+                                {"held", carried.held},
+                                {"handed_over", carried.handed_over},
+                                {"set_down", carried.set_down},
+                                {"done", carried.done(options.task)}}
       .dump();
 }
 
@@ -37,8 +36,10 @@ std::string to_line(const Carried& carried, CarryTask task) {
       "{}{}: lifted by {:.0f} mm, {} {:.0f} mm from its place, tilted by {:.1f} degrees, in {} "
       "{:.0f} % of the way",
       carried.done(task) ? "" : "not ", did, 1000 * carried.lifted,
-      carried.set_down ? "set down" : carried.fell ? "lies" : "is", 1000 * carried.off,
-      carried.tilt * 180 / std::numbers::pi, carries ? "both hands" : "a hand",
+      carried.set_down ? "set down"
+      : carried.fell   ? "lies"
+                       : "is",
+      1000 * carried.off, carried.tilt * 180 / std::numbers::pi, carries ? "both hands" : "a hand",
       100 * (carries ? carried.both : carried.held));
 }
 
@@ -46,7 +47,8 @@ std::string to_line(const Carried& carried, CarryTask task) {
 
 int carry_command(const std::vector<std::string>& arguments) {
   CLI::App app{
-      "Two robot hands in one world carry a crate that is too wide for one of them, or hand a tube\n"
+      "Two robot hands in one world carry a crate that is too wide for one of them, or hand a "
+      "tube\n"
       "from the left one to the right one, as a person with two gloves shows it: a device, a\n"
       "glove, a mapping and a gate for each. Exit code 0: lifted by 10 cm, and carried 30 cm\n"
       "aside, set down within 3 cm, level within 10 degrees, or handed over and held for a\n"

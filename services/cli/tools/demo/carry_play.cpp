@@ -32,7 +32,6 @@ const Vector3d aside(0.30, 0, 0);  // m
 constexpr double pressed_above = 0.3;
 /// Where a tube is taken: so much of half its height above its middle, and below it.
 constexpr double taken_above = 0.5;
-constexpr Duration sees_every = std::chrono::milliseconds(50);
 
 /// A crate that no hand holds alone.
 model::CatalogueObject drawn_crate(Random& random) {
@@ -51,8 +50,7 @@ model::CatalogueObject drawn_tube(Random& random) {
   model::CatalogueObject object;
   object.name = "Tube";
   const double radius = random.uniform(0.028, 0.034);
-  object.shape = {model::ShapeKind::cylinder,
-                  Vector3d(radius, radius, random.uniform(0.30, 0.34))};
+  object.shape = {model::ShapeKind::cylinder, Vector3d(radius, radius, random.uniform(0.30, 0.34))};
   object.mass = random.uniform(0.1, 0.3);
   object.material = "plastic";
   return object;
@@ -88,8 +86,8 @@ class CarryPlay {
     const auto over = stage_.until(
         "carrying", [&] { return judge_.is_over(); },
         [&] {
-          return Error{fmt::format("the {} was not lifted and set down again", object_.name), "demo", "",
-                       exit_no};
+          return Error{fmt::format("the {} was not lifted and set down again", object_.name),
+                       "demo", "", exit_no};
         });
     if (!over && over.error().exit != exit_no) return tl::unexpected(over.error());
     const Carried carried = judge_.carried();
@@ -120,8 +118,9 @@ class CarryPlay {
     const auto catalogue_file = stage_.folder() / "catalogue.toml";
     const auto scene_file = stage_.folder() / "scene.toml";
     if (auto written = write_file(catalogue_file, entry_of(object_)); !written) return written;
-    auto scene = model::make_scene(model::Catalogue({object_}), options_.seed,
-                                   {.target = object_.name, .graspable = {object_.name}, .distractors = 0});
+    auto scene =
+        model::make_scene(model::Catalogue({object_}), options_.seed,
+                          {.target = object_.name, .graspable = {object_.name}, .distractors = 0});
     if (!scene) return tl::unexpected(scene.error());
     const double height = model::half_extents(object_.shape).z();
     scene->objects.front().X_WO = make_pose(
@@ -156,11 +155,6 @@ class CarryPlay {
     if (!statuses || !objects || !touches) return fail("cannot listen to the lab", "demo");
     statuses_.emplace(std::move(*statuses));
     objects_.emplace(std::move(*objects));
-    if (options_.task == CarryTask::hand_over) {
-      auto sightings = participant_->writer(dds::object_detection);
-      if (!sightings) return tl::unexpected(sightings.error());
-      sightings_.emplace(std::move(*sightings));
-    }
     touches_.emplace(std::move(*touches));
     stage_.on_look([this] {
       hear();
@@ -182,26 +176,9 @@ class CarryPlay {
     }
     for (const auto& sample : objects_->take()) {
       if (sample.info.gone || sample.data.body().to_string() != object_.name) continue;
-      const auto X_WO = convert::from_message(sample.data.X_WO());
-      if (!X_WO) continue;
-      judge_.see(*X_WO, from_ns(sample.data.stamp_ns()));
-      if (sightings_) show(sample.data);
+      if (const auto X_WO = convert::from_message(sample.data.X_WO()))
+        judge_.see(*X_WO, from_ns(sample.data.stamp_ns()));
     }
-  }
-
-  /// As a camera would that sees all, also what hands hide: its markers, say.
-  void show(const v1::ObjectState& state) {
-    if (from_ns(state.stamp_ns()) - shown_ < sees_every) return;
-    shown_ = from_ns(state.stamp_ns());
-    v1::ObjectDetection sighting;
-    sighting.track(1);
-    sighting.stamp_ns(state.stamp_ns());
-    sighting.name(object_.name);
-    sighting.shape(convert::to_message(object_.shape.kind));
-    sighting.size(convert::to_message(object_.shape.size));
-    sighting.X_WO(state.X_WO());
-    sighting.probability(1);
-    sightings_->write(sighting);
   }
 
   Expected<void> start() {
@@ -222,11 +199,17 @@ class CarryPlay {
                              {"mapping.hand=" + (side == "left" ? left : right),
                               "mapping.hand_name=" + side, "mapping.glove=" + side});
     }
+    std::size_t services = 3;
+    // A tube is known, also where a hand hides it.
+    if (started && options_.task == CarryTask::hand_over) {
+      ++services;
+      started = stage_.start("markers", "prehend-person", {"--markers"});
+    }
     if (!started) return started;
     started = stage_.until(
-        "starting", [&] { return up_.size() >= 3; },
+        "starting", [&] { return up_.size() >= services; },
         [&] {
-          return Error{fmt::format("{} of 3 services came up", up_.size()), "demo", ""};
+          return Error{fmt::format("{} of {} services came up", up_.size(), services), "demo", ""};
         });
     for (const std::string side : {"left", "right"}) {
       if (!started) return started;
@@ -255,8 +238,6 @@ class CarryPlay {
   std::vector<GloveRow> gloves_;  // that there are
   GloveRow glove_;
   std::optional<dds::Participant> participant_;
-  std::optional<dds::Writer<v1::ObjectDetection>> sightings_;
-  Time shown_{};  // the last of them
   std::optional<dds::Reader<v1::ServiceStatus>> statuses_;
   std::optional<dds::Reader<v1::ObjectState>> objects_;
   std::optional<dds::Reader<v1::HandTouch>> touches_;

@@ -27,8 +27,8 @@ struct CarryOptions {
 /// and a gate for each.
 Expected<Carried> carry(const CarryOptions& options, const stage::Progress& progress);
 
-/// The hands of «left:HAND» and «right:HAND». A left hand that is none, by its name, is the mirror image
-/// of that hand.
+/// The hands of «left:HAND» and «right:HAND». A left hand that is none, by its name, is the mirror
+/// image of that hand.
 Expected<void> read_hands(const std::vector<std::string>& entries, CarryOptions& options);
 
 }  // namespace prehend::cli

@@ -15,9 +15,7 @@ Expected<void> show_page(stage::Stage& stage, const std::vector<std::string>& se
     if (to != std::string::npos) address = said.substr(from, to - from);
     return !address.empty();
   };
-  const auto late = [] {
-    return Error{"did not come up", "console", ""};
-  };
+  const auto late = [] { return Error{"did not come up", "console", ""}; };
   return stage.until("starting the console", said_where, late).map([&] {
     log::info("watch it at {}; Ctrl-C ends it", address);
   });

@@ -1,4 +1,5 @@
-// prehend-person: a person who does not exist shows a task, for who has neither glove nor camera.
+// prehend-person: a person who does not exist shows a task, for who has neither glove nor camera;
+// or nobody, where simulated objects are to be seen as by their markers.
 #include "services/demonstration/tools/person/person_command.hpp"
 
 #include <CLI/CLI.hpp>
@@ -8,6 +9,7 @@
 #include <string_view>
 
 #include "common/base/finite_number.hpp"
+#include "common/dds/topics.hpp"
 #include "common/service/arguments.hpp"
 #include "common/service/shell.hpp"
 #include "services/demonstration/tools/person/outputs.hpp"
@@ -21,8 +23,15 @@ constexpr int frames_a_picture = 3;
 struct Arguments {
   service::LabArguments lab;
   std::vector<std::string> puts;  // OBJECT=x,y[,z]
+  bool markers = false;
   std::uint64_t seed = 1;
 };
+
+Expected<std::unique_ptr<service::Shell>> join(const Arguments& arguments) {
+  return service::Shell::create(
+      arguments.lab.for_service(),
+      {.name = "person", .description = "Shows a task.", .role = "replayer", .restarts = false});
+}
 
 Expected<Transfer> transfer_of(const std::string& text, const model::Catalogue& catalogue) {
   const auto wrong = [&] {
@@ -43,9 +52,7 @@ Expected<Transfer> transfer_of(const std::string& text, const model::Catalogue& 
 }
 
 Expected<Exit> show(const Arguments& arguments) {
-  auto shell = service::Shell::create(
-      arguments.lab.for_service(),
-      {.name = "person", .description = "Shows a task.", .role = "replayer", .restarts = false});
+  auto shell = join(arguments);
   if (!shell) return tl::unexpected(shell.error());
   const auto catalogue = model::Catalogue::load((*shell)->config().path("lab.catalogue"));
   if (!catalogue) return tl::unexpected(catalogue.error());
@@ -74,23 +81,42 @@ Expected<Exit> show(const Arguments& arguments) {
   return (*shell)->run();
 }
 
+Expected<Exit> see_markers(const Arguments& arguments) {
+  auto shell = join(arguments);
+  if (!shell) return tl::unexpected(shell.error());
+  const auto catalogue = model::Catalogue::load((*shell)->config().path("lab.catalogue"));
+  if (!catalogue) return tl::unexpected(catalogue.error());
+  const MarkerOutput markers = marker_output(**shell, *catalogue, arguments.seed);
+  (*shell)->subscribe(dds::object_state,
+                      std::function([&](const v1::ObjectState& state, const dds::SampleInfo& info) {
+                        if (!info.gone) markers(state);
+                      }));
+  (*shell)->status().running();
+  return (*shell)->run();
+}
+
 }  // namespace
 
 int person_command(const std::vector<std::string>& texts) {
   CLI::App app{
       "A person who does not exist takes objects of the scene (lab.scene) and puts them elsewhere, "
       "one "
-      "after\nthe other; writes glove/frame and object/detection. For demonstrations and tests.",
+      "after\nthe other; writes glove/frame and object/detection. Or, with --markers, only says "
+      "where\nsimulated objects are, as cameras do that see markers on them. For demonstrations "
+      "and "
+      "tests.",
       "prehend-person"};
   Arguments arguments;
   arguments.lab.add_to(app);
-  app.add_option("--put", arguments.puts, "OBJECT=x,y or OBJECT=x,y,z of its centre, m; repeatable")
-      ->required()
+  auto* all = app.add_option_group("what is shown")->require_option(1);
+  all->add_option("--put", arguments.puts,
+                  "OBJECT=x,y or OBJECT=x,y,z of its centre, m; repeatable")
       ->type_size(1)
       ->allow_extra_args(false);
+  all->add_flag("--markers", arguments.markers, "where the simulation has its objects");
   app.add_option("--seed", arguments.seed, "of its times and of noise")->capture_default_str();
   if (const auto code = service::parse(app, texts)) return *code;
-  const auto ended = show(arguments);
+  const auto ended = arguments.markers ? see_markers(arguments) : show(arguments);
   return ended ? *ended : service::complain(ended.error());
 }
 
