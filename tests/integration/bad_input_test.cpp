@@ -104,7 +104,7 @@ TEST_F(BadInput, SensorsAtWrongPlaces) {
 }
 
 TEST_F(BadInput, WhatAServiceCannotWorkWith) {
-  expect_refusal("planner", lab_arguments({"mapping.hand=", "simulation.hand="}), 3,
+  expect_refusal("planner", lab_arguments({"mapping.hand=", "simulation.hand="}), 2,
                  "mapping.hand: is no hand (choose one of ");
   expect_refusal("recognition", lab_arguments({"recognition.rate=0"}), 3,
                  "recognition.rate: must lie in 0 to 200 Hz (10 is usual)");
