@@ -46,7 +46,7 @@ const std::array<CarryingHand::Step, 10> CarryingHand::gives{{
     {1.6, 0, 0, 0, 1, 0.5},
 }};
 
-const std::array<CarryingHand::Step, 12> CarryingHand::takes{{
+const std::array<CarryingHand::Step, 11> CarryingHand::takes{{
     {8.5, 0, 0, 0, 1, 0.5},  // until it is held out
     {1.2, 1, 0, 0, 1, 0.5},
     {0.8, 1, 1, 0, 1, 0.5},
@@ -58,7 +58,6 @@ const std::array<CarryingHand::Step, 12> CarryingHand::takes{{
     {1.6, 1, 1, 0, 0, 1},
     {0.8, 1, 0, 0, 0, 1},
     {0.8, 0, 0, 0, 0, 1},
-    {0.5, 0, 0, 0, 0, 1},
 }};
 
 double CarryingHand::cycle() const {

@@ -35,7 +35,7 @@ class CarryingHand final : public FrameSource {
     double carried;  // 1: by carry_W
   };
   static const std::array<Step, 10> presses, gives;
-  static const std::array<Step, 12> takes;
+  static const std::array<Step, 11> takes;
 
   explicit CarryingHand(WornSensors sensors) : sensors_(std::move(sensors)) {}
 

@@ -4,7 +4,6 @@
 
 #include <CLI/CLI.hpp>
 #include <iostream>
-#include <map>
 #include <nlohmann/json.hpp>
 #include <numbers>
 
@@ -56,6 +55,7 @@ int carry_command(const std::vector<std::string>& arguments) {
       "prehend demo --hands"};
   CarryOptions options;
   std::vector<std::string> hands;
+  std::string task = "carry";
   bool json = false, quiet = false;
   options.lab.add_to(app);
   app.add_option("--hands", hands,
@@ -63,9 +63,8 @@ int carry_command(const std::vector<std::string>& arguments) {
       ->required()
       ->delimiter(',')
       ->allow_extra_args(false);
-  app.add_option("--task", options.task, "carry or hand-over")
-      ->transform(CLI::CheckedTransformer(std::map<std::string, CarryTask>{
-          {"carry", CarryTask::carry}, {"hand-over", CarryTask::hand_over}}));
+  app.add_option("--task", task, "carry or hand-over")
+      ->check(CLI::IsMember({"carry", "hand-over"}));
   app.add_option("--seed", options.seed, "draws the object, where it stands, person and noise");
   app.add_option("--glove", options.glove,
                  "DEVICE of both, see `prehend glove devices`: what has an emulator is emulated");
@@ -77,6 +76,7 @@ int carry_command(const std::vector<std::string>& arguments) {
   app.add_flag("--json", json, "one JSON document on standard output");
   app.add_flag("--quiet", quiet, "no progress");
   if (const auto code = service::parse(app, arguments)) return *code;
+  options.task = task == "carry" ? CarryTask::carry : CarryTask::hand_over;
   if (auto read = read_hands(hands, options); !read) return service::complain(read.error());
 
   Screen screen(quiet);

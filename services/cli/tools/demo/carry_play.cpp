@@ -33,6 +33,9 @@ constexpr double pressed_above = 0.3;
 /// Where a tube is taken: so much of half its height above its middle, and below it.
 constexpr double taken_above = 0.5;
 
+/// Whom the gloves wait for: nobody reaches before they are there.
+const std::set<std::string> awaited{"simulation", "mapping", "person"};
+
 /// A crate that no hand holds alone.
 model::CatalogueObject drawn_crate(Random& random) {
   model::CatalogueObject object;
@@ -165,7 +168,8 @@ class CarryPlay {
 
   void hear() {
     for (const auto& sample : statuses_->take())
-      if (!sample.info.gone && sample.data.state() != v1::STATE_STARTING)
+      if (!sample.info.gone && sample.data.state() != v1::STATE_STARTING &&
+          awaited.contains(sample.data.name().to_string()))
         up_.insert(sample.data.service().to_string());
     for (const auto& sample : touches_->take()) {
       if (sample.info.gone) continue;
@@ -241,7 +245,7 @@ class CarryPlay {
   std::optional<dds::Reader<v1::ServiceStatus>> statuses_;
   std::optional<dds::Reader<v1::ObjectState>> objects_;
   std::optional<dds::Reader<v1::HandTouch>> touches_;
-  std::set<std::string> up_;  // keys of services that work
+  std::set<std::string> up_;  // keys of those awaited that work
 };
 
 }  // namespace
