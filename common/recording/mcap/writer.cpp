@@ -12,10 +12,13 @@ constexpr std::size_t max_pending = 256 * 1024;
 
 template <class Places>
 Expected<std::uint16_t> free_id(const Places& places, const char* what, const File& file) {
-  const std::uint32_t id = places.empty() ? 1 : places.rbegin()->first + 1u;
-  if (id > std::numeric_limits<std::uint16_t>::max())
-    return fail(std::string("more than 65535 ") + what, file.name(), "split the recording");
-  return static_cast<std::uint16_t>(id);
+  constexpr std::uint16_t last = std::numeric_limits<std::uint16_t>::max();
+  if (!places.contains(last))
+    return static_cast<std::uint16_t>(places.empty() ? 1 : places.rbegin()->first + 1);
+  // Who chose the last id itself has left some out.
+  for (std::uint16_t id = 1; id < last; ++id)
+    if (!places.contains(id)) return id;
+  return fail(std::string("more than 65535 ") + what, file.name(), "split the recording");
 }
 
 bool same(const Schema& a, const Schema& b) {

@@ -11,6 +11,7 @@
 #include "common/base/random.hpp"
 #include "common/recording/mcap/reader.hpp"
 #include "common/recording/mcap/record_stream.hpp"
+#include "common/recording/mcap/survey.hpp"
 #include "common/recording/mcap/writer.hpp"
 #include "tests/unit/recording/scratch.hpp"
 
@@ -275,9 +276,14 @@ TEST(McapFile, WhatIsNotWhereItsIndexSaysIsTold) {
   const File file = File::open(scratch / "a.mcap").value();
   std::filesystem::resize_file(scratch / "a.mcap", 10);
   EXPECT_EQ(file.read(0, 20).error().what, "the file was cut while it was read");
+  const ChunkIndex short_place{.chunk_start_offset = 2, .chunk_length = 4};
+  EXPECT_EQ(read_chunk(file, short_place).error().what,
+            "a chunk does not fill the place that the index gives it");
+  const Stretch changed{.begin = 0, .end = 8, .compression = Compression::zstd, .size = 20};
+  EXPECT_EQ(read_stretch(file, changed).error().what, "is not as it was");
 }
 
-TEST(McapFile, AnIdIsOfOneChannelAndTheHighestIsTheLast) {
+TEST(McapFile, AnIdIsOfOneChannelAndAnyThatIsFreeIsGiven) {
   const Scratch scratch;
   Writer writer = Writer::create(scratch / "a.mcap").value();
   Channel channel;
@@ -286,7 +292,13 @@ TEST(McapFile, AnIdIsOfOneChannelAndTheHighestIsTheLast) {
   ASSERT_TRUE(writer.write(channel)) << "the same once more";
   channel.topic = "other";
   EXPECT_EQ(writer.write(channel).error().what, "channel 65535 is something else");
-  EXPECT_EQ(writer.add_channel(0, "next", "cdr").error().what, "more than 65535 channels");
+  EXPECT_EQ(writer.add_channel(0, "next", "cdr").value(), 1) << "there is room below the highest";
+  ASSERT_TRUE(writer.write(Channel{3, 0, "third", "cdr", {}}));
+  EXPECT_EQ(writer.add_channel(0, "second", "cdr").value(), 2);
+  EXPECT_EQ(writer.add_channel(0, "fourth", "cdr").value(), 4);
+  Writer full = Writer::create(scratch / "full.mcap").value();
+  for (int id = 1; id <= 65535; ++id) ASSERT_EQ(full.add_channel(0, "t", "cdr").value(), id);
+  EXPECT_EQ(full.add_channel(0, "next", "cdr").error().what, "more than 65535 channels");
 }
 
 TEST(McapFile, WhatWasFlushedIsReadableWhileTheWriterGoesOn) {
@@ -369,6 +381,8 @@ TEST(McapFile, LengthsThatLieCostNoMemory) {
     EXPECT_FALSE(decompress(compression, compressed, (std::uint64_t{1} << 31) - 1));
   EXPECT_FALSE(decompress(Compression::zstd, compressed, 2));
   EXPECT_EQ(decompress(Compression::zstd, compressed, 3).value(), content);
+  EXPECT_EQ(compress(static_cast<Compression>(9), content, compressed).error().what,
+            "compression of no known kind");
 }
 
 TEST(McapFile, RefusesMessagesOfUnknownChannelsAndChannelsOfUnknownSchemas) {

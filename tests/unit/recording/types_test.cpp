@@ -12,10 +12,12 @@
 
 #include "common/dds/topics.hpp"
 #include "common/recording/types/idl.hpp"
+#include "common/recording/types/ros2idl.hpp"
 #include "common/recording/types/schema_text.hpp"
 #include "common/recording/types/value.hpp"
 #include "tests/support/paths/paths.hpp"
 #include "tests/unit/recording/random_message.hpp"
+#include "tests/unit/recording/scratch.hpp"
 
 namespace prehend::recording::types {
 namespace {
@@ -184,6 +186,24 @@ TEST(Idl, RefusesNestingWithoutEnd) {
   EXPECT_THAT(refused(modules), HasSubstr("modules"));
   EXPECT_THAT(refused(sequences), HasSubstr("collections"));
   EXPECT_THAT(refused(structures), HasSubstr("A64 has too many structures"));
+}
+
+TEST(Idl, AFileThatIncludesNothingThatCanBeReadIsNamed) {
+  const prehend::testing::Scratch scratch;
+  const auto refused = [&](const std::string& text) {
+    prehend::testing::write_bytes(scratch / "a.idl", text);
+    return load_idl((scratch / "a.idl").parent_path()).error().message();
+  };
+  EXPECT_THAT(refused("#include <b.idl>\n"), HasSubstr("a.idl: an include without a file name"));
+  EXPECT_THAT(refused("#include \"b.idl\"\n"), HasSubstr("b.idl: cannot be read"));
+}
+
+TEST(Ros2Idl, RefusesPartsWithoutEnd) {
+  std::string text;
+  for (int i = 0; i < 300; ++i) text += "===\nIDL: a/msg/A\nstruct A { long x; };\n";
+  Library library;
+  EXPECT_EQ(parse_ros2idl("a/msg/A", text, library).error().what,
+            "its description has too many parts");
 }
 
 TEST(Ros2Msg, RefusesNestingWithoutEnd) {
