@@ -70,7 +70,11 @@ Expected<void> read_lists(const toml::table& table, GraspClass& made) {
       table, "blocks", [](std::string_view name) { return object_parts.value(name); },
       object_parts.list());
   if (!blocks) return tl::unexpected(blocks.error());
-  auto shapes = some_of<ShapeKind>(table, "shapes", shape_from_string, "cylinder, box or sphere");
+  const auto known = [](std::string_view name) {
+    const auto kind = shape_from_string(name);
+    return kind == ShapeKind::unknown ? std::nullopt : kind;
+  };
+  auto shapes = some_of<ShapeKind>(table, "shapes", known, shape_words());
   if (!shapes) return tl::unexpected(shapes.error());
   if (opposed->empty() || shapes->empty()) return fail("opposed and shapes may not be empty");
   made.opposed = std::move(*opposed);
