@@ -46,7 +46,8 @@ Expected<void> draw_by_gnuplot(const std::string& commands, const std::filesyste
   if (code == -1) {
     done = fail("gnuplot cannot be run: " + reason, {}, "apt-get install gnuplot-nox");
   } else if (code != 0 || !std::filesystem::exists(drawn, error)) {
-    done = fail("gnuplot did not draw the picture", png.string());
+    done =
+        fail("gnuplot did not draw the picture", png.string(), "what it says of it stands above");
   } else if (!std::filesystem::copy_file(
                  drawn, png, std::filesystem::copy_options::overwrite_existing, error)) {
     done = fail("cannot be written: " + error.message(), png.string());

@@ -20,8 +20,10 @@ TEST(Pose, RefusesWhatIsNoPose) {
   EXPECT_FALSE(checked_pose({0, 0, 0}, Eigen::Quaterniond(0, 0, 0, 0)));
   EXPECT_FALSE(checked_pose({0, 0, 0}, Eigen::Quaterniond(nan, 0, 0, 1)));
   EXPECT_TRUE(checked_pose({0, 0, 0}, Eigen::Quaterniond(2, 0, 0, 0)));
-  EXPECT_FALSE(nearest_rotation(Eigen::Matrix3d::Zero()));
-  EXPECT_FALSE(nearest_rotation(-Eigen::Matrix3d::Identity()));
+  for (const auto& [diagonal, what] :
+       {std::pair(0.0, "matrix is no rotation"), std::pair(-1.0, "matrix is a reflection"),
+        std::pair(nan, "rotation is not finite")})
+    EXPECT_EQ(nearest_rotation(diagonal * Eigen::Matrix3d::Identity()).error().what, what);
 }
 
 TEST(Pose, NearestRotationRepairsANoisyMatrix) {

@@ -289,6 +289,10 @@ TEST(Gate, ObeysOnlyWithConsentWhereThatIsAsked) {
 
 TEST(Gate, IsNotMadeWithLimitsThatAllowNothing) {
   Limits limits = limits_of(test::hand("barrett"));
+  limits.joint[2].speed = 0;
+  EXPECT_EQ(CommandGate::create(test::hand("barrett"), {}, limits).error().message(),
+            "gate: speed and acceleration must be positive");
+  limits = limits_of(test::hand("barrett"));
   limits.base.speed = 0;
   EXPECT_FALSE(CommandGate::create(test::hand("barrett"), {}, limits));
   limits = limits_of(test::hand("barrett"));

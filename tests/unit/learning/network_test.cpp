@@ -170,6 +170,15 @@ TEST_P(EveryMethod, IsKnownByName) {
 INSTANTIATE_TEST_SUITE_P(Training, EveryMethod, testing::ValuesIn(training_methods),
                          [](const auto& method) { return std::string(to_string(method.param)); });
 
+TEST(Training, ThatDivergesSaysSo) {
+  TrainingOptions options;
+  options.method = TrainingMethod::batch;
+  options.epochs = 10;
+  options.learning_rate = std::numeric_limits<double>::infinity();
+  EXPECT_EQ(train(exclusive_or(), {}, options).error().message(),
+            "batch: training diverged (choose rprop or a smaller learning rate)");
+}
+
 // Cascade adds a neuron at a time, each of which sees all before it, and no more than it may.
 TEST(Cascade, GrowsNeuronByNeuron) {
   TrainingOptions options;

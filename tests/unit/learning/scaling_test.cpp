@@ -116,6 +116,7 @@ TEST(Scaling, RefusesNonsense) {
   EXPECT_FALSE(Scaling::create(Eigen::Vector2d(1, 1), low));
   EXPECT_FALSE(Scaling::create(low, Eigen::VectorXd::Zero(3)));
   EXPECT_FALSE(Scaling::fit(Eigen::MatrixXd(3, 0), ScalingKind::each_feature));
+  EXPECT_EQ(Scaling::fit(high, ScalingKind::each_feature).error().what, "samples are not finite");
 }
 
 }  // namespace

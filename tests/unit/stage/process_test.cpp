@@ -8,8 +8,11 @@
 #include <unistd.h>
 
 #include <csignal>
+#include <cstdlib>
 #include <fstream>
 #include <thread>
+
+#include "common/stage/temporary_folder.hpp"
 
 namespace prehend::stage {
 namespace {
@@ -84,6 +87,22 @@ TEST_F(ProcessTest, AMissingProgramIsAnError) {
   ASSERT_FALSE(process);
   EXPECT_NE(process.error().message().find("nothing"), std::string::npos);
   EXPECT_NE(process.error().message().find("No such file"), std::string::npos);
+}
+
+TEST_F(ProcessTest, NoProgramAndOneThatDoesNotAnswerAreErrors) {
+  EXPECT_EQ(Process::start({}).error().message(), "starting a process: no program is named");
+  const auto silent = printed_by("/bin/sleep", {"60"}, std::chrono::milliseconds(20));
+  EXPECT_EQ(silent.error().message(), "/bin/sleep: does not answer");
+}
+
+TEST(TemporaryFolder, SaysWhereItCannotBeMade) {
+  const char* before = std::getenv("TMPDIR");
+  const std::string kept = before ? before : "";
+  ::setenv("TMPDIR", "/proc", 1);  // where nobody may
+  const auto made = TemporaryFolder::create(false);
+  before ? ::setenv("TMPDIR", kept.c_str(), 1) : ::unsetenv("TMPDIR");
+  ASSERT_FALSE(made);
+  EXPECT_EQ(made.error().message(), "/proc: cannot make a folder (set TMPDIR)");
 }
 
 TEST_F(ProcessTest, LogsBothStreamsOrTheOutputApart) {
