@@ -35,7 +35,7 @@ std::string joint(const std::string& name, double y, double axis) {
          " 0 0\"/><limit lower=\"0\" upper=\"1.6\" effort=\"1\" velocity=\"2\"/></joint>";
 }
 
-model::HandModel two_fingers(const Tines& left, const Tines& right) {
+model::HandModel two_fingers(const Tines& left, const Tines& right, const std::string& more = {}) {
   // Lying down, the left finger's -y and the right one's +y look up.
   const std::string urdf =
       "<robot name=\"two\"><link name=\"palm\"><inertial><mass value=\"1\"/><inertia ixx=\"1e-3\" "
@@ -73,7 +73,7 @@ position = [0.0, 0.0, 0.05]
 default = "plastic"
 [postures]
 open = [0.0, 0.0]
-)";
+)" + more;
   auto hand = model::HandModel::parse(urdf, toml);
   if (!hand) throw std::runtime_error(hand.error().message());
   return *hand;
@@ -118,6 +118,13 @@ TEST(Blocking, RefusesNonsense) {
   const auto hand = two_fingers({{0, 0}}, {{0, 0.012}});
   EXPECT_FALSE(find_blocking(hand, VectorXd::Zero(3)));
   EXPECT_FALSE(find_blocking(hand, VectorXd::Constant(2, std::nan(""))));
+  std::string tips;
+  for (int i = 3; i <= 11; ++i)
+    tips += "[[fingertip]]\nname = \"" + std::to_string(i) +
+            "\"\nlink = \"right\"\nposition = [0.0, 0.0, 0.05]\n";
+  const auto eleven = two_fingers({{0, 0}}, {{0, 0.012}}, tips);
+  EXPECT_EQ(find_blocking(eleven, VectorXd::Zero(2)).error().message(),
+            "two: has more than ten fingers");
 }
 
 TEST(Blocking, AnOpenBarrettIsFree) {

@@ -150,6 +150,9 @@ TEST_F(MeshFile, RefusesNonsenseWithAReason) {
     ASSERT_FALSE(mesh) << file;
     EXPECT_FALSE(mesh.error().what.empty());
   }
+  std::string many = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
+  for (int i = 0; i <= 200'000; ++i) many += "f 1 2 3\n";
+  EXPECT_EQ(model::load_mesh(write("f.obj", many)).error().what, "has more than 200,000 triangles");
   const auto good = obj(box(0.1, 0.1, 0.1));
   for (const double scale : {0.0, -1.0, 1000.0, std::numeric_limits<double>::quiet_NaN()})
     EXPECT_FALSE(model::load_mesh(good, scale)) << scale;

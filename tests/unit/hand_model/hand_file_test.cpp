@@ -200,6 +200,8 @@ TEST(HandFile, RefusesWhatIsNoHandAndSaysWhere) {
            {false, "[torque]", "[torques]", "torques"},
            {false, "[torque]", "[gate]\neffort = [1.0, 0.0]\n[torque]", "positive"},
            {false, "[torque]", "[gate]\neffort = [1.0]\n[torque]", "gate.effort"},
+           {false, "[torque]", "[gate]\nlower = [0.03, 0.0]\n[torque]",
+            "gate: needs lower < upper, within the limits of DoF thumb"},
            {false, "[torque]", "[gate]\neffort = [1.0, 0.8]\n[torque]", "gate.effort"},
            {false, "open = [0.025, 0.0]", "open = [0.025]", "postures.open"},
            {false, "open = [0.025, 0.0]", "open = [0.03, 0.0]", "thumb"},
@@ -213,6 +215,22 @@ TEST(HandFile, RefusesWhatIsNoHandAndSaysWhere) {
         << wrong.from << " -> " << wrong.to << ": " << message;
     EXPECT_TRUE(message.starts_with("hand.urdf") || message.starts_with("hand.toml")) << message;
   }
+}
+
+TEST(HandFile, RefusesWhatMovesNothingAndWhatHasTooMuch) {
+  std::string links, joints;
+  for (int i = 0; i < 256; ++i) {
+    const std::string name = "part" + std::to_string(i);
+    links += link(name);
+    joints += joint(name, "fixed", "palm", name, "");
+  }
+  const auto refused = [](const std::string& parts) {
+    return model::HandModel::parse("<robot name='small'>" + link("palm") + parts + "</robot>", toml)
+        .error()
+        .message();
+  };
+  EXPECT_EQ(refused(""), "hand.urdf: has no joint that moves");
+  EXPECT_EQ(refused(links + joints), "hand.urdf: has more than 256 links");
 }
 
 // The parser keeps a link under both of its parents, which could make its tree endless.
