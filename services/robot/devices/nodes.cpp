@@ -69,7 +69,8 @@ std::string Nodes::read(Duration timeout) {
 Expected<void> Nodes::write(std::string_view message) {
   dds::RawSample sample;
   sample.payload.assign(message.begin(), message.end());
-  if (!state_->writer->write(sample, process_now())) return fail("could not be sent");
+  if (!state_->writer->write(sample, process_now()))
+    return fail("a message to nodes could not be sent");
   return {};
 }
 

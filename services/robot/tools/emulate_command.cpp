@@ -34,7 +34,7 @@ Expected<std::size_t> dof_of(const model::HandModel& hand, const std::string& na
     if (hand.dofs()[d].name == name) return d;
     names += (names.empty() ? "" : ", ") + hand.dofs()[d].name;
   }
-  return wrong_use("there is no '" + name + "'", "--stuck", "give one of " + names);
+  return wrong_use("there is no joint '" + name + "'", "--stuck", "give one of " + names);
 }
 
 /// The hand that is emulated; which servo moves what of it goes to the arguments.
@@ -62,7 +62,8 @@ Expected<std::function<Expected<std::unique_ptr<serial::Plug>>()>> way_to(
     const EmulatorKind& kind, const EmulateArguments& arguments) {
   if (kind.medium == Medium::topics) {
     if (!arguments.link.empty())
-      return wrong_use("has no port", "--link", "nodes of ROS 2 find it by its topics");
+      return wrong_use("a " + arguments.device + " has no port", "--link",
+                       "nodes of ROS 2 find it by its topics");
     const auto config = arguments.lab.load();
     if (!config) return tl::unexpected(config.error());
     const auto nodes = nodes_of(*config);

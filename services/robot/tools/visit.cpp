@@ -56,7 +56,8 @@ int tell(const Connection& robot, bool json, bool good) {
 /// A stop that the service keeps holds for us as well.
 Expected<void> may_move(const service::Config& config) {
   const auto kept = KeptStop::create(config, config.text("robot.hand_name"));
-  if (!kept) return fail("nobody knows whether it is stopped", kept.error().message());
+  if (!kept)
+    return fail("nobody knows whether it is stopped", kept.error().message(), "see safety.state");
   const auto stop = kept->recall();
   if (!stop) return {};
   return fail("is stopped by " + stop->by + (stop->reason.empty() ? "" : ": " + stop->reason),
