@@ -36,8 +36,11 @@ constexpr Told told_topics[] = {{"joint_states", "sensor_msgs/JointState", false
                                 {"camera/camera_info", "sensor_msgs/CameraInfo", false}};
 
 Expected<Pose> pose_of(const std::vector<double>& v) {
-  if (v.size() != 7) return wrong_use("is no pose", "camera.X_WC", "seven numbers");
-  return checked_pose({v[0], v[1], v[2]}, {v[3], v[4], v[5], v[6]});
+  const char* key = "camera.X_WC";
+  if (v.size() != 7) return wrong_use("needs seven numbers: x y z, then w x y z", key);
+  auto X = checked_pose({v[0], v[1], v[2]}, {v[3], v[4], v[5], v[6]});
+  if (!X) return wrong_use(X.error().what, key);
+  return X;
 }
 
 ros2::Lens lens_of(const service::Config& config) {
