@@ -39,6 +39,11 @@ Pose standing(const model::Shape& shape, const Pose& X_WO) {
                    Eigen::AngleAxisd(yaw, Vector3d::UnitZ()).toRotationMatrix());
 }
 
+tl::unexpected<Error> one_hand_alone() {
+  return wrong_use("an arm carries one hand alone", "robot.arm, simulation.hands",
+                   "leave one of them out");
+}
+
 }  // namespace
 
 Expected<std::unique_ptr<Simulation>> Simulation::create(
@@ -47,7 +52,7 @@ Expected<std::unique_ptr<Simulation>> Simulation::create(
   grasping::WorldOptions how{.rate = options.rate, .brake = options.brake};
   if (arm) how.base = carrying::CarryingArm::base();
   if (options.push) {
-    if (arm) return fail("an arm carries one hand alone", "simulation");
+    if (arm) return one_hand_alone();
     how.push = options.push;
     how.base = pushed_base;
   }
@@ -73,7 +78,7 @@ void Simulation::lead(int hand) {
 }
 
 Expected<int> Simulation::add_hand(const model::HandModel& hand) {
-  if (arm_) return fail("an arm carries one hand alone", "simulation");
+  if (arm_) return one_hand_alone();
   const auto beside = static_cast<double>(hands_.size()) * apart * Vector3d::UnitX();
   auto added = world_->add_hand(hand, moved(resting_place, beside), hand.postures().at("open"));
   if (added) lead(*added);

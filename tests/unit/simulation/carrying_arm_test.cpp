@@ -263,6 +263,15 @@ TEST(CarryingArm, IsDeterministic) {
   EXPECT_EQ(a.torque, b.torque);
 }
 
+TEST(CarryingArm, CarriesOneHandAlone) {
+  const auto& puma = test::arm("puma560");
+  const auto& hand = test::hand("barrett");
+  const auto several = Simulation::create(hand, {.push = push_of_several}, carrying(puma, hand));
+  ASSERT_FALSE(several);
+  EXPECT_EQ(several.error().what, "an arm carries one hand alone");
+  EXPECT_EQ(made(puma, hand)->add_hand(hand).error().message(), several.error().message());
+}
+
 TEST(CarryingArm, RefusesAHandThatIsTooHeavy) {
   const auto refused = CarryingArm::create(test::arm("puma560"), test::hand("robonaut"),
                                            at_the_table(), Pose::Identity());

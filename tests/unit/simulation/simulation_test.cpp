@@ -70,6 +70,8 @@ TEST(Simulation, RefusesCommandsThatCannotBeFollowed) {
   broken.effort = VectorXd::Ones(3);
   EXPECT_FALSE(simulation->accept(broken, start));
   EXPECT_FALSE(simulation->accept(command({0, 0, 300}, 0), start));
+  const auto beyond = simulation->accept(command({0, 0, 0.3}, -1), start);
+  EXPECT_EQ(beyond.error().what, "command outside limits");
   const Pose before = simulation->world().hand_motion().X_WB;
   run_until(*simulation, start + milliseconds(100));
   EXPECT_LT((simulation->world().hand_motion().X_WB.translation() - before.translation()).norm(),
@@ -195,6 +197,17 @@ TEST(Simulation, SightingsPlaceObjectsAndMoveThemOnlyWhileTheHandIsFar) {
   bad.name = "lost";
   EXPECT_FALSE(simulation->see(bad, make_pose(Vector3d(nan, 0, 0))));
   EXPECT_EQ(simulation->world().body_count(), 1);
+}
+
+TEST(Simulation, ATableHasRoomForSoManyObjects) {
+  const auto simulation = made();
+  grasping::Body cup = talc;
+  for (int i = 0; i < 32; ++i) {
+    cup.name = "cup " + std::to_string(i);
+    ASSERT_TRUE(simulation->see(cup, make_pose(Vector3d(0.2 * i, 0, 0)))) << i;
+  }
+  EXPECT_EQ(simulation->see(talc, make_pose(Vector3d(0, 1, 0))).error().message(),
+            "Talc: too many objects");
 }
 
 TEST(Simulation, AnOrderPlacesAnObjectWhereNothingIs) {
