@@ -190,7 +190,7 @@ Expected<std::string> name_in(std::string_view text) {
   const int length =
       X509_NAME_get_text_by_NID(X509_REQ_get_subject_name(asking->get()), NID_commonName,
                                 name.data(), static_cast<int>(name.size()));
-  if (length <= 0) return fail("the request has no name");
+  if (length <= 0) return fail("the request has no name", {}, "make it by prehend keys request");
   return std::string(name.data(), static_cast<std::size_t>(length));
 }
 

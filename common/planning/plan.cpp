@@ -112,7 +112,8 @@ Expected<Trajectory> plan(const Robot& robot, const Query& query, const PlanOpti
   const Ground ground(robot, room, query.upright);
   if (!ground.is_free(query.start)) {
     const std::string why = room.trouble(query.start);
-    return fail("cannot begin: " + (why.empty() ? "not upright" : why), robot.arm->name);
+    return fail("cannot begin: " + (why.empty() ? "not upright" : why), robot.arm->name,
+                "lead the hand elsewhere first");
   }
   const auto goals = goals_of(robot, query, options, ground, room);
   if (!goals) return tl::unexpected(goals.error());

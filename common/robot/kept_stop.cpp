@@ -69,7 +69,8 @@ Expected<void> replace(const std::filesystem::path& file, const std::string& tex
 Expected<KeptStop> KeptStop::create(const service::Config& config, const std::string& hand) {
   std::filesystem::path folder = config.path("safety.state");
   if (folder.empty()) folder = state_directory();
-  if (folder.empty()) return fail("names no folder, and there is no home", "safety.state");
+  if (folder.empty())
+    return fail("names no folder, and there is no home", "safety.state", "name one");
   std::error_code code;
   std::filesystem::create_directories(folder, code);
   if (code) return fail(code.message(), folder.string());

@@ -9,7 +9,7 @@ Expected<void> train_if_needed(const std::string& hand, const std::function<bool
   const std::string hint = "prehend train --hand " + hand;
   auto process =
       Process::start({{program_directory() / "prehend-train", "--hand", hand, "--if-needed"}});
-  if (!process) return fail("the hand has no mapping model that fits it", hand, hint);
+  if (!process) return tl::unexpected(process.error());
   std::optional<Process::Exit> ended;
   while (!(ended = process->wait(std::chrono::milliseconds(100))))
     if (stopped()) return fail("", "", "", exit_done);

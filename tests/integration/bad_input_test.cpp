@@ -110,6 +110,29 @@ TEST_F(BadInput, WhatAServiceCannotWorkWith) {
                  "recognition.rate: must lie in 0 to 200 Hz (10 is usual)");
   expect_refusal("recognition", lab_arguments({"recognition.source=folder", "lab.lockstep=true"}),
                  3, "recognition.source: in lockstep pictures come by topic only (set ");
+  const std::string two = "simulation.hands=[\"a:barrett\", \"b:barrett\"]";
+  for (const auto& [service, sets, words] :
+       std::vector<std::tuple<std::string, Strings, std::string>>{
+           {"simulation", {"simulation.state_rate=0"}, "simulation.state_rate: must be positive"},
+           {"simulation", {"simulation.brake_turn=0"}, "simulation.brake_turn: must be positive"},
+           {"simulation", {"simulation.hand="}, "simulation.hand: is no hand (choose one of "},
+           {"simulation",
+            {"simulation.hands=[\"a:barrett\", \"b\"]"},
+            "simulation.hands: b: is no hand"},
+           {"simulation",
+            {"simulation.hands=[\"a:barrett\", \"a:barrett\"]"},
+            "simulation.hands: two hands are named a (as "},
+           {"simulation",
+            {two, "robot.arm=puma560"},
+            "robot.arm, simulation.hands: an arm carries one hand alone (leave "},
+           {"console",
+            {"lab.lockstep=true"},
+            "lab.lockstep: the console shows a lab that is live (or "},
+           {"ros-lead",
+            {"lab.lockstep=true"},
+            "lab.lockstep: nodes of ROS 2 lead in a lab that is live (leave "},
+           {"ros-lead", {"mapping.hand="}, "mapping.hand: is no hand (choose one of "}})
+    expect_refusal(service, lab_arguments(sets), 2, words);
 }
 
 TEST_F(BadInput, GarbageOnThePort) {

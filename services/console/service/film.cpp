@@ -31,7 +31,7 @@ Expected<std::unique_ptr<Film>> Film::open(const std::filesystem::path& file) {
   if (!reader) return tl::unexpected(reader.error());
   std::unique_ptr<Film> made(new Film(std::move(*reader)));
   if (!made->next_)
-    return fail("holds no message of a lab", file.string(), "prehend recording info FILE");
+    return fail("holds no message of a lab", file.string(), "see prehend recording info FILE");
   made->begin_ = made->time_ = made->next_time_;
   made->end_ = from_ns(static_cast<std::int64_t>(made->reader_.statistics().message_end_time));
   return made;

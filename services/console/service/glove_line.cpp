@@ -46,7 +46,7 @@ Expected<std::unique_ptr<GloveLine>> GloveLine::create(const service::Config& co
   const std::size_t colon = to.rfind(':');
   const int socket =
       colon == std::string::npos ? -1 : connected_to(to.substr(0, colon), to.substr(colon + 1));
-  if (socket < 0) return fail("cannot be sent to", "glove.port = " + to, "HOST:PORT");
+  if (socket < 0) return fail("cannot be sent to", "glove.port = " + to, "give HOST:PORT");
   return std::unique_ptr<GloveLine>(new GloveLine(socket, std::move(token)));
 }
 

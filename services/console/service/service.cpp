@@ -44,7 +44,8 @@ std::vector<bool> topics_that_keep_all() {
 
 Expected<std::unique_ptr<Service>> Service::create(service::Shell& shell) {
   if (shell.lockstep())
-    return wrong_use("shows a lab that is live", "lab.lockstep", "a recording: --recording");
+    return wrong_use("the console shows a lab that is live", "lab.lockstep",
+                     "or a recording: --recording FILE");
   std::unique_ptr<Service> made(new Service(shell));
   if (auto started = made->start(); !started) return tl::unexpected(started.error());
   return made;

@@ -33,7 +33,7 @@ Expected<std::string> token_in(const std::filesystem::path& file) {
     return std::isalnum(c) || c == '-' || c == '_';
   });
   if (token.size() < min_token || !safe)
-    return fail("is no token", file.string(), "16 or more letters, digits, - and _");
+    return fail("its first line is no token", file.string(), "16 or more letters, digits, - and _");
   return token;
 }
 
@@ -92,8 +92,10 @@ Expected<Policy> policy_of(const service::Config& config) {
 
 Expected<Pose> pose_of(const service::Config& config, const std::string& key) {
   const std::vector<double> v = config.numbers(key);
-  if (v.size() != 7) return wrong_use("is no pose", key, "seven numbers");
-  return checked_pose({v[0], v[1], v[2]}, {v[3], v[4], v[5], v[6]});
+  if (v.size() != 7) return wrong_use("needs seven numbers: x y z, then w x y z", key);
+  auto X = checked_pose({v[0], v[1], v[2]}, {v[3], v[4], v[5], v[6]});
+  if (!X) return wrong_use(X.error().what, key);
+  return X;
 }
 
 std::filesystem::path tracking_folder() {

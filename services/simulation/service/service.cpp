@@ -51,7 +51,8 @@ Expected<std::deque<Service::Hand>> Service::hands_of(const service::Config& con
       return wrong_use("is no hand", entries.size() > 1 ? key + (": " + entry) : key,
                        model::hand_hint());
     for (const Hand& other : hands)
-      if (other.name == name) return wrong_use("two hands are named " + name, key);
+      if (other.name == name)
+        return wrong_use("two hands are named " + name, key, "as left:barrett_left");
     auto hand = model::HandModel::load(model::hand_directory(kind));
     if (!hand) return tl::unexpected(hand.error());
     hands.push_back({name, std::move(*hand)});

@@ -2,10 +2,13 @@
 #include "services/console/service/film.hpp"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
+#include <filesystem>
 #include <map>
 
 #include "common/dds/topics.hpp"
+#include "common/recording/mcap/writer.hpp"
 #include "tests/support/paths/paths.hpp"
 
 namespace prehend::console {
@@ -36,6 +39,20 @@ class FilmTest : public testing::Test {
       Film::open(test::in_sources("deploy/samples/intelligent-grasp.mcap")).value();
   Time now_ = from_ns(1'000'000'000'000);
 };
+
+// A sound file, but of somebody else.
+TEST(Film, NeedsAMessageOfALab) {
+  const auto file = std::filesystem::path(::testing::TempDir()) /
+                    ("weather" + std::to_string(::getpid()) + ".mcap");
+  {
+    auto writer = recording::mcap::Writer::create(file).value();
+    const auto channel = writer.add_channel(0, "weather", "cdr").value();
+    ASSERT_TRUE(writer.write(recording::mcap::Message{channel, 1, 5, 5, {}}));
+  }
+  EXPECT_EQ(Film::open(file).error().message(),
+            file.string() + ": holds no message of a lab (see prehend recording info FILE)");
+  std::filesystem::remove(file);
+}
 
 bool is_queued(const Letter& letter) {
   return dds::topic_table[letter.topic].qos.reader_depth == 0;

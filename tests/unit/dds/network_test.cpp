@@ -11,6 +11,7 @@
 #include <fastdds/dds/domain/DomainParticipantFactory.hpp>
 #include <filesystem>
 #include <fstream>
+#include <iostream>
 #include <random>
 
 #include "common/dds/participant.hpp"
@@ -123,6 +124,51 @@ TEST(Network, WrongSettingsAreErrorsWithAMend) {
   EXPECT_FALSE(participant_qos({.profile = "server", .servers = {"127.0.0.1:11811"}},
                                {.serves = "127.0.0.1:11811"}))
       << "a server linked with itself";
+}
+
+TEST(Network, AProfileThatIsNotInstalledIsNamed) {
+  ::setenv("PREHEND_SHARE", "/nowhere", 1);
+  const auto qos = participant_qos({.profile = "lan"});
+  ::unsetenv("PREHEND_SHARE");
+  ASSERT_FALSE(qos);
+  EXPECT_EQ(qos.error().what, "there is no such profile");
+  EXPECT_EQ(qos.error().where, "/nowhere/dds/lan.xml");
+}
+
+// In a process of its own: Fast DDS keeps a profile by its name.
+TEST(NetworkDeathTest, SitesNeedTcp) {
+  GTEST_FLAG_SET(death_test_style, "threadsafe");
+  const auto share = std::filesystem::path(::testing::TempDir()) /
+                     ("prehend-share-" + std::to_string(std::random_device{}()));
+  const auto ask = [&] {
+    std::filesystem::create_directories(share / "dds");
+    const auto udp = [](const std::string& name) {
+      return "<transport_descriptor><transport_id>" + name +
+             "</transport_id><type>UDPv4</type></transport_descriptor>";
+    };
+    std::ofstream(share / "dds" / "wan.xml")
+        << R"(<?xml version="1.0"?>
+<dds xmlns="http://www.eprosima.com/XMLSchemas/fastRTPS_Profiles"><profiles>
+<transport_descriptors>)" +
+               udp("a") + udp("b") +
+               R"(</transport_descriptors><participant profile_name="wan"><rtps><builtin>
+<discovery_config><discoveryProtocol>SIMPLE</discoveryProtocol></discovery_config></builtin>
+<userTransports><transport_id>a</transport_id><transport_id>b</transport_id></userTransports>
+<useBuiltinTransports>false</useBuiltinTransports></rtps></participant></profiles></dds>)";
+    ::setenv("PREHEND_SHARE", share.c_str(), 1);
+    const auto qos = participant_qos({.profile = "wan", .insecure = true});
+    std::filesystem::remove_all(share);
+    std::cerr << (qos ? "usable" : qos.error().message()) << std::endl;
+    std::exit(0);
+  };
+  EXPECT_EXIT(ask(), ::testing::ExitedWithCode(0), "profile wan: has no TCPv4 transport");
+}
+
+TEST(Network, DiscoveryServersDoWithoutKeys) {
+  const auto qos =
+      participant_qos({.profile = "server", .servers = {"127.0.0.1"}, .keys = "/nowhere"});
+  ASSERT_FALSE(qos);
+  EXPECT_EQ(qos.error().what, "discovery servers of Fast DDS 2.9 cannot be secured");
 }
 
 // A profile that turns everything best effort and confines it to an address that is not ours, and a

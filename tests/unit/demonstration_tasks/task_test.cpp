@@ -7,6 +7,7 @@
 
 #include "common/base/random.hpp"
 #include "common/tasks/files/task_file.hpp"
+#include "common/tasks/table.hpp"
 #include "services/demonstration/core/tasks/learn_task.hpp"
 
 namespace prehend::demonstration {
@@ -14,6 +15,24 @@ namespace {
 
 Pose at(double x, double y, double z = 0.05) {
   return make_pose({x, y, z});
+}
+
+TEST(DrawnTable, SaysWhatDoesNotFitOrIsUnknown) {
+  model::CatalogueObject cup;
+  cup.name = "cup";
+  cup.shape = {model::ShapeKind::box, {0.1, 0.1, 0.1}};
+  const model::Catalogue catalogue(std::vector{cup});
+  tasks::TableOptions options{.objects = {"cup", "cup"}};
+  const auto scene = tasks::drawn_table(catalogue, 1, options);
+  ASSERT_TRUE(scene) << scene.error().message();
+  options.apart = 2;
+  EXPECT_EQ(tasks::drawn_table(catalogue, 1, options).error().message(),
+            "scene: there is no room on the table (fewer objects)");
+  EXPECT_EQ(tasks::free_place(*scene, 1, options).error().message(),
+            "scene: there is no room on the table (fewer objects)");
+  options.objects = {"plate"};
+  EXPECT_EQ(tasks::drawn_table(catalogue, 1, options).error().message(),
+            "plate: is not in the catalogue (see models/objects)");
 }
 
 /// A cup is put 12 cm beside a plate that stands elsewhere each time; then a spoon into the cup.

@@ -81,6 +81,13 @@ TEST(LongHoldTest, WhatOnlyLiesOnTheHandFallsWhenItIsTurnedOver) {
   EXPECT_EQ(result.turned_over, false);
 }
 
+TEST(LongHoldTest, WhatStaysOnTheTableIsNotHeld) {
+  const auto world = gripped(cylinder(0.015, 0.145, 0.10));
+  const HoldResult result = hold_test(*world->clone(), 0, {.lift = 0});
+  EXPECT_FALSE(result.held);
+  EXPECT_EQ(result.reason, "touches something else");
+}
+
 TEST(LongHoldTest, SameBitsEveryTime) {
   const auto world = gripped(cylinder(0.015, 0.145, 0.10));
   const HoldResult a = hold_test(*world->clone(), 0, HoldOptions::long_form());

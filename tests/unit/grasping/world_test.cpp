@@ -6,9 +6,11 @@
 
 #include <limits>
 
+#include "common/base/file_text.hpp"
 #include "common/grasping/hold_test.hpp"
 #include "common/model/hand_effort.hpp"
 #include "tests/support/hands.hpp"
+#include "tests/support/paths/paths.hpp"
 
 namespace {
 
@@ -32,6 +34,20 @@ Pose standing(const Body& body, double x = 0, double y = 0) {
 Pose side_grasp(const Vector3d& p_WG) {
   const Eigen::Matrix3d R = model::grasp_axes(Eigen::Vector3d::UnitY(), Eigen::Vector3d::UnitX());
   return make_pose(p_WG, R) * barrett().X_BG().inverse();
+}
+
+TEST(World, RefusesAHandOfUnknownMaterial) {
+  const std::string folder = test::in_sources("common/models/hands/barrett/");
+  std::string toml = *read_file(folder + "hand.toml");
+  const std::string known = "palm = \"plastic\"";
+  ASSERT_NE(toml.find(known), std::string::npos);
+  toml.replace(toml.find(known), known.size(), "palm = \"cheese\"");
+  const auto hand = model::HandModel::parse(*read_file(folder + "hand.urdf"), toml);
+  ASSERT_TRUE(hand) << hand.error().message();
+  const auto world = World::create(*hand, Pose::Identity(), VectorXd::Zero(4));
+  ASSERT_FALSE(world);
+  EXPECT_EQ(world.error().message(),
+            "palm: unknown material cheese (glass, metal, plastic, wood, rubber or stone)");
 }
 
 std::unique_ptr<World> empty_world(const Pose& X_WB) {

@@ -72,6 +72,19 @@ TEST(Certificate, IsNotGrantedToWhoDoesNotHoldTheKey) {
   EXPECT_FALSE(grant(lab.authority, lab.glove.certificate, {}, long_time));
 }
 
+// As openssl req makes it with -subj /.
+TEST(Certificate, ARequestHasAName) {
+  const auto name = name_in(R"(-----BEGIN CERTIFICATE REQUEST-----
+MIG7MGICAQAwADBZMBMGByqGSM49AgEGCCqGSM49AwEHA0IABMKmCjpQVKKmOuM2
+l0zttXvu5EXMtFRkiOcuQt/XQz51PeZ8gcKGiAJxO0dak99cXU2o+NOB5jR0+H/f
+XDIzla2gADAKBggqhkjOPQQDAgNJADBGAiEAlJFVv444WclsrKc5Ukxeg0AHDOsQ
+LEvgRRmsPH5La30CIQC9ESd3hVSC5VPttFwHTZKIY8APHeT0ZXt9d/j1nvfZkg==
+-----END CERTIFICATE REQUEST-----
+)");
+  ASSERT_FALSE(name);
+  EXPECT_EQ(name.error().message(), "the request has no name (make it by prehend keys request)");
+}
+
 TEST(Certificate, AListTellsWhenItWasSigned) {
   const Lab lab;
   EXPECT_EQ(signed_at(lab.nobody_gone), now);

@@ -180,6 +180,19 @@ TEST(Plan, FailuresAreOneClearLine) {
   stuck.scene.obstacles = {wall({0.3, 0.3, 0.3}, robot.hand_at(stuck.start).translation())};
   EXPECT_NE(message(stuck).find("begins in a collision"), std::string::npos) << message(stuck);
 
+  Query tilted = to_the_air(robot, {0.1, -0.15, 0.35});
+  tilted.upright = Upright{robot.hand_at(tilted.start).linear().transpose() * Vector3d::UnitX()};
+  EXPECT_NE(message(tilted).find("cannot begin: not upright"), std::string::npos)
+      << message(tilted);
+
+  Query around = to_the_air(robot, {0.3, -0.1, 0.35});
+  around.start = plan(robot, to_the_air(robot, {-0.3, -0.1, 0.35}))->at(1e9);
+  around.scene.obstacles = {wall({0.004, 0.5, 0.5}, {0, 0.0, 0.25})};
+  PlanOptions no_patience;
+  no_patience.search.max_iterations = 0;
+  EXPECT_NE(plan(robot, around, no_patience).error().message().find("no way found in 0 tries"),
+            std::string::npos);
+
   Query wild = to_the_air(robot, {0.1, -0.15, 0.35});
   wild.start[2] = std::numeric_limits<double>::quiet_NaN();
   EXPECT_NE(message(wild).find("not usable"), std::string::npos);

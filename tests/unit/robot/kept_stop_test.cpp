@@ -5,8 +5,10 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <map>
 
 namespace prehend::robot {
 namespace {
@@ -78,6 +80,21 @@ TEST_F(KeptStopTest, AFolderInItsPlaceIsAStop) {
   fs::create_directories(file_ / "full");
   EXPECT_TRUE(kept_->recall());
   EXPECT_FALSE(kept_->keep({"ben", "", from_ns(1)})) << "and says that it cannot be kept";
+}
+
+TEST_F(KeptStopTest, NeedsAFolder) {
+  std::ofstream(folder_ / "homeless.toml") << "[lab]\nrig = \"lab\"\n";
+  const auto config = service::Config::load(folder_ / "homeless.toml");
+  std::map<std::string, std::string> before;
+  for (const char* name : {"HOME", "XDG_STATE_HOME", "STATE_DIRECTORY"})
+    if (const char* value = std::getenv(name)) {
+      before[name] = value;
+      ::unsetenv(name);
+    }
+  const auto kept = KeptStop::create(*config, "hand");
+  for (const auto& [name, value] : before) ::setenv(name.c_str(), value.c_str(), 1);
+  ASSERT_FALSE(kept);
+  EXPECT_EQ(kept.error().what, "names no folder, and there is no home");
 }
 
 // What waits beside it is not written into.

@@ -3,7 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <limits>
+#include <string_view>
 
 #include "tests/support/ros_values.hpp"
 
@@ -72,7 +74,15 @@ TEST(Ros2Pictures, WhatIsNoneIsRefused) {
     EXPECT_FALSE(parse_compressed_image(std::span(whole).first(n))) << n;
   EXPECT_FALSE(parse_camera_info(std::span(whole)));
   const Lens wrong{640, 480, std::numeric_limits<double>::quiet_NaN(), 1, 2, 3, {}};
-  EXPECT_FALSE(parse_camera_info(camera_info(7, "camera", wrong)));
+  EXPECT_EQ(parse_camera_info(camera_info(7, "camera", wrong)).error().what,
+            "has values that are no numbers");
+  Bytes fish = camera_info(7, "camera", {640, 480, 1, 1, 2, 3, {}});
+  const std::string_view known = "plumb_bob", other = "fish_eyes";
+  const auto at = std::search(fish.begin(), fish.end(), known.begin(), known.end());
+  ASSERT_NE(at, fish.end());
+  std::copy(other.begin(), other.end(), at);
+  EXPECT_EQ(parse_camera_info(fish).error().message(),
+            "has the distortion model «fish_eyes» (plumb_bob is understood)");
 }
 
 }  // namespace

@@ -65,6 +65,15 @@ TEST(Pulse, WhoIsGoneDoesNotAndAnotherTakesThePlace) {
   EXPECT_TRUE(pulse_of(tasks));
 }
 
+TEST(Pulse, ThatOfAnotherUserIsNotBelieved) {
+  if (::geteuid() != 0) GTEST_SKIP() << "takes root, to be somebody else";
+  TaskQueue tasks;
+  ASSERT_EQ(::seteuid(65534), 0);
+  const auto pulse = pulse_of(tasks);
+  ASSERT_EQ(::seteuid(0), 0);
+  EXPECT_EQ(ask_pulse(name, seconds(10)).error().what, "another user answers there");
+}
+
 TEST(Pulse, ANameThatIsTooLongIsAnError) {
   EXPECT_FALSE(Pulse::create(std::string(200, 'x'), [](std::function<void()>) {}));
   EXPECT_FALSE(ask_pulse(std::string(200, 'x'), seconds(1)));

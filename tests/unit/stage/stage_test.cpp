@@ -7,6 +7,7 @@
 #include <cstdlib>
 
 #include "common/base/file_text.hpp"
+#include "common/stage/first_training.hpp"
 
 namespace prehend::stage {
 namespace {
@@ -87,6 +88,13 @@ TEST(Stage, AProgramIsRunToItsEnd) {
   EXPECT_EQ(exit->code, 7);
   EXPECT_EQ(*read_file(made->folder() / "output"), "out\n");
   EXPECT_GT(looks, 0);
+}
+
+TEST(FirstTraining, OfAHandThatIsNoneFails) {
+  const auto trained = train_if_needed("no_such_hand", [] { return false; });
+  ASSERT_FALSE(trained);
+  EXPECT_EQ(trained.error().message(),
+            "no_such_hand: could not be trained (prehend train --hand no_such_hand)");
 }
 
 TEST(StageDeathTest, CtrlCEndsIt) {

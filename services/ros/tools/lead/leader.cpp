@@ -43,7 +43,8 @@ dds::GuidPrefix node_of(const dds::RawSample& sample) {
 
 Expected<std::unique_ptr<Leader>> Leader::create(service::Shell& shell) {
   const service::Config& config = shell.config();
-  if (shell.lockstep()) return wrong_use("is not for lockstep", "ros-lead", "nodes are live");
+  if (shell.lockstep())
+    return wrong_use("nodes of ROS 2 lead in a lab that is live", "lab.lockstep", "leave it out");
   const std::string& kind = config.text("mapping.hand");
   if (kind.empty()) return wrong_use("is no hand", "mapping.hand", model::hand_hint());
   auto hand = model::HandModel::load(model::hand_directory(kind));
