@@ -18,12 +18,14 @@ using spdlog::level::level_enum;
 constexpr const char* text_pattern = "%Y-%m-%dT%H:%M:%S.%eZ %^%l%$ %v";
 constexpr const char* json_pattern = R"({"time":"%Y-%m-%dT%H:%M:%S.%eZ","level":"%l",%v})";
 
+// Neither is destroyed: a thread of Fast DDS may still write while the program ends.
+
 spdlog::logger& logger() {
-  static const std::shared_ptr<spdlog::logger> instance = [] {
+  static const auto& instance = *new std::shared_ptr<spdlog::logger>([] {
     auto made = spdlog::stderr_color_mt("prehend");
     made->set_pattern(text_pattern, spdlog::pattern_time_type::utc);
     return made;
-  }();
+  }());
   return *instance;
 }
 
@@ -33,7 +35,7 @@ struct Setup {
   std::string name, rig;
 };
 Setup& setup() {
-  static Setup instance;
+  static Setup& instance = *new Setup;
   return instance;
 }
 

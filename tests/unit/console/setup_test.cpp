@@ -21,7 +21,8 @@ std::string setup_said(const std::string& setting) {
   if (!config) return config.error().message();
   if (const auto made = server_options(*config); !made) return made.error().message();
   if (const auto made = policy_of(*config); !made) return made.error().message();
-  if (const auto made = console::pose_of(*config, "tracker.X_WT"); !made) return made.error().message();
+  if (const auto made = console::pose_of(*config, "tracker.X_WT"); !made)
+    return made.error().message();
   if (const auto made = GloveLine::create(*config); !made) return made.error().message();
   return "taken";
 }

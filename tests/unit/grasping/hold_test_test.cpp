@@ -81,9 +81,11 @@ TEST(LongHoldTest, WhatOnlyLiesOnTheHandFallsWhenItIsTurnedOver) {
   EXPECT_EQ(result.turned_over, false);
 }
 
-TEST(LongHoldTest, WhatStaysOnTheTableIsNotHeld) {
+TEST(LongHoldTest, WhatCarriesSomethingElseIsNotHeldAlone) {
   const auto world = gripped(cylinder(0.015, 0.145, 0.10));
-  const HoldResult result = hold_test(*world->clone(), 0, {.lift = 0});
+  const Body die{"die", {model::ShapeKind::box, {0.02, 0.02, 0.02}}, 0.01, "wood", {}};
+  ASSERT_TRUE(world->add_body(die, make_pose(Vector3d(0, 0, 0.145 + 0.011))));
+  const HoldResult result = hold_test(*world->clone(), 0);
   EXPECT_FALSE(result.held);
   EXPECT_EQ(result.reason, "touches something else");
 }
