@@ -76,6 +76,8 @@ int main(int argc, char** argv) {
         packed(stack, test::place_schema(stack), test::message(stack, test::Place{})));
     fuzzer.seeds.push_back(
         packed(stack, test::picture_schema(stack), test::picture_message(stack, "picture")));
+    fuzzer.seeds.push_back(packed(stack, test::raster_schema(stack),
+                                  test::message(stack, test::Raster{2, 1, "blured"})));
   }
   const auto path = std::filesystem::temp_directory_path() /
                     ("fuzz-foreign-" + std::to_string(::getpid()) + ".mcap");

@@ -121,6 +121,9 @@ pb::FileDescriptorSet descriptors() {
                field("orientation", 2, Field::TYPE_MESSAGE, false, ".other.Turn")});
   add("Place", {field("pose", 1, Field::TYPE_MESSAGE, false, ".other.Pose")});
   add("Picture", {field("format", 1, Field::TYPE_STRING), field("data", 2, Field::TYPE_BYTES)});
+  add("Raster", {field("width", 1, Field::TYPE_FIXED32), field("height", 2, Field::TYPE_FIXED32),
+                 field("encoding", 3, Field::TYPE_STRING), field("step", 4, Field::TYPE_FIXED32),
+                 field("data", 5, Field::TYPE_BYTES)});
   add("Yes", {field("data", 1, Field::TYPE_BOOL)});
   return set;
 }
@@ -226,6 +229,14 @@ Schema picture_schema(Stack stack) {
                 "std_msgs::msg::Header header;\nstring format;\nsequence<uint8> data;\n",
                 "Picture");
 }
+Schema raster_schema(Stack stack) {
+  return schema(stack, "sensor_msgs", "Image",
+                "std_msgs/Header header\nuint32 height\nuint32 width\nstring encoding\nuint8 "
+                "is_bigendian\nuint32 step\nuint8[] data\n",
+                "std_msgs::msg::Header header;\nuint32 height;\nuint32 width;\nstring "
+                "encoding;\nuint8 is_bigendian;\nuint32 step;\nsequence<uint8> data;\n",
+                "Raster");
+}
 Schema yes_schema(Stack stack) {
   return schema(stack, "std_msgs", "Bool", "bool data\n", "boolean data;\n", "Yes");
 }
@@ -294,6 +305,37 @@ Bytes picture_message(Stack stack, const std::string& bytes) {
   return wire.bytes();
 }
 
+Bytes message(Stack stack, const Raster& raster) {
+  const auto& [width, height, pixels] = raster;
+  const std::uint32_t step = 3 * width;
+  if (stack == Stack::json)
+    return of_json({{"width", width},
+                    {"height", height},
+                    {"encoding", "bgr8"},
+                    {"step", step},
+                    {"data", base64(pixels)}});
+  if (stack == Stack::protobuf) {
+    Dynamic made("Raster");
+    pb::Message& m = made.message();
+    const pb::Reflection& fields = *m.GetReflection();
+    fields.SetUInt32(&m, Dynamic::in(m, "width"), width);
+    fields.SetUInt32(&m, Dynamic::in(m, "height"), height);
+    fields.SetUInt32(&m, Dynamic::in(m, "step"), step);
+    fields.SetString(&m, Dynamic::in(m, "encoding"), "bgr8");
+    fields.SetString(&m, Dynamic::in(m, "data"), pixels);
+    return made.bytes();
+  }
+  Wire wire(stack == Stack::ros1);
+  wire.header();
+  wire.number(height);
+  wire.number(width);
+  wire.text("bgr8");
+  wire.number(std::uint8_t{0});
+  wire.number(step);
+  wire.raw(pixels);
+  return wire.bytes();
+}
+
 Bytes yes_message(Stack stack, bool yes) {
   if (stack == Stack::json) return of_json({{"data", yes}});
   if (stack == Stack::protobuf) {
@@ -307,7 +349,9 @@ Bytes yes_message(Stack stack, bool yes) {
   return wire.bytes();
 }
 
-void write_recording(const std::filesystem::path& file, Stack stack, const std::string& picture) {
+void write_recording(const std::filesystem::path& file, Stack stack, const std::string& picture,
+                     const Raster& raster) {
+  const bool is_raw = !raster.pixels.empty();
   auto writer = recording::mcap::Writer::create(file).value();
   const auto add = [&](const std::string& topic, const Schema& schema) {
     const auto id = writer.add_schema(schema.name, schema.encoding, schema.data).value();
@@ -317,7 +361,9 @@ void write_recording(const std::filesystem::path& file, Stack stack, const std::
   const auto commands = add("/command", joints_schema(stack));
   const auto tool = add("/tool", place_schema(stack));
   const auto run = add("/run", yes_schema(stack));
-  const auto camera = picture.empty() ? 0 : add("/camera", picture_schema(stack));
+  const bool sees = is_raw || !picture.empty();
+  const auto camera =
+      sees ? add("/camera", is_raw ? raster_schema(stack) : picture_schema(stack)) : 0;
   std::uint32_t sequence = 0;
   const auto write = [&](std::uint16_t channel, int ms, const Bytes& data) {
     const std::uint64_t time =
@@ -332,7 +378,8 @@ void write_recording(const std::filesystem::path& file, Stack stack, const std::
       write(states, ms, message(stack, Joints{{"b", "a"}, {2 * t, t}, {2, 1}}));
     write(commands, ms, message(stack, Joints{{"a", "b"}, {t + 0.1, 2 * t + 0.1}, {}}));
     write(tool, ms, message(stack, Place{{t, 0, 0.5}, {0, 0, std::sin(t / 2), std::cos(t / 2)}}));
-    if (!picture.empty() && ms % 100 == 0) write(camera, ms, picture_message(stack, picture));
+    if (sees && ms % 100 == 0)
+      write(camera, ms, is_raw ? message(stack, raster) : picture_message(stack, picture));
     if (ms == 200 || ms == 900 || ms == 1100 || ms == 1800)
       write(run, ms, yes_message(stack, ms == 200 || ms == 1100));
   }

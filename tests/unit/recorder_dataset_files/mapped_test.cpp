@@ -92,6 +92,28 @@ TEST_F(MappedTest, EveryEncodingGivesTheSameRows) {
   }
 }
 
+TEST_F(MappedTest, RawPicturesOfEveryStackAreShown) {
+  std::string pixels;
+  for (int i = 0; i < 10 * 6; ++i) pixels += {20, 40, static_cast<char>(200)};
+  for (const test::Stack stack : test::all_stacks) {
+    auto asked = options(stack, test::columns_of_recording(true));
+    test::write_recording(asked.sources[0], stack, "", {10, 6, pixels});
+    const auto all = gather(asked);
+    ASSERT_TRUE(all) << all.error().message();
+    EXPECT_EQ(all->dataset.cameras.at("front").height, 6);
+    int shown = 0;
+    const auto read =
+        read_rows(all->dataset.episodes.at(0), "front", {10, 6}, [&](const Rgb& picture) {
+          EXPECT_THAT(std::vector(picture.bytes.end() - 3, picture.bytes.end()),
+                      ElementsAre(200, 40, 20));
+          ++shown;
+          return Expected<void>();
+        });
+    EXPECT_TRUE(read) << read.error().message();
+    EXPECT_EQ(shown, 21);
+  }
+}
+
 TEST_F(MappedTest, EpisodesAreThoseOfATopic) {
   const auto all = gather(options(
       test::Stack::ros1,

@@ -58,6 +58,10 @@ TEST(Pictures, JpegAndPngAsOpenCvSeesThem) {
   const auto exact = decoder.decode(png, size);
   ASSERT_TRUE(exact);
   EXPECT_EQ(difference(*exact, expected), 0);
+  // The second one was added to the first.
+  const auto again = decoder.decode(png, size);
+  ASSERT_TRUE(again);
+  EXPECT_EQ(difference(*again, expected), 0);
 }
 
 TEST(Pictures, OfAnotherSize) {

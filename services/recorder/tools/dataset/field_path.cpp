@@ -4,6 +4,7 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <span>
 
 #include "common/base/base64.hpp"
 #include "common/base/printable.hpp"
@@ -90,8 +91,16 @@ Expected<FieldPath> FieldPath::parse(std::string_view text) {
 }
 
 const Value* FieldPath::in(const Value& message) const {
+  return after(message, steps_.size());
+}
+
+const Value* FieldPath::holder_in(const Value& message) const {
+  return steps_.empty() ? nullptr : after(message, steps_.size() - 1);
+}
+
+const Value* FieldPath::after(const Value& message, std::size_t steps) const {
   const Value* value = &message;
-  for (const auto& step : steps_) {
+  for (const auto& step : std::span(steps_).first(steps)) {
     if (const auto* name = std::get_if<std::string>(&step)) {
       value = value->find(*name);
     } else {

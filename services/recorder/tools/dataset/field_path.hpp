@@ -20,9 +20,14 @@ class FieldPath {
 
   /// Nothing where the message has no such field.
   const recording::types::Value* in(const recording::types::Value& message) const;
+  /// What holds it: without the last step.
+  const recording::types::Value* holder_in(const recording::types::Value& message) const;
   const std::string& text() const { return text_; }
 
  private:
+  const recording::types::Value* after(const recording::types::Value& message,
+                                       std::size_t steps) const;
+
   std::string text_;
   std::vector<std::variant<std::string, std::size_t>> steps_;
 };

@@ -7,6 +7,7 @@
 #include "common/recording/messages/message_decoder.hpp"
 #include "services/recorder/tools/dataset/ffmpeg.hpp"
 #include "services/recorder/tools/dataset/message.hpp"
+#include "services/recorder/tools/dataset/picture_file.hpp"
 
 namespace prehend::recorder::dataset {
 
@@ -43,6 +44,7 @@ Expected<Rgb> PictureDecoder::decode(const std::vector<std::uint8_t>& bytes, Siz
   padded.resize(bytes.size() + AV_INPUT_BUFFER_PADDING_SIZE);
   state.packet->data = padded.data();
   state.packet->size = static_cast<int>(bytes.size());
+  state.packet->flags = AV_PKT_FLAG_KEY;  // or a png is added to the one before
   const bool decoded = avcodec_send_packet(decoder.get(), state.packet.get()) >= 0 &&
                        avcodec_receive_frame(decoder.get(), state.frame.get()) >= 0;
   state.packet->data = nullptr;
@@ -86,6 +88,7 @@ Expected<void> read_pictures(
                                         recording::recorded_topic(channel, reader->contents());
                                     return topic.end.empty() && topic.name == wanted;
                                   }});
+  const FieldPath field = *FieldPath::parse("data");
   std::size_t done = 0;  // places that were taken, or are behind
   while (true) {
     const auto next = cursor.next();
@@ -99,9 +102,8 @@ Expected<void> read_pictures(
     const auto place = static_cast<std::size_t>(time - times.begin());
     if (place < done || !std::ranges::binary_search(places, place)) continue;
     done = place + 1;
-    const Value* data = is_mapped ? mapped->second.field.in(*value) : value->find("data");
-    const auto bytes = data ? bytes_of(*data) : std::nullopt;
-    if (auto taken = take(place, bytes.value_or(Value::Bytes{})); !taken) return taken;
+    const auto bytes = picture_file(*value, is_mapped ? mapped->second.field : field);
+    if (auto taken = take(place, bytes.value_or(std::vector<std::uint8_t>{})); !taken) return taken;
   }
   return {};
 }

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "common/base/printable.hpp"
+#include "services/recorder/tools/dataset/picture_file.hpp"
 #include "services/recorder/tools/dataset/pictures.hpp"
 #include "services/recorder/tools/dataset/recorded_messages.hpp"
 
@@ -134,8 +135,10 @@ class MappedTaker {
     if (!bytes || bytes->empty()) return wrong(pictures.field, "is no picture");
     const auto known = log_.cameras.find(pictures.name);
     if (known == log_.cameras.end()) {
-      const auto first = decoder_.decode(*bytes);
-      if (!first) return wrong(pictures.field, "is neither jpeg nor png");
+      const auto file = picture_file(message, pictures.field);
+      if (!file) return wrong(pictures.field, file.error().what);
+      const auto first = decoder_.decode(*file);
+      if (!first) return wrong(pictures.field, "is neither jpeg nor png, nor a raw picture");
       log_.cameras[pictures.name] = {{time}, first->size.width, first->size.height};
     } else if (time > known->second.times.back()) {
       known->second.times.push_back(time);
