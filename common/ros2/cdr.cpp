@@ -50,6 +50,10 @@ Number CdrReader::number() {
   return value;
 }
 
+std::uint8_t CdrReader::byte() {
+  return number<std::uint8_t>();
+}
+
 std::uint32_t CdrReader::count() {
   return number<std::uint32_t>();
 }

@@ -66,6 +66,7 @@ class CdrReader {
   explicit CdrReader(std::span<const std::uint8_t> bytes);
 
   bool good() const { return good_; }
+  std::uint8_t byte();
   std::uint32_t count();  // uint32
   double real();
   std::string text();

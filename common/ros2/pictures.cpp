@@ -28,6 +28,21 @@ Expected<CompressedPicture> parse_compressed_image(std::span<const std::uint8_t>
   return made;
 }
 
+Expected<RawPicture> parse_image(std::span<const std::uint8_t> bytes) {
+  CdrReader read(bytes);
+  RawPicture made;
+  made.stamp_ns = read.stamp();
+  made.frame = read.text();
+  made.height = read.count();
+  made.width = read.count();
+  made.encoding = read.text();
+  made.big_endian = read.byte() != 0;
+  made.step = read.count();
+  made.data = read.bytes();
+  if (!read.good()) return fail("is no whole sensor_msgs/Image", {}, type_hint);
+  return made;
+}
+
 Bytes camera_info(std::int64_t stamp_ns, std::string_view frame, const Lens& lens) {
   CdrWriter made;
   made.stamp(stamp_ns);

@@ -21,6 +21,17 @@ struct CompressedPicture {
 Bytes compressed_image(const CompressedPicture& picture);
 Expected<CompressedPicture> parse_compressed_image(std::span<const std::uint8_t> bytes);
 
+/// sensor_msgs/Image: rows of `step` bytes from the top, pixels as `encoding` says.
+struct RawPicture {
+  std::int64_t stamp_ns = 0;
+  std::string frame = {}, encoding = {};
+  std::uint32_t width = 0, height = 0, step = 0;
+  bool big_endian = false;
+  std::vector<std::uint8_t> data;
+};
+/// Whether its bytes are enough is not asked.
+Expected<RawPicture> parse_image(std::span<const std::uint8_t> bytes);
+
 /// A lens, px, with OpenCV's k1 k2 p1 p2 k3 for its distortion.
 struct Lens {
   std::uint32_t width = 0, height = 0;

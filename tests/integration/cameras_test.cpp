@@ -163,6 +163,24 @@ TEST_F(Cameras, ANodeOfRosIsACamera) {
   ::unsetenv("ROS_DOMAIN_ID");
 }
 
+// Most drivers tell raw pictures, and nothing else.
+TEST_F(Cameras, RawPicturesOfANodeAreTaken) {
+  const test::DomainLease nodes;
+  ::setenv("ROS_DOMAIN_ID", std::to_string(nodes.domain()).c_str(), 1);
+  const recognition::Picture picture = table("Cup", {0.05, 0.1, 0});
+  const std::string file = (folder_ / "table.rgb").string();
+  std::ofstream(file, std::ios::binary)
+      .write(reinterpret_cast<const char*>(picture.rgb.data()),
+             static_cast<std::streamsize>(picture.rgb.size()));
+  auto recognition =
+      start("recognition", {"recognition.source=ros2", "recognition.path=/front/image_raw"});
+  auto node = start_program("cyclone_ros_camera",
+                            {std::to_string(nodes.domain()), "front", file,
+                             std::to_string(picture.width), std::to_string(picture.height), "620"});
+  EXPECT_TRUE(hear_at("Cup", 0.05, 0.1)) << read_file(recognition.log()).value_or("");
+  ::unsetenv("ROS_DOMAIN_ID");
+}
+
 TEST_F(Cameras, ResolutionMayChangeButNotTheRatioOfSides) {
   StreamCamera camera(20);
   auto recognition = start_recognition(camera);

@@ -16,6 +16,8 @@ constexpr std::pair<std::string_view, std::string_view> hashes[] = {
      "typehash=RIHS01_b3dfd68ff46c9d56c80fd3bd4ed22c7a4ddce8c8348f2f59c299e73118e7e275;"},
     {"sensor_msgs/CompressedImage",
      "typehash=RIHS01_15640771531571185e2efc8a100baf923961a4d15d5569652e6cb6691e8e371a;"},
+    {"sensor_msgs/Image",
+     "typehash=RIHS01_d31d41a9a4c4bc8eae9be757b0beed306564f7526c88ea6a4588fb9582527d47;"},
     {"sensor_msgs/JointState",
      "typehash=RIHS01_a13ee3a330e346c9d87b5aa18d24e11690752bd33a0350f11c5882bc9179260e;"},
     {"std_msgs/String",

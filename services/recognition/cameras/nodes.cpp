@@ -11,6 +11,7 @@
 #include "common/base/time_between.hpp"
 #include "common/ros2/nodes/topic_queue.hpp"
 #include "common/ros2/pictures.hpp"
+#include "services/recognition/cameras/raw_picture.hpp"
 #include "services/recognition/cameras/sources.hpp"
 #include "services/recognition/files/picture_file.hpp"
 
@@ -21,7 +22,8 @@ using std::chrono::seconds;
 
 constexpr Duration max_wait = seconds(3);  // for a picture
 constexpr Duration max_age = seconds(1);   // of a stamp that is believed
-constexpr double tolerated = 0.01;         // of a lens, beside lab.toml
+constexpr const char* compressed = "/compressed";
+constexpr double tolerated = 0.01;  // of a lens, beside lab.toml
 
 /// Cameras tell their pictures with and without asking whether they have come.
 dds::RawTopic heard_on(const std::string& topic, const char* type) {
@@ -30,11 +32,10 @@ dds::RawTopic heard_on(const std::string& topic, const char* type) {
   return made;
 }
 
-/// Beside the pictures: /a/image/compressed has /a/camera_info.
+/// Beside the pictures: /a/image/compressed and /a/image_raw have /a/camera_info.
 std::string info_topic(const std::string& pictures) {
-  const std::string suffix = "/compressed";
-  const std::string image =
-      pictures.ends_with(suffix) ? pictures.substr(0, pictures.size() - suffix.size()) : pictures;
+  std::string image = pictures;
+  if (image.ends_with(compressed)) image.resize(image.size() - std::string_view(compressed).size());
   const auto space = image.rfind('/');
   return (space == std::string::npos ? "" : image.substr(0, space + 1)) + "camera_info";
 }
@@ -45,8 +46,9 @@ class NodeCamera final : public Camera {
       : nodes_(std::move(nodes)), topic_(std::move(topic)), model_(model) {}
 
   Expected<void> listen() {
-    auto pictures =
-        ros2::TopicQueue::create(nodes_, heard_on(topic_, "sensor_msgs/CompressedImage"), 1);
+    auto pictures = ros2::TopicQueue::create(
+        nodes_, heard_on(topic_, is_raw() ? "sensor_msgs/Image" : "sensor_msgs/CompressedImage"),
+        1);
     if (!pictures) return tl::unexpected(pictures.error());
     pictures_ = std::move(*pictures);
     auto lenses =
@@ -62,16 +64,28 @@ class NodeCamera final : public Camera {
       return fail("no pictures come", "/" + topic_,
                   "does the camera's node run? ros2 topic hz, and ROS_DOMAIN_ID of both");
     if (const auto lens = lenses_->next({})) compare(lens->payload);
-    const auto picture = ros2::parse_compressed_image(message->payload);
-    if (!picture) return fail(picture.error().what, "/" + topic_, picture.error().hint);
-    const Time now = process_now(), stamp = from_ns(picture->stamp_ns);
-    age_ = stamp <= now && is_within(stamp, now, max_age) ? between(stamp, now) : Duration{};
-    return decode_picture(picture->data, "/" + topic_);
+    return is_raw() ? taken(ros2::parse_image(message->payload), picture_of)
+                    : taken(ros2::parse_compressed_image(message->payload),
+                            [](const ros2::CompressedPicture& picture, const std::string& where) {
+                              return decode_picture(picture.data, where);
+                            });
   }
   bool paces_itself() const override { return true; }
   Duration age() const override { return age_; }
 
  private:
+  /// As drivers and image_transport name their topics.
+  bool is_raw() const { return !topic_.ends_with(compressed); }
+
+  template <class Message, class Decode>
+  Expected<Picture> taken(const Expected<Message>& message, const Decode& decode) {
+    const std::string where = "/" + topic_;
+    if (!message) return fail(message.error().what, where, message.error().hint);
+    const Time now = process_now(), stamp = from_ns(message->stamp_ns);
+    age_ = stamp <= now && is_within(stamp, now, max_age) ? between(stamp, now) : Duration{};
+    return decode(*message, where);
+  }
+
   /// Objects are placed by lab.toml: where that is another lens, it is said once.
   void compare(std::span<const std::uint8_t> message) {
     if (compared_) return;

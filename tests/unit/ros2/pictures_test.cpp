@@ -68,6 +68,38 @@ TEST(Ros2Pictures, ComeBackAsTheyWent) {
   EXPECT_EQ(info->distortion, lens.distortion);
 }
 
+Bytes raw_image(std::uint8_t big_endian) {
+  CdrWriter made;
+  made.stamp(7);
+  made.put(std::string_view("camera"));
+  made.put(std::uint32_t{2});
+  made.put(std::uint32_t{3});
+  made.put(std::string_view("mono8"));
+  made.put(big_endian);
+  made.put(std::uint32_t{4});
+  made.put(std::vector<std::uint8_t>{1, 2, 3, 0, 4, 5, 6, 0});
+  return std::move(made).bytes();
+}
+
+TEST(Ros2Pictures, RawOnesAreWhatTheirTypeSays) {
+  const Bytes bytes = raw_image(1);
+  const Value message = ros_value("sensor_msgs::msg::dds_::Image_", bytes);
+  const auto read = parse_image(bytes);
+  ASSERT_TRUE(read) << read.error().what;
+  EXPECT_EQ(read->stamp_ns, 7);
+  EXPECT_EQ(read->frame, text(message, {"header_", "frame_id_"}));
+  EXPECT_EQ(read->encoding, text(message, {"encoding_"}));
+  EXPECT_EQ(read->width, count(message, {"width_"}));
+  EXPECT_EQ(read->height, count(message, {"height_"}));
+  EXPECT_EQ(read->step, count(message, {"step_"}));
+  EXPECT_EQ(read->data, std::get<std::vector<std::uint8_t>>(in(message, {"data_"}).content));
+  EXPECT_EQ(read->width, 3U);
+  EXPECT_TRUE(read->big_endian);
+  EXPECT_FALSE(parse_image(raw_image(0))->big_endian);
+  for (std::size_t n = 0; n < bytes.size(); ++n)
+    EXPECT_FALSE(parse_image(std::span(bytes).first(n))) << n;
+}
+
 TEST(Ros2Pictures, WhatIsNoneIsRefused) {
   const Bytes whole = compressed_image({7, "camera", "jpeg", {1, 2, 3}});
   for (std::size_t n = 0; n < whole.size(); ++n)
