@@ -14,12 +14,22 @@ namespace prehend::grasping {
 namespace {
 
 constexpr double rolling_friction = 0.0002;  // m; keeps a standing or lying cylinder where it is
+/// Of the points where a roller touches, some are a step old and lie behind it: they push it on.
+constexpr double trail = 0.0015;  // s; above half a step, so that it always loses
 
 double friction_between(const Surface& a, const Surface& b) {
   if (a.friction || b.friction)
     return std::min(a.friction.value_or(std::numeric_limits<double>::infinity()),
                     b.friction.value_or(std::numeric_limits<double>::infinity()));
   return analysis::friction(a.material, b.material);
+}
+
+/// m/s, at which a body rolls over what stands; what only turns around the normal does not roll.
+double roll(const btCollisionObject& body, const btCollisionObject& on, const btManifoldPoint& at) {
+  if (!on.isStaticObject()) return 0;
+  const btVector3 turn = body.getInterpolationAngularVelocity();
+  const btVector3 arm = at.getPositionWorldOnB() - body.getWorldTransform().getOrigin();
+  return (turn - at.m_normalWorldOnB * turn.dot(at.m_normalWorldOnB)).cross(arm).length();
 }
 
 /// Bullet multiplies two numbers for friction; the table knows pairs.
@@ -31,7 +41,12 @@ bool set_friction(btManifoldPoint& point, const btCollisionObjectWrapper* a, int
   const bool slippery = point.m_combinedFriction < 0.1;
   point.m_combinedSpinningFriction =
       slippery ? 0 : analysis::torsion(first.material, second.material);
-  point.m_combinedRollingFriction = slippery ? 0 : rolling_friction;
+  point.m_combinedRollingFriction =
+      slippery
+          ? 0
+          : std::max(rolling_friction,
+                     trail * (roll(*a->getCollisionObject(), *b->getCollisionObject(), point) +
+                              roll(*b->getCollisionObject(), *a->getCollisionObject(), point)));
   return true;
 }
 

@@ -30,6 +30,11 @@ bool differ(const Pose& a, const Pose& b) {
          angle_between(a.linear(), b.linear()) > noticed_turn;
 }
 
+/// m, of what a shape covers of the table, whichever way it is turned.
+double radius(const model::Shape& shape) {
+  return model::half_extents(shape).head<2>().norm();
+}
+
 /// Objects stand upright on the table; of a sighting only place and turn about z are taken.
 Pose standing(const model::Shape& shape, const Pose& X_WO) {
   const Vector3d x = X_WO.linear().col(0);
@@ -108,11 +113,15 @@ void Simulation::put_back() {
   for (std::size_t i = 0; i < stood_.size(); ++i) {
     const int body = static_cast<int>(i);
     const Pose now = world_->body_motion(body).X_WO;
+    Stood& stood = stood_[i];
     if (distance_to_hands(body, options_.far_away) < options_.far_away) {
-      if (!stood_[i]) stood_[i] = now;
-    } else if (const auto stood = std::exchange(stood_[i], std::nullopt)) {
-      if (differ(now, *stood) && !placed_.contains(world_->body(body).name))
-        world_->move_body(body, *stood);
+      if (!stood.where) stood.where = now;
+      stood.disturbed = true;
+    } else if (!stood.disturbed || placed_.contains(world_->body(body).name)) {
+      stood = {now, false};
+    } else if (!hand_at(world_->body(body), *stood.where)) {  // what rolls leaves it there
+      if (differ(now, *stood.where)) world_->move_body(body, *stood.where);
+      stood.disturbed = false;
     }
   }
 }
@@ -143,26 +152,26 @@ int Simulation::find(const std::string& name) const {
   return -1;
 }
 
-Expected<void> Simulation::is_free(const grasping::Body& body, const Pose& X_WO, int itself) const {
-  const auto radius = [](const model::Shape& shape) {
-    return model::half_extents(shape).head<2>().norm();
-  };
-  const auto away = [&](const Vector3d& p) {
-    return (p - X_WO.translation()).head<2>().norm() - radius(body.shape);
-  };
-  for (int i = 0; i < world_->body_count(); ++i)
-    if (i != itself &&
-        away(world_->body_motion(i).X_WO.translation()) < radius(world_->body(i).shape))
-      return fail("cannot stand there", body.name, world_->body(i).name + " does");
+bool Simulation::hand_at(const grasping::Body& body, const Pose& X_WO) const {
   const double top = 2 * model::half_extents(body.shape).z();
   for (const Led& led : hands_) {
     const grasping::HandMotion hand = world_->hand_motion(led.number);
     for (const Pose& X_BL : world_->hand(led.number).link_poses(hand.joint)) {
       const Vector3d p = hand.X_WB * X_BL.translation();
-      if (away(p) < options_.far_away && p.z() < top + options_.far_away)
-        return fail("cannot stand there", body.name, "the hand is in the way");
+      const double away = (p - X_WO.translation()).head<2>().norm() - radius(body.shape);
+      if (away < options_.far_away && p.z() < top + options_.far_away) return true;
     }
   }
+  return false;
+}
+
+Expected<void> Simulation::is_free(const grasping::Body& body, const Pose& X_WO, int itself) const {
+  for (int i = 0; i < world_->body_count(); ++i)
+    if (i != itself &&
+        (world_->body_motion(i).X_WO.translation() - X_WO.translation()).head<2>().norm() <
+            radius(body.shape) + radius(world_->body(i).shape))
+      return fail("cannot stand there", body.name, world_->body(i).name + " does");
+  if (hand_at(body, X_WO)) return fail("cannot stand there", body.name, "the hand is in the way");
   return {};
 }
 

@@ -112,6 +112,8 @@ class Simulation {
   double distance_to_hands(int body, double most) const;
   Expected<bool> add(const grasping::Body& body, const Pose& place);
   int find(const std::string& name) const;  // -1: there is none
+  /// Is a hand near where the body would stand?
+  bool hand_at(const grasping::Body& body, const Pose& X_WO) const;
   /// Nothing is where a body of this shape would stand, other than `itself`.
   Expected<void> is_free(const grasping::Body& body, const Pose& X_WO, int itself) const;
   void approach(const Command& command, int hand);
@@ -126,9 +128,14 @@ class Simulation {
   Duration period_;
   Time time_{}, goal_{};
   std::uint64_t closures_ = 0;
-  std::set<std::string> placed_;            // by order
-  std::vector<std::optional<Pose>> stood_;  // bodies of a scene that a hand is near to: X_WO before
-  Time looked_{};                           // at them
+  std::set<std::string> placed_;  // by order
+  /// A body of the scene: where it was when no hand was near, and whether one has been since.
+  struct Stood {
+    std::optional<Pose> where;
+    bool disturbed = false;
+  };
+  std::vector<Stood> stood_;
+  Time looked_{};  // at them
 };
 
 }  // namespace prehend::simulation

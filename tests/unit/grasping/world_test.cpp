@@ -302,4 +302,28 @@ TEST(World, DistanceToTheHandIsThatOfTheirSurfaces) {
   EXPECT_LT(world->distance_to_hand(0), 0);
 }
 
+// A tube that had been dropped went on for ever, and faster and faster.
+TEST(World, WhatRollsComesToRest) {
+  for (const double radius : {0.02, 0.034}) {
+    const Body tube{
+        "Tube", {model::ShapeKind::cylinder, {radius, radius, 0.32}}, 0.2, "plastic", {}, {}};
+    auto world = empty_world(make_pose(Vector3d(0, 0, 1)));
+    ASSERT_TRUE(world->add_body(
+        tube, make_pose(Vector3d(0, 0, radius),
+                        Eigen::AngleAxisd(EIGEN_PI / 2, Vector3d::UnitX()).toRotationMatrix())));
+    world->set_gravity(Vector3d(0.5, 0, -9.81));
+    run(*world, 1);
+    world->set_gravity(Vector3d(0, 0, -9.81));
+    double fastest = world->body_motion(0).velocity.norm();
+    EXPECT_GT(fastest, 0.2);
+    for (int n = 0; n < 150; ++n) {
+      run(*world, 0.1);
+      const double speed = world->body_motion(0).velocity.norm();
+      EXPECT_LT(speed, fastest + 1e-3) << radius << " m, after " << 0.1 * n << " s";
+      fastest = std::min(fastest, speed);
+    }
+    EXPECT_LT(fastest, 0.01) << radius;
+  }
+}
+
 }  // namespace
