@@ -44,7 +44,7 @@ constexpr std::pair<const char*, const char*> variables[] = {
 /// A profile as it stands in its file. Each file is read once.
 Expected<fdds::DomainParticipantQos> load(const std::string& profile) {
   const std::string file = (share_directory() / "dds" / (profile + ".xml")).string();
-  const std::string hint = "put back the file from deploy/dds, or name it rightly in lab.network";
+  const std::string hint = "put back the file from deploy/dds, or set lab.network to another";
   static std::mutex mutex;
   static std::map<std::string, fdds::DomainParticipantQos> known;
   const std::scoped_lock lock(mutex);
@@ -59,7 +59,8 @@ Expected<fdds::DomainParticipantQos> load(const std::string& profile) {
   fdds::DomainParticipantQos qos;
   const auto found = factory->get_participant_qos_from_profile(profile, qos);
   const std::string said = complaints.text();
-  if (!said.empty()) return fail("cannot be used: " + said, file, hint);
+  // The first complaint names the place, the others what follows from it.
+  if (!said.empty()) return fail("cannot be used: " + said.substr(0, said.find(';')), file, hint);
   if (!succeeded(loaded)) return fail("cannot be read", file, hint);
   if (!succeeded(found))
     return fail(fmt::format("has no participant profile \"{}\"", profile), file, hint);
@@ -213,7 +214,7 @@ Expected<fdds::DomainParticipantQos> participant_qos(const Network& network,
   auto qos = load(network.profile);
   if (!qos) return qos;
   if (const std::string wrong = violation(network.profile, *qos); !wrong.empty())
-    return fail(wrong, fmt::format("profile {}", network.profile), "see deploy/dds/README.md");
+    return fail(wrong, fmt::format("{}.xml", network.profile), "deploy/dds/README.md tells what must stay");
   if (const auto up = need_interface(network.profile); !up) return tl::unexpected(up.error());
   // Each participant changes its own: the descriptors are shared otherwise.
   for (auto& given : qos->transport().user_transports) {

@@ -192,8 +192,8 @@ Expected<void> stays_in_one_rig(const ParticipantOptions& options) {
     if (its_name == name && std::ranges::any_of(topic_table, [each = role](const TopicInfo& topic) {
           return topic.content == Content::data && may_write(each, topic);
         }))
-      return wrong_use("is more than one rig: " + options.rig, "lab.rig",
-                       "a " + name + " takes part in one");
+      return wrong_use("names more than one rig", "lab.rig = " + options.rig,
+                       "a " + name + " takes part in one: give its name");
   return {};
 }
 

@@ -111,7 +111,8 @@ std::string hand_hint() {
   std::string names;
   for (const auto& folder : hand_folders())
     for (const std::string& name : names_in(folder)) names += (names.empty() ? "" : ", ") + name;
-  return "choose one of " + names + ", NAME_left of its mirror image, or give the path of a folder";
+  return "choose one of " + names +
+         ", NAME_left for its mirror image, or give the path of a folder";
 }
 
 }  // namespace prehend::model

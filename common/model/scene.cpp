@@ -69,7 +69,8 @@ class TableReader {
                           q.y(),
                           q.z()};
     read_list(key, n);
-    if (n.size() != 7) return complain(key, "needs seven numbers: x y z, then w x y z");
+    if (n.size() != 7)
+      return complain(key, "needs seven numbers: x y z in m, then the quaternion w x y z");
     const auto pose = checked_pose({n[0], n[1], n[2]}, Eigen::Quaterniond(n[3], n[4], n[5], n[6]));
     if (pose)
       value = *pose;

@@ -31,7 +31,7 @@ Expected<std::string> unseal(std::string_view sealed, std::string_view kind) {
   const std::size_t first = sealed.find('\n');
   const std::string head = fmt::format("prehend {} {}\n", kind, version);
   if (first == std::string_view::npos || first > 128 || !sealed.starts_with("prehend "))
-    return fail("is no file of this program");
+    return fail("is nothing that prehend wrote, or its first line is damaged");
   if (sealed.substr(0, first + 1) != head)
     return fail(fmt::format("holds '{}', not '{}'", sealed.substr(0, first),
                             std::string_view(head).substr(0, head.size() - 1)));

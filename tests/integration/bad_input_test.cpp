@@ -105,7 +105,7 @@ TEST_F(BadInput, SensorsAtWrongPlaces) {
 
 TEST_F(BadInput, WhatAServiceCannotWorkWith) {
   expect_refusal("planner", lab_arguments({"mapping.hand=", "simulation.hand="}), 2,
-                 "mapping.hand: is no hand (choose one of ");
+                 "mapping.hand: names no hand (choose one of ");
   expect_refusal("recognition", lab_arguments({"recognition.rate=0"}), 3,
                  "recognition.rate: must lie in 0 to 200 Hz (10 is usual)");
   expect_refusal("recognition", lab_arguments({"recognition.source=folder", "lab.lockstep=true"}),
@@ -115,10 +115,10 @@ TEST_F(BadInput, WhatAServiceCannotWorkWith) {
        std::vector<std::tuple<std::string, Strings, std::string>>{
            {"simulation", {"simulation.state_rate=0"}, "simulation.state_rate: must be positive"},
            {"simulation", {"simulation.brake_turn=0"}, "simulation.brake_turn: must be positive"},
-           {"simulation", {"simulation.hand="}, "simulation.hand: is no hand (choose one of "},
+           {"simulation", {"simulation.hand="}, "simulation.hand: names no hand (choose one of "},
            {"simulation",
             {"simulation.hands=[\"a:barrett\", \"b\"]"},
-            "simulation.hands: b: is no hand"},
+            "simulation.hands: b: names no hand"},
            {"simulation",
             {"simulation.hands=[\"a:barrett\", \"a:barrett\"]"},
             "simulation.hands: two hands are named a (as "},
@@ -130,8 +130,8 @@ TEST_F(BadInput, WhatAServiceCannotWorkWith) {
             "lab.lockstep: the console shows a lab that is live (or "},
            {"ros-lead",
             {"lab.lockstep=true"},
-            "lab.lockstep: nodes of ROS 2 lead in a lab that is live (leave "},
-           {"ros-lead", {"mapping.hand="}, "mapping.hand: is no hand (choose one of "}})
+            "lab.lockstep: nodes of ROS 2 cannot lead in lockstep (set it to "},
+           {"ros-lead", {"mapping.hand="}, "mapping.hand: names no hand (choose one of "}})
     expect_refusal(service, lab_arguments(sets), 2, words);
 }
 

@@ -153,7 +153,7 @@ TEST_F(Benchmark, SaysWhyNobodyCanBeJudged) {
   EXPECT_EQ(benchmark({"--mapping", "telepathy"}).exit_code, 2);
   const Answer nobody = run("prehend", {"benchmark", "--set", "mapping.hand="}, 20);
   EXPECT_EQ(nobody.exit_code, 2);
-  EXPECT_NE(nobody.log.find("--hand: is no hand"), std::string::npos) << nobody.log;
+  EXPECT_NE(nobody.log.find("--hand: names no hand"), std::string::npos) << nobody.log;
   std::ofstream(in("vast.toml")) << "[[object]]\nname = \"Globe\"\nshape = \"sphere\"\n"
                                     "size = [0.5, 0.5, 0.5]\nmass = 1\nmaterial = \"plastic\"\n";
   const Answer vast = benchmark({"--objects", in("vast.toml")});

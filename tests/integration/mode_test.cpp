@@ -135,9 +135,9 @@ TEST_F(SetMode, OrdersForOthersAreNotAnswered) {
 
 TEST_F(SetMode, SettingsThatCannotBeAreSaidByTheirKeys) {
   for (const auto& [sets, words] :
-       {std::pair<Strings, std::string>({"mapping.hand="}, "mapping.hand: is no hand"),
+       {std::pair<Strings, std::string>({"mapping.hand="}, "mapping.hand: names no hand"),
         {{"mapping.hand=barrett_left", "tracker.X_WT=[0, 0, 0]"},
-         "tracker.X_WT: needs seven numbers: x y z, then w x y z"},
+         "tracker.X_WT: needs seven numbers: x y z in m, then the quaternion w x y z"},
         {{"mapping.mode=telepathy"}, "mapping.mode: there is no «telepathy»"},
         {{"mapping.clutch_speed=0"},
          "mapping.clutch_speed, _turn_speed, _finger_speed: must be"}}) {

@@ -360,7 +360,9 @@ TEST_F(Robot, ATwinGoesWithTheRobotButForAJointThatIsStuck) {
     return (exit = twin.exit()) && stranger.exit();
   }));
   const std::string refusal = stage::last_lines(stranger.log(), 1);
-  EXPECT_NE(refusal.find("is another hand, robonaut (simulate barrett)"), std::string::npos);
+  EXPECT_NE(
+      refusal.find("stands for robonaut, the robot is barrett (set simulation.hand = barrett)"),
+      std::string::npos);
   const std::string said = read_file(folder_ / "twin.json").value_or("");
   ASSERT_EQ(exit->code, 1) << said << stage::last_lines(folder_ / "twin.log", 3);
   const json document = json::parse(said);
@@ -435,10 +437,10 @@ TEST_F(Robot, WrongUseIsOneLine) {
     EXPECT_EQ(ended->code, 2) << words;
     EXPECT_NE(stage::last_lines(process.log(), 3).find(words), std::string::npos) << words;
   };
-  refused({}, "is no port");
+  refused({}, "robot.port: names no port");
   refused(settings({"robot.device=nothing"}), "there is no driver");
   refused({"robot.port=/dev/null", "robot.baud=1234"}, "bits per second");
-  refused({"lab.lockstep=true"}, "lab.lockstep: a robot keeps its own time (replay into");
+  refused({"lab.lockstep=true"}, "lab.lockstep: a robot cannot wait for the others (set it");
   const Answer nobody =
       run("prehend-robot-tool", with_lab({"check", "--set", "robot.port=/nowhere"}), 30);
   EXPECT_EQ(nobody.exit_code, 3);

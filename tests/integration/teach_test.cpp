@@ -215,9 +215,9 @@ TEST_F(Teach, WhatCannotBeIsOneLine) {
   EXPECT_EQ(label.exit_code, 2);
   EXPECT_EQ(run("prehend-teach", {}, 30).exit_code, 2);
   for (const auto& [set, words] :
-       {std::pair("mapping.hand=", "mapping.hand: is no hand"),
+       {std::pair("mapping.hand=", "mapping.hand: names no hand"),
         std::pair("teacher.users=1001", "teacher.users: is none of 0 to 1000"),
-        std::pair("lab.lockstep=true", "lab.lockstep: the teacher needs a lab that is live")}) {
+        std::pair("lab.lockstep=true", "lab.lockstep: nobody is taught in lockstep")}) {
     const Answer teacher = run("prehend-teacher", lab_arguments({set}), 20);
     EXPECT_EQ(teacher.exit_code, 2) << set;
     EXPECT_THAT(teacher.log, testing::HasSubstr(words));

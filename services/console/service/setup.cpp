@@ -92,7 +92,8 @@ Expected<Policy> policy_of(const service::Config& config) {
 
 Expected<Pose> pose_of(const service::Config& config, const std::string& key) {
   const std::vector<double> v = config.numbers(key);
-  if (v.size() != 7) return wrong_use("needs seven numbers: x y z, then w x y z", key);
+  if (v.size() != 7)
+    return wrong_use("needs seven numbers: x y z in m, then the quaternion w x y z", key);
   auto X = checked_pose({v[0], v[1], v[2]}, {v[3], v[4], v[5], v[6]});
   if (!X) return wrong_use(X.error().what, key);
   return X;

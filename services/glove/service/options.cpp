@@ -45,7 +45,8 @@ Expected<DeviceOptions> device_options(const service::Config& config) {
   DeviceOptions options;
   const std::vector<double>& n = config.numbers("tracker.X_WT");
   if (n.size() != 7)
-    return fail("needs seven numbers: x y z, then w x y z", "tracker.X_WT", "see deploy/lab.toml");
+    return fail("needs seven numbers: x y z in m, then the quaternion w x y z", "tracker.X_WT",
+                "see deploy/lab.toml");
   const auto X_WT = checked_pose({n[0], n[1], n[2]}, Eigen::Quaterniond(n[3], n[4], n[5], n[6]));
   if (!X_WT) return fail(X_WT.error().what, "tracker.X_WT", "see deploy/lab.toml");
   options.X_WT = *X_WT;

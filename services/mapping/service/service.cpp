@@ -326,7 +326,7 @@ class Service::Topics {
 Expected<Service::Known> Service::Known::load(service::Shell& shell) {
   const service::Config& config = shell.config();
   const std::string& kind = config.text("mapping.hand");
-  if (kind.empty()) return wrong_use("is no hand", "mapping.hand", model::hand_hint());
+  if (kind.empty()) return wrong_use("names no hand", "mapping.hand", model::hand_hint());
   const auto folder = model::hand_directory(kind), files = model::hand_files(folder);
   auto hand = model::HandModel::load(files);
   if (!hand) return tl::unexpected(hand.error());
@@ -335,7 +335,8 @@ Expected<Service::Known> Service::Known::load(service::Shell& shell) {
     known.name = model::mirror_name(hand->name());
     const auto& X_WT = config.numbers("tracker.X_WT");
     if (X_WT.size() != 7)
-      return wrong_use("needs seven numbers: x y z, then w x y z", "tracker.X_WT");
+      return wrong_use("needs seven numbers: x y z in m, then the quaternion w x y z",
+                       "tracker.X_WT");
     known.mirror.emplace(X_WT[0]);
   }
   const std::filesystem::path file = config.path("mapping.model");

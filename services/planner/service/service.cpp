@@ -202,7 +202,7 @@ Expected<std::unique_ptr<Service>> Service::create(service::Shell& shell) {
   const service::Config& config = shell.config();
   std::string kind = config.text("mapping.hand");
   if (kind.empty()) kind = config.text("simulation.hand");
-  if (kind.empty()) return wrong_use("is no hand", "mapping.hand", model::hand_hint());
+  if (kind.empty()) return wrong_use("names no hand", "mapping.hand", model::hand_hint());
   const auto folder = model::hand_directory(kind);
   auto hand = model::HandModel::load(folder);
   if (!hand) return tl::unexpected(hand.error());

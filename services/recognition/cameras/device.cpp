@@ -38,7 +38,7 @@ class Device final : public Camera {
       capture_.release();
     }
     if (capture_.isOpened()) return {};
-    return fail("no camera answers", options_.path,
+    return fail("no camera answers", "device " + options_.path,
                 "is it plugged in, and are you in the group video?");
   }
 

@@ -21,7 +21,8 @@ Expected<CameraModel> configured_camera(const service::Config& config) {
   if (focal.size() != 2) return wrong("camera.focal", "needs two numbers");
   if (centre.size() != 2) return wrong("camera.centre", "needs two numbers");
   if (distortion.size() != 5) return wrong("camera.distortion", "needs five numbers");
-  if (X.size() != 7) return wrong("camera.X_WC", "needs seven numbers");
+  if (X.size() != 7)
+    return wrong("camera.X_WC", "needs seven numbers: x y z in m, then the quaternion w x y z");
   camera.focal = {focal[0], focal[1]};
   camera.centre = {centre[0], centre[1]};
   std::copy(distortion.begin(), distortion.end(), camera.distortion.begin());

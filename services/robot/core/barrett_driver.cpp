@@ -54,7 +54,8 @@ Expected<std::unique_ptr<robot::Driver>> create(const model::HandModel& hand,
     return wrong_use("'" + hand.name() + "' is no BarrettHand", "robot.hand", "give barrett");
   constexpr std::array bauds{600, 1200, 2400, 4800, 9600, 19200, 38400};
   if (std::find(bauds.begin(), bauds.end(), options.baud) == bauds.end())
-    return wrong_use("the hand knows 600 to 38400 bits per second", "robot.baud");
+    return wrong_use("is no rate of this hand", "robot.baud = " + std::to_string(options.baud),
+                     "600, 1200, 2400, 4800, 9600, 19200 or 38400");
   return std::make_unique<Driver>(hand, options);
 }
 

@@ -39,7 +39,8 @@ Expected<Connection> connection_of(const service::Config& config) {
     connection.port = nodes->controller;
     connection.open = nodes_channel(*nodes);
   } else if (connection.port.empty()) {
-    return wrong_use("is no port", "robot.port", "give /dev/ttyUSB0 or where an emulator is");
+    return wrong_use("names no port", "robot.port",
+                     "as /dev/ttyUSB0, or the one that `prehend robot emulate` prints");
   } else {
     connection.open = serial_channel(connection.port, speed);
   }

@@ -35,7 +35,8 @@ std::string advice(Phase phase, const std::string& trouble) {
 
 Expected<std::unique_ptr<Service>> Service::create(service::Shell& shell) {
   if (shell.lockstep())
-    return wrong_use("a robot keeps its own time", "lab.lockstep", "replay into the simulation");
+    return wrong_use("a robot cannot wait for the others", "lab.lockstep",
+                     "set it to false, or start prehend-simulation in its place");
   auto connection = connection_of(shell.config());
   if (!connection) return tl::unexpected(connection.error());
   std::unique_ptr<Service> made(new Service(shell, std::move(*connection)));

@@ -114,8 +114,9 @@ class SideBySide {
     if (!led_since_ || now - *led_since_ < settling) return {};
     if (!twin_ || now - twin_->heard > fresh) return {};
     if (state.model().to_string() != twin_->state.model().to_string())
-      return wrong_use("is another hand, " + twin_->state.model().to_string(), arguments_.twin,
-                       "simulate " + state.model().to_string());
+      return wrong_use("stands for " + twin_->state.model().to_string() + ", the robot is " +
+                           state.model().to_string(),
+                       arguments_.twin, "set simulation.hand = " + state.model().to_string());
     if (!hand_) {
       auto loaded =
           model::named_hand(state.model().to_string(), told_).and_then(model::HandModel::load);

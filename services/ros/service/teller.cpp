@@ -37,7 +37,8 @@ constexpr Told told_topics[] = {{"joint_states", "sensor_msgs/JointState", false
 
 Expected<Pose> pose_of(const std::vector<double>& v) {
   const char* key = "camera.X_WC";
-  if (v.size() != 7) return wrong_use("needs seven numbers: x y z, then w x y z", key);
+  if (v.size() != 7)
+    return wrong_use("needs seven numbers: x y z in m, then the quaternion w x y z", key);
   auto X = checked_pose({v[0], v[1], v[2]}, {v[3], v[4], v[5], v[6]});
   if (!X) return wrong_use(X.error().what, key);
   return X;

@@ -48,7 +48,7 @@ Expected<std::deque<Service::Hand>> Service::hands_of(const service::Config& con
     const std::string name = entry.substr(0, colon);
     const std::string kind = colon == std::string::npos ? "" : entry.substr(colon + 1);
     if (kind.empty())
-      return wrong_use("is no hand", entries.size() > 1 ? key + (": " + entry) : key,
+      return wrong_use("names no hand", entries.size() > 1 ? key + (": " + entry) : key,
                        model::hand_hint());
     for (const Hand& other : hands)
       if (other.name == name)

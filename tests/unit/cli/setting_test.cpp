@@ -86,7 +86,7 @@ TEST(Setting, WhatNoHandHoldsAndWhereNothingIsWrittenAreNamed) {
   const auto scene = make_setting(options(1));
   ASSERT_TRUE(scene);
   EXPECT_EQ(write_setting(*scene, "/nowhere/scene.toml").error().message(),
-            "/nowhere/scene.toml: cannot be written (is there room, and may you?)");
+            "/nowhere/scene.toml: cannot be written (is there room, and is the folder writable?)");
   SettingOptions wrong = options(1);
   wrong.catalogue =
       std::filesystem::path(testing::TempDir()) / (std::to_string(getpid()) + ".toml");

@@ -42,7 +42,8 @@ TEST(ConsoleSetup, IsRefusedByItsKeys) {
         {token("with a space in the line"), "/24: its first line is no token (16 or more letters"},
         {"console.port=65536", "console.port: is no port (0 to 65535)"},
         {"console.port=-1", "console.port: is no port (0 to 65535)"},
-        {"tracker.X_WT=[0, 0, 0]", "tracker.X_WT: needs seven numbers: x y z, then w x y z"},
+        {"tracker.X_WT=[0, 0, 0]",
+         "tracker.X_WT: needs seven numbers: x y z in m, then the quaternion w x y z"},
         {"tracker.X_WT=[1, 1, 1, 0, 0, 0, 0]", "tracker.X_WT: rotation has zero norm"},
         {"glove.port=9870", "glove.port = 9870: cannot be sent to (give HOST:PORT)"}})
     EXPECT_THAT(setup_said(setting), ::testing::HasSubstr(words)) << setting;

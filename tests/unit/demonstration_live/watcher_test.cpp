@@ -218,7 +218,7 @@ TEST(Person, TakesWhatIsThereAndFitsAHand) {
   EXPECT_THAT(said(cellar, catalogue(), {talc_to(0, 0)}),
               HasSubstr("'Barrel' is not in the catalogue"));
   EXPECT_THAT(said(cellar, model::Catalogue({barrel}), {{"Barrel", {0, 0, 0.5}, 0}}),
-              HasSubstr("no hand can grasp 'Barrel'"));
+              HasSubstr("'Barrel' is too large for the person's hand"));
 }
 
 TEST(Watcher, KeepsNoMoreThanTheLongestDemonstration) {

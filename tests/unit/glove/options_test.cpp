@@ -29,7 +29,8 @@ TEST(GloveOptions, AreRefusedByTheirKeys) {
   ASSERT_TRUE(write_file(file, "short\n"));
   for (const auto& [setting, words] :
        {std::pair<std::string, std::string>("glove.rate=100", "taken"),
-        {"tracker.X_WT=[0, 0, 0]", "tracker.X_WT: needs seven numbers: x y z, then w x y z (see"},
+        {"tracker.X_WT=[0, 0, 0]",
+         "tracker.X_WT: needs seven numbers: x y z in m, then the quaternion w x y z (see"},
         {"glove.feedback_force=-1", "glove.feedback_force: is negative (N; 0: no finger is held"},
         {"glove.hand_scale=2", "glove.hand_scale: must lie in 0.7 to 1.4 (1 is an average adult)"},
         {"glove.token_file=/nowhere/token",

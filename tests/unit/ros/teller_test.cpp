@@ -10,7 +10,8 @@ namespace {
 
 TEST(Teller, NeedsThePoseOfTheCamera) {
   for (const auto& [pose, words] :
-       {std::pair("[0, 0, 0]", "camera.X_WC: needs seven numbers: x y z, then w x y z"),
+       {std::pair("[0, 0, 0]",
+                  "camera.X_WC: needs seven numbers: x y z in m, then the quaternion w x y z"),
         {"[1, 1, 1, 0, 0, 0, 0]", "camera.X_WC: rotation has zero norm"}}) {
     const auto config = service::Config::load(test::in_sources("deploy/lab.toml"),
                                               {std::string("camera.X_WC=") + pose});

@@ -32,7 +32,7 @@ Expected<void> read(const std::filesystem::path& file, Found& found) {
   if (const auto size = std::filesystem::file_size(file, code); !code && size > max_size)
     return fail("is too large for a log", file.string(), "more than 256 MB");
   std::ifstream stream(file);
-  if (!stream) return fail("cannot be read", file.string(), "is it there, and may you?");
+  if (!stream) return fail("cannot be read", file.string(), "is it there, and may you read it?");
   for (std::string line; std::getline(stream, line);) {
     if (line.empty()) continue;
     auto record = audit::parse(line);

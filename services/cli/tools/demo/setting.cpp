@@ -58,7 +58,8 @@ Expected<void> write_setting(const model::Scene& scene, const std::filesystem::p
   std::ofstream stream(file);
   stream << model::to_toml(scene);
   stream.flush();
-  if (!stream) return fail("cannot be written", file.string(), "is there room, and may you?");
+  if (!stream)
+    return fail("cannot be written", file.string(), "is there room, and is the folder writable?");
   return {};
 }
 

@@ -59,7 +59,9 @@ Expected<void> Person::take(const Transfer& transfer, Random& random) {
   const auto number = static_cast<std::size_t>(found - things_.begin());
   const Pose X_WO = objects(now_)[number].X_WO;
   const auto X_OG = model::human_grasp(found->shape, X_WO, demonstrator_);
-  if (!X_OG) return fail("no hand can grasp '" + transfer.object + "'", "person", "choose another");
+  if (!X_OG)
+    return fail("'" + transfer.object + "' is too large for the person's hand", "person",
+                "choose another object");
   const Pose X_WG = X_WO * *X_OG, X_WH = X_WG * hand_.X_HG().inverse();
   const auto closure = hand_.close_on(found->shape, X_WH.inverse() * X_WO);
   const Vector3d approach = X_WG.linear().col(2), up = Vector3d::UnitZ();

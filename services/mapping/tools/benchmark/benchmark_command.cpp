@@ -285,7 +285,7 @@ Expected<int> judge_all(const Arguments& arguments) {
   const auto lab = arguments.lab.load();
   if (!lab) return tl::unexpected(lab.error());
   const std::string name = arguments.hand.empty() ? lab->text("mapping.hand") : arguments.hand;
-  if (name.empty()) return wrong_use("is no hand", "--hand", model::hand_hint());
+  if (name.empty()) return wrong_use("names no hand", "--hand", model::hand_hint());
   const auto judged = load(arguments, name);
   if (!judged) return tl::unexpected(judged.error());
   if (!arguments.write_to.empty()) {

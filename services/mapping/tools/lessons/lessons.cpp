@@ -263,9 +263,10 @@ Lessons::~Lessons() = default;
 
 Expected<std::unique_ptr<Lessons>> Lessons::create(service::Shell& shell) {
   const service::Config& config = shell.config();
-  if (shell.lockstep()) return wrong_use("the teacher needs a lab that is live", "lab.lockstep");
+  if (shell.lockstep())
+    return wrong_use("nobody is taught in lockstep", "lab.lockstep", "set it to false");
   const std::string& kind = config.text("mapping.hand");
-  if (kind.empty()) return wrong_use("is no hand", "mapping.hand", model::hand_hint());
+  if (kind.empty()) return wrong_use("names no hand", "mapping.hand", model::hand_hint());
   auto hand = model::HandModel::load(model::hand_directory(kind));
   if (!hand) return tl::unexpected(hand.error());
   const std::int64_t users = config.integer("teacher.users");

@@ -96,7 +96,7 @@ int run(Arguments arguments) {
     arguments.hand = config->text("mapping.hand");
   }
   if (arguments.hand.empty())
-    return service::complain({"is no hand", "--hand", model::hand_hint()}, exit_wrong_use);
+    return service::complain({"names no hand", "--hand", model::hand_hint()}, exit_wrong_use);
   const auto hand = model::HandModel::load(model::hand_directory(arguments.hand));
   if (!hand) return broken(hand.error());
   const ModelPlaces places = model_places(arguments.hand);

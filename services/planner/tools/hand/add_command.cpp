@@ -39,7 +39,8 @@ Expected<void> write_folder(const MadeHand& hand, const std::filesystem::path& f
        {std::pair("hand.urdf", &hand.urdf), std::pair("hand.toml", &hand.toml)}) {
     std::ofstream stream(folder / name, std::ios::binary);
     if (!(stream << *text) || !stream.flush())
-      return fail("cannot be written", (folder / name).string(), "is there room, and may you?");
+      return fail("cannot be written", (folder / name).string(),
+                  "is there room, and is the folder writable?");
   }
   return {};
 }
@@ -134,8 +135,8 @@ Expected<void> note_fingers(Robot& robot, const std::vector<std::string>& finger
     const std::size_t equals = told.find('=');
     const auto finger = model::finger_from_string(told.substr(0, equals));
     if (equals == std::string::npos || !finger)
-      return fail("says no finger", "--fingers " + told,
-                  "FINGER=LINK, with thumb, index, middle, ring or little");
+      return fail("is not FINGER=LINK", "--fingers " + told,
+                  "fingers are thumb, index, middle, ring and little");
     if (!robot.find_link(told.substr(equals + 1)))
       return fail("there is no such link", "--fingers " + told, "name a link of the file");
     robot.human[told.substr(equals + 1)] = *finger;

@@ -38,7 +38,7 @@ Expected<void> is_there(const path& file) {
   constexpr std::string_view pointer = "version https://git-lfs.github.com/spec/";
   std::string beginning(pointer.size(), ' ');
   std::ifstream stream(file, std::ios::binary);
-  if (!stream) return fail("cannot be read", file.string(), "may you?");
+  if (!stream) return fail("cannot be read", file.string(), "may you read it?");
   stream.read(beginning.data(), static_cast<std::streamsize>(beginning.size()));
   if (stream.gcount() == 0) return fail("is empty", file.string(), "fetch the file again");
   if (beginning == pointer)

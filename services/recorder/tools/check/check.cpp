@@ -148,7 +148,8 @@ class Run {
       writes_.insert(service.writes.begin(), service.writes.end());
     }
     if (names_.empty())
-      return fail("holds no answer of a service", options_.file.string(), "what was recorded?");
+      return fail("holds nothing that a service answered", options_.file.string(),
+                  "record one that can be checked as well, as mapping or simulation");
     return {};
   }
   bool feeds(const std::string& topic) const {

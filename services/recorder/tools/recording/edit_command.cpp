@@ -77,8 +77,10 @@ int run(const EditArguments& arguments) {
                      "give seconds after the recording's start"},
                     exit_wrong_use);
   if (arguments.from_s > 0 && end >= start && moment(start, arguments.from_s) > end)
-    log::warning(Error{fmt::format("is {:.3f} s long", static_cast<double>(end - start) * 1e-9),
-                       arguments.files.front(), "the part holds only what still stands then"});
+    log::warning(Error{
+        fmt::format("ends after {:.3f} s, before --from", static_cast<double>(end - start) * 1e-9),
+        arguments.files.front(),
+        "the part holds only the last words of what stays true, as lab/scene"});
   CopyOptions options{.progress = progress_bar()};
   options.writer.compression = recording::mcap::compression_named(
                                    arguments.compression == "none" ? "" : arguments.compression)

@@ -86,8 +86,9 @@ class Export {
     for (const auto& [topic, left] : left_out_)
       log::warning("{}: {} messages are left out: {}", printable(topic), left.count, left.why);
     if (tables_.empty())
-      return complain({"no message could be exported", arguments_.file,
-                       "prehend recording info FILE says what it holds"},
+      return complain({left_out_.empty() ? "holds no message of what is asked for"
+                                         : "no message could be exported, for the reasons above",
+                       arguments_.file, "prehend recording info FILE says what it holds"},
                       exit_no);
     return damaged || !left_out_.empty() ? exit_no : exit_done;
   }

@@ -44,9 +44,9 @@ dds::GuidPrefix node_of(const dds::RawSample& sample) {
 Expected<std::unique_ptr<Leader>> Leader::create(service::Shell& shell) {
   const service::Config& config = shell.config();
   if (shell.lockstep())
-    return wrong_use("nodes of ROS 2 lead in a lab that is live", "lab.lockstep", "leave it out");
+    return wrong_use("nodes of ROS 2 cannot lead in lockstep", "lab.lockstep", "set it to false");
   const std::string& kind = config.text("mapping.hand");
-  if (kind.empty()) return wrong_use("is no hand", "mapping.hand", model::hand_hint());
+  if (kind.empty()) return wrong_use("names no hand", "mapping.hand", model::hand_hint());
   auto hand = model::HandModel::load(model::hand_directory(kind));
   if (!hand) return tl::unexpected(hand.error());
   std::unique_ptr<Leader> made(new Leader(shell, std::move(*hand)));
