@@ -214,7 +214,8 @@ Expected<fdds::DomainParticipantQos> participant_qos(const Network& network,
   auto qos = load(network.profile);
   if (!qos) return qos;
   if (const std::string wrong = violation(network.profile, *qos); !wrong.empty())
-    return fail(wrong, fmt::format("{}.xml", network.profile), "deploy/dds/README.md tells what must stay");
+    return fail(wrong, fmt::format("{}.xml", network.profile),
+                "deploy/dds/README.md tells what must stay");
   if (const auto up = need_interface(network.profile); !up) return tl::unexpected(up.error());
   // Each participant changes its own: the descriptors are shared otherwise.
   for (auto& given : qos->transport().user_transports) {
