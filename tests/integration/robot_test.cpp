@@ -439,7 +439,8 @@ TEST_F(Robot, WrongUseIsOneLine) {
   };
   refused({}, "robot.port: names no port");
   refused(settings({"robot.device=nothing"}), "there is no driver");
-  refused({"robot.port=/dev/null", "robot.baud=1234"}, "bits per second");
+  refused({"robot.port=/dev/null", "robot.baud=1234"},
+          "robot.baud = 1234: is no rate of this hand");
   refused({"lab.lockstep=true"}, "lab.lockstep: a robot cannot wait for the others (set it");
   const Answer nobody =
       run("prehend-robot-tool", with_lab({"check", "--set", "robot.port=/nowhere"}), 30);
