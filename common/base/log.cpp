@@ -18,7 +18,8 @@ using spdlog::level::level_enum;
 constexpr const char* text_pattern = "%Y-%m-%dT%H:%M:%S.%eZ %^%l%$ %v";
 constexpr const char* json_pattern = R"({"time":"%Y-%m-%dT%H:%M:%S.%eZ","level":"%l",%v})";
 
-// Neither is destroyed: a thread of Fast DDS may still write while the program ends.
+// Logger and setup are never destroyed: a thread of Fast DDS may still write while the program
+// ends.
 
 spdlog::logger& logger() {
   static const auto& instance = *new std::shared_ptr<spdlog::logger>([] {

@@ -80,7 +80,7 @@ int run(const EditArguments& arguments) {
     log::warning(Error{
         fmt::format("ends after {:.3f} s, before --from", static_cast<double>(end - start) * 1e-9),
         arguments.files.front(),
-        "the part holds only the last words of what stays true, as lab/scene"});
+        "the part holds only the last words of what stays true, as scene/state"});
   CopyOptions options{.progress = progress_bar()};
   options.writer.compression = recording::mcap::compression_named(
                                    arguments.compression == "none" ? "" : arguments.compression)
