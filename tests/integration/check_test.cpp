@@ -251,7 +251,7 @@ TEST_F(Check, WhatCannotBeFoundOutIsNoVerdict) {
                 20)
                 .exit_code,
             0);
-  expect_broken(check(file("inputs.mcap")), "no answer of a service");
+  expect_broken(check(file("inputs.mcap")), "nothing that a service answered");
   expect_broken(check(samples + "/direct-grasp.mcap", {"--service", "recognition"}),
                 "no answer of these services");
   // A message of 1970 among those of today used to be waited for in steps of 10 ms.
