@@ -141,31 +141,20 @@ TEST(RawPictures, PairsAndSquaresOfPixelsShowTheColours) {
     EXPECT_LT(difference(padded(yuyv, name), rgb), 4);
 }
 
-TEST(RawPictures, DepthAndUnknownOnesAreNamed) {
-  for (const char* encoding : {"16UC1", "32FC1", "nv21", ""}) {
-    Image image = padded(shades(), encoding);
-    const auto file = file_of(image);
-    ASSERT_FALSE(file) << encoding;
-    EXPECT_THAT(file.error().message(), HasSubstr(std::string("«") + encoding + "»"));
-  }
-}
-
 TEST(RawPictures, WhatIsNotThereIsNotRead) {
-  const Image sound = padded(shades(), "rgb8");
-  ASSERT_TRUE(file_of(sound));
-  const auto refused = [&](auto change) {
-    Image image = sound;
+  const auto why = [](auto change) {
+    Image image = padded(shades(), "rgb8");
     change(image);
-    return !file_of(image);
+    const auto file = file_of(image);
+    return file ? "taken" : file.error().what;
   };
-  EXPECT_TRUE(refused([](Image& i) { i.data.pop_back(); }));
-  EXPECT_TRUE(refused([](Image& i) { i.data.clear(); }));
-  EXPECT_TRUE(refused([](Image& i) { i.width = 0; }));
-  EXPECT_TRUE(refused([](Image& i) { i.height = 1e9; }));
-  EXPECT_TRUE(refused([](Image& i) { i.height = -1; }));
-  EXPECT_TRUE(refused([](Image& i) { i.step = 95; }));
-  EXPECT_TRUE(refused([](Image& i) { i.step = std::nan(""); }));
-  EXPECT_TRUE(refused([](Image& i) { i.encoding = "bayer_rggb8", i.width = 31; }));
+  const std::string bytes = "has not the bytes that its width, height and step tell";
+  EXPECT_EQ(why([](Image& i) { i.data.clear(); }), "is no picture");
+  EXPECT_EQ(why([](Image& i) { i.data.pop_back(); }), bytes);
+  EXPECT_EQ(why([](Image& i) { i.height = 1e19; }), bytes);
+  EXPECT_EQ(why([](Image& i) { i.height = -1; }), bytes);
+  EXPECT_EQ(why([](Image& i) { i.step = std::nan(""); }), bytes);
+  EXPECT_THAT(why([](Image& i) { i.encoding = "16UC1"; }), HasSubstr("«16UC1»"));
 }
 
 TEST(RawPictures, WhateverIsBesideTheBytesIsRefusedOrShown) {

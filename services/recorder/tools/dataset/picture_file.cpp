@@ -1,85 +1,77 @@
 #include "services/recorder/tools/dataset/picture_file.hpp"
 
-#include <fmt/format.h>
-
-#include <algorithm>
-#include <array>
-
-#include "common/base/printable.hpp"
+#include "common/ros2/pixels.hpp"
 #include "services/recorder/tools/dataset/ffmpeg.hpp"
 #include "services/recorder/tools/dataset/message.hpp"
 
 namespace prehend::recorder::dataset {
 namespace {
 
-constexpr double max_pixels = 16384;  // along a side
+AVPixelFormat format_of(ros2::Pixels pixels) {
+  using enum ros2::Pixels;
+  switch (pixels) {
+    case rgb:
+      return AV_PIX_FMT_RGB24;
+    case bgr:
+      return AV_PIX_FMT_BGR24;
+    case rgba:
+      return AV_PIX_FMT_RGBA;
+    case bgra:
+      return AV_PIX_FMT_BGRA;
+    case grey:
+      return AV_PIX_FMT_GRAY8;
+    case grey_low_first:
+      return AV_PIX_FMT_GRAY16LE;
+    case grey_high_first:
+      return AV_PIX_FMT_GRAY16BE;
+    case mosaic_rggb:
+      return AV_PIX_FMT_BAYER_RGGB8;
+    case mosaic_bggr:
+      return AV_PIX_FMT_BAYER_BGGR8;
+    case mosaic_gbrg:
+      return AV_PIX_FMT_BAYER_GBRG8;
+    case mosaic_grbg:
+      return AV_PIX_FMT_BAYER_GRBG8;
+    case uyvy:
+      return AV_PIX_FMT_UYVY422;
+    case yuyv:
+      return AV_PIX_FMT_YUYV422;
+  }
+  return AV_PIX_FMT_NONE;
+}
 
-/// One that ROS names: its bytes a pixel, and whether pixels come in pairs or in squares.
-struct Encoding {
-  const char* name;
-  int bytes;
-  bool even;
-  AVPixelFormat little, big;
-};
-constexpr std::array<Encoding, 16> encodings{{
-    {"rgb8", 3, false, AV_PIX_FMT_RGB24, AV_PIX_FMT_RGB24},
-    {"bgr8", 3, false, AV_PIX_FMT_BGR24, AV_PIX_FMT_BGR24},
-    {"8UC3", 3, false, AV_PIX_FMT_BGR24, AV_PIX_FMT_BGR24},
-    {"rgba8", 4, false, AV_PIX_FMT_RGBA, AV_PIX_FMT_RGBA},
-    {"bgra8", 4, false, AV_PIX_FMT_BGRA, AV_PIX_FMT_BGRA},
-    {"mono8", 1, false, AV_PIX_FMT_GRAY8, AV_PIX_FMT_GRAY8},
-    {"8UC1", 1, false, AV_PIX_FMT_GRAY8, AV_PIX_FMT_GRAY8},
-    {"mono16", 2, false, AV_PIX_FMT_GRAY16LE, AV_PIX_FMT_GRAY16BE},
-    {"bayer_rggb8", 1, true, AV_PIX_FMT_BAYER_RGGB8, AV_PIX_FMT_BAYER_RGGB8},
-    {"bayer_bggr8", 1, true, AV_PIX_FMT_BAYER_BGGR8, AV_PIX_FMT_BAYER_BGGR8},
-    {"bayer_gbrg8", 1, true, AV_PIX_FMT_BAYER_GBRG8, AV_PIX_FMT_BAYER_GBRG8},
-    {"bayer_grbg8", 1, true, AV_PIX_FMT_BAYER_GRBG8, AV_PIX_FMT_BAYER_GRBG8},
-    {"yuv422", 2, true, AV_PIX_FMT_UYVY422, AV_PIX_FMT_UYVY422},
-    {"uyvy", 2, true, AV_PIX_FMT_UYVY422, AV_PIX_FMT_UYVY422},
-    {"yuv422_yuy2", 2, true, AV_PIX_FMT_YUYV422, AV_PIX_FMT_YUYV422},
-    {"yuyv", 2, true, AV_PIX_FMT_YUYV422, AV_PIX_FMT_YUYV422},
-}};
-
-struct Raw {
-  AVPixelFormat format;
-  int width, height, step;  // px, px, bytes from row to row
-};
-
-/// What stands beside the bytes, checked against how many there are.
-Expected<Raw> raw_beside(const Value& holder, std::size_t bytes) {
-  const std::string name = text(holder, "encoding");
-  const auto known = std::ranges::find(encodings, name, &Encoding::name);
-  if (known == encodings.end())
-    return fail(fmt::format("has the encoding «{}», which is no picture", printable(name)));
-  const auto width = number(holder, "width"), height = number(holder, "height");
-  const auto step = number(holder, "step");
-  const auto is_side = [&](const std::optional<double>& side) {
-    return side && *side >= (known->even ? 2 : 1) && *side <= max_pixels &&
-           (!known->even || static_cast<int>(*side) % 2 == 0);
+/// The picture whose bytes are a field of the holder; 0 where a number is missing or none.
+ros2::RawPicture raw_of(const Value& holder, std::vector<std::uint8_t> bytes) {
+  const auto count = [&](const char* field) {
+    const double told = number(holder, field).value_or(0);
+    return told >= 0 && told <= 0xffffffff ? static_cast<std::uint32_t>(told) : 0;
   };
-  if (!is_side(width) || !is_side(height) || !step || *step < *width * known->bytes ||
-      *step > 16 * max_pixels || *step * *height > static_cast<double>(bytes))
-    return fail("has not the bytes that its width, height and step tell");
-  const bool big = flag(holder, "is_bigendian") || number(holder, "is_bigendian").value_or(0) != 0;
-  return Raw{big ? known->big : known->little, static_cast<int>(*width), static_cast<int>(*height),
-             static_cast<int>(*step)};
+  ros2::RawPicture made;
+  made.encoding = text(holder, "encoding");
+  made.width = count("width");
+  made.height = count("height");
+  made.step = count("step");
+  made.big_endian = flag(holder, "is_bigendian") || count("is_bigendian") != 0;
+  made.data = std::move(bytes);
+  return made;
 }
 
 /// Nothing where the library has no memory.
-Ffmpeg<AVFrame> in_colours(const Raw& raw, const std::vector<std::uint8_t>& bytes) {
+Ffmpeg<AVFrame> in_colours(ros2::RawPicture raw, AVPixelFormat format) {
+  const int width = static_cast<int>(raw.width), height = static_cast<int>(raw.height);
+  raw.data.resize(raw.data.size() + AV_INPUT_BUFFER_PADDING_SIZE);  // it reads past the end
   Ffmpeg<AVFrame> frame(av_frame_alloc());
   if (!frame) return nullptr;
   frame->format = AV_PIX_FMT_RGB24;
-  frame->width = raw.width;
-  frame->height = raw.height;
-  const Ffmpeg<SwsContext> scaler(
-      sws_getContext(raw.width, raw.height, raw.format, raw.width, raw.height, AV_PIX_FMT_RGB24,
-                     SWS_POINT | SWS_ACCURATE_RND, nullptr, nullptr, nullptr));
-  const std::uint8_t* planes[] = {bytes.data(), nullptr, nullptr, nullptr};
-  const int steps[] = {raw.step, 0, 0, 0};
+  frame->width = width;
+  frame->height = height;
+  const Ffmpeg<SwsContext> scaler(sws_getContext(width, height, format, width, height,
+                                                 AV_PIX_FMT_RGB24, SWS_POINT | SWS_ACCURATE_RND,
+                                                 nullptr, nullptr, nullptr));
+  const std::uint8_t* planes[] = {raw.data.data(), nullptr, nullptr, nullptr};
+  const int steps[] = {static_cast<int>(raw.step), 0, 0, 0};
   if (!scaler || av_frame_get_buffer(frame.get(), 0) < 0 ||
-      sws_scale(scaler.get(), planes, steps, 0, raw.height, frame->data, frame->linesize) !=
-          raw.height)
+      sws_scale(scaler.get(), planes, steps, 0, height, frame->data, frame->linesize) != height)
     return nullptr;
   return frame;
 }
@@ -110,10 +102,10 @@ Expected<std::vector<std::uint8_t>> picture_file(const Value& message, const Fie
   if (!bytes || bytes->empty()) return fail("is no picture");
   const Value* holder = field.holder_in(message);
   if (!holder || !holder->find("step")) return std::move(*bytes);
-  const auto raw = raw_beside(*holder, bytes->size());
-  if (!raw) return tl::unexpected(raw.error());
-  bytes->resize(bytes->size() + AV_INPUT_BUFFER_PADDING_SIZE);  // the library reads past the end
-  const auto frame = in_colours(*raw, *bytes);
+  ros2::RawPicture raw = raw_of(*holder, std::move(*bytes));
+  const auto pixels = ros2::pixels_of(raw);
+  if (!pixels) return tl::unexpected(pixels.error());
+  const auto frame = in_colours(std::move(raw), format_of(*pixels));
   auto png = frame ? as_png(*frame) : std::nullopt;
   if (!png) return fail("cannot be made a png");
   return std::move(*png);

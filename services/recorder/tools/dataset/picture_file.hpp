@@ -9,9 +9,8 @@
 namespace prehend::recorder::dataset {
 
 /// A picture of a message, as the file that a picture decoder reads. The field has its bytes.
-/// Where `step` stands beside them, as in sensor_msgs/Image, they are raw, and made a png:
-/// rgb8, bgr8, rgba8, bgra8, mono8, mono16, 8UC1, 8UC3 (blue first), bayer_*8 and both yuv422.
-/// Depth is refused: it is no picture.
+/// Where `step` stands beside them, as in sensor_msgs/Image, they are raw, and made a png. Refused:
+/// what `ros2::pixels_of` refuses.
 Expected<std::vector<std::uint8_t>> picture_file(const recording::types::Value& message,
                                                  const FieldPath& field);
 
