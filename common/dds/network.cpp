@@ -44,7 +44,8 @@ constexpr std::pair<const char*, const char*> variables[] = {
 /// A profile as it stands in its file. Each file is read once.
 Expected<fdds::DomainParticipantQos> load(const std::string& profile) {
   const std::string file = (share_directory() / "dds" / (profile + ".xml")).string();
-  const std::string hint = "put back the file from deploy/dds, or set lab.network to another";
+  const std::string hint =
+      "put it right, put back the file from deploy/dds, or choose another lab.network";
   static std::mutex mutex;
   static std::map<std::string, fdds::DomainParticipantQos> known;
   const std::scoped_lock lock(mutex);

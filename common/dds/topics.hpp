@@ -218,7 +218,7 @@ inline constexpr Topic<v1::OperatorConsentPubSubType> operator_consent{
      .content = Content::order,
      .rate = "50 Hz while asked"}};
 
-inline constexpr Topic<v1::LabClockPubSubType> lab_clock{
+inline constexpr Topic<v2::LabClockPubSubType> lab_clock{
     {.name = "lab/clock",
      .qos = {.writer_depth = 0, .reader_depth = 0},
      .writers = Role::replayer,
@@ -242,6 +242,14 @@ inline constexpr Topic<v1::ClockBeaconPubSubType> lab_beacon{{.name = "lab/beaco
                                                               .rate = "1 Hz",
                                                               .remark = "not in lockstep"}};
 
+inline constexpr Topic<v1::ServiceSettingsPubSubType> service_settings{
+    {.name = "service/settings",
+     .qos = {.transient_local = true},
+     .writers = services,
+     .open = true,
+     .content = Content::process,
+     .rate = "once"}};
+
 inline constexpr Topic<v1::ServiceStatusPubSubType> service_status{
     {.name = "service/status",
      .qos = {.transient_local = true},
@@ -259,7 +267,8 @@ inline constexpr std::tuple typed_topics{
     arm_state,           scene_state,           object_state,     grasp_report,
     demonstration_grasp, demonstration_segment, task_model,       task_progress,
     mapping_training,    operator_command,      operator_reply,   operator_consent,
-    lab_clock,           lab_progress,          lab_beacon,       service_status};
+    lab_clock,           lab_progress,          lab_beacon,       service_settings,
+    service_status};
 
 template <class PubSub>
 inline constexpr bool is_listed = std::apply(

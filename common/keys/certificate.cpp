@@ -303,7 +303,7 @@ Expected<std::string> verified(std::string_view signed_text, std::string_view au
   // The authority itself must have signed: certificates that come along do not count.
   if (PKCS7_verify(read.get(), signers.get(), store->get(), content.get(), out.get(),
                    PKCS7_TEXT | PKCS7_NOINTERN | PKCS7_NOVERIFY) != 1)
-    return failed("is not what this authority signed");
+    return failed("was not signed by the authority of this lab");
   return text_of(out);
 }
 

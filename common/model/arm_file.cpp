@@ -32,7 +32,9 @@ Expected<ArmModel> arm_of(const HandTree& tree) {
   const std::size_t count = tree.joints.size();
   if (count < min_arm_joints || count > max_arm_joints)
     return fail("has " + std::to_string(count) + " joints that move; an arm has 6 or 7", {},
-                "fix or leave out the others; a hand is a model of its own");
+                count < min_arm_joints
+                    ? "is a joint «fixed» that should move, or the file a part of the arm?"
+                    : "make the others «fixed», or leave them out: a hand is a model of its own");
   for (std::size_t i = 0; i < count; ++i) {
     const HandJoint& joint = tree.joints[i];
     if (joint.kind != JointKind::revolute)

@@ -87,8 +87,8 @@ std::optional<gate::CommandGate::Stop> KeptStop::recall() const {
   const auto record =
       read_line(file_).and_then([](const auto& line) { return audit::parse(line); });
   if (record) return gate::CommandGate::Stop{record->who, record->what, record->time};
-  return gate::CommandGate::Stop{"a stop that was kept", "it cannot be read: " + file_.string(),
-                                 process_now()};
+  return gate::CommandGate::Stop{"a stop that was kept",
+                                 "its file cannot be read, " + file_.string(), process_now()};
 }
 
 Expected<void> KeptStop::keep(const gate::CommandGate::Stop& stop) const {

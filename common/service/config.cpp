@@ -192,9 +192,11 @@ Expected<Config> Config::load(const std::filesystem::path& file,
   const Values values{config.values_, config.given_};
   auto done = check_environment();
   if (done) done = set_from_file(values, file);
-  if (done) done = set_from_environment(values);
+  const Values over{config.values_, config.overridden_};
+  if (done) done = set_from_environment(over);
   for (const std::string& text : overrides)
-    if (done) done = set_from_override(values, text);
+    if (done) done = set_from_override(over, text);
+  config.given_.insert(config.overridden_.begin(), config.overridden_.end());
   if (!done) return tl::unexpected(done.error());
   return config;
 }
@@ -236,7 +238,9 @@ std::filesystem::path Config::path(std::string_view key) const {
   return path.is_absolute() ? path : directory_ / path;
 }
 
-std::map<std::string, std::string> Config::texts() const {
+namespace {
+
+std::string to_text(const Setting& setting) {
   struct ToText {
     std::string operator()(bool value) const { return value ? "true" : "false"; }
     std::string operator()(std::int64_t value) const { return std::to_string(value); }
@@ -249,9 +253,21 @@ std::map<std::string, std::string> Config::texts() const {
       return value.empty() ? "[]" : fmt::format("[\"{}\"]", fmt::join(value, "\", \""));
     }
   };
+  return std::visit(ToText{}, setting);
+}
+
+}  // namespace
+
+std::map<std::string, std::string> Config::texts() const {
   std::map<std::string, std::string> texts;
   for (const auto& [key, value] : values_)
-    if (key != "safety.deadman" || is_given(key)) texts.emplace(key, std::visit(ToText{}, value));
+    if (key != "safety.deadman" || is_given(key)) texts.emplace(key, to_text(value));
+  return texts;
+}
+
+std::map<std::string, std::string> Config::overridden() const {
+  std::map<std::string, std::string> texts;
+  for (const auto& key : overridden_) texts.emplace(key, to_text(values_.find(key)->second));
   return texts;
 }
 

@@ -52,10 +52,13 @@ class Config {
   /// day, can be given the same configuration. safety.deadman is there only where it was given: its
   /// default depends on the robot.
   std::map<std::string, std::string> texts() const;
+  /// The same of the keys that the environment and overrides have set: in what a process differs
+  /// from others with the same file.
+  std::map<std::string, std::string> overridden() const;
 
  private:
   std::map<std::string, Setting, std::less<>> values_;
-  std::set<std::string, std::less<>> given_;
+  std::set<std::string, std::less<>> given_, overridden_;
   std::filesystem::path directory_;
 };
 

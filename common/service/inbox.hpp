@@ -2,9 +2,12 @@
 
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <memory>
 #include <string_view>
 #include <vector>
+
+#include "common/dds/participant.hpp"
 
 namespace prehend::service {
 
@@ -12,15 +15,28 @@ namespace prehend::service {
 struct Arrival {
   std::int64_t stamp_ns = 0;
   std::function<void()> deliver;
-  std::uint64_t index = 0;  // counts the topic's samples as they arrive
+  dds::GuidPrefix writer{};    // its participant
+  std::uint64_t instance = 0;  // hash of its key
+  std::uint64_t index = 0;     // counts the writer's samples as they arrive; set by Input
 };
 
 /// What has come on a topic and is not handed over yet: live only before run(), in lockstep until
 /// due.
 struct Input {
+  struct Writer {
+    std::uint64_t first = 0;     // the instance that it wrote first
+    std::uint64_t received = 0;  // samples
+  };
+
   std::string_view topic;
   std::vector<Arrival> waiting;
-  std::uint64_t received = 0;
+  std::map<dds::GuidPrefix, Writer> writers;
+
+  void add(Arrival arrival);
+  std::uint64_t received_from(const dds::GuidPrefix& writer) const;
+  /// Orders arrivals of this topic by writer and sequence. Which writer is first depends on what
+  /// they write, not on who they are in this run.
+  void sort(std::vector<Arrival>& arrivals) const;
 };
 
 /// The inputs of a service. Not safe for use from several threads: the shell locks.
@@ -36,7 +52,7 @@ class Inbox {
   std::vector<std::unique_ptr<Input>> inputs_;
 };
 
-/// Hands over in the order (stamp, topic, sequence). `due` is sorted by topic and sequence.
+/// Hands over in order of the stamps, and equal ones as they stand in `due`.
 void deliver(std::vector<Arrival>& due);
 
 }  // namespace prehend::service

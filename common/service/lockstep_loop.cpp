@@ -1,5 +1,7 @@
 #include "common/service/lockstep_loop.hpp"
 
+#include <algorithm>
+#include <iterator>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -9,16 +11,20 @@
 namespace prehend::service {
 namespace {
 
-/// How many samples of the topic the clock has counted.
-std::uint64_t counted(const v1::LabClock& cycle, std::string_view topic) {
+/// How many samples of the topic the clock has counted of each writer.
+std::map<dds::GuidPrefix, std::uint64_t> counted(const v2::LabClock& cycle,
+                                                 std::string_view topic) {
+  std::map<dds::GuidPrefix, std::uint64_t> counts;
   for (const auto& count : cycle.published())
-    if (topic == std::string_view(count.topic().c_str())) return count.count();
-  return 0;
+    if (topic == std::string_view(count.topic().c_str()))
+      counts[count.participant()] = count.count();
+  return counts;
 }
 
-bool all_has_come(const v1::LabClock& cycle, const Inbox& inbox) {
+bool all_has_come(const v2::LabClock& cycle, const Inbox& inbox) {
   for (const auto& input : inbox.inputs())
-    if (input->received < counted(cycle, input->topic)) return false;
+    for (const auto& [writer, count] : counted(cycle, input->topic))
+      if (input->received_from(writer) < count) return false;
   return true;
 }
 
@@ -37,18 +43,21 @@ Expected<LockstepLoop> LockstepLoop::create(dds::Participant& participant,
 bool LockstepLoop::run_cycle(Inbox& inbox, const std::function<void(Time)>& tick,
                              const Published& published) {
   if (cycles_.empty() || !all_has_come(cycles_.front(), inbox)) return false;
-  const v1::LabClock& cycle = cycles_.front();
+  const v2::LabClock& cycle = cycles_.front();
   now_ = from_ns(cycle.stamp_ns());
-  // Of each topic only as many as the clock has counted: later ones belong to later cycles.
+  // Of each writer only as many as the clock has counted: later ones belong to later cycles.
   std::vector<Arrival> due;
   std::uint32_t waiting = 0;
   for (const auto& input : inbox.inputs()) {
-    std::vector<Arrival> kept;
+    std::vector<Arrival> taken, kept;
+    auto counts = counted(cycle, input->topic);
     for (Arrival& arrival : input->waiting) {
       const bool is_due =
-          arrival.index < counted(cycle, input->topic) && arrival.stamp_ns <= cycle.stamp_ns();
-      (is_due ? due : kept).push_back(std::move(arrival));
+          arrival.index < counts[arrival.writer] && arrival.stamp_ns <= cycle.stamp_ns();
+      (is_due ? taken : kept).push_back(std::move(arrival));
     }
+    input->sort(taken);
+    std::ranges::move(taken, std::back_inserter(due));
     waiting += static_cast<std::uint32_t>(kept.size());
     input->waiting = std::move(kept);
   }
@@ -59,7 +68,7 @@ bool LockstepLoop::run_cycle(Inbox& inbox, const std::function<void(Time)>& tick
   return true;
 }
 
-void LockstepLoop::answer(const v1::LabClock& cycle, std::uint32_t waiting,
+void LockstepLoop::answer(const v2::LabClock& cycle, std::uint32_t waiting,
                           const Published& published) {
   v1::LabProgress progress;
   progress.service(service_.c_str());

@@ -197,6 +197,9 @@ struct Shell::State {
     auto publisher = StatusPublisher::create(*participant, options.name, host, started);
     if (!publisher) return tl::unexpected(publisher.error());
     status_publisher.emplace(std::move(*publisher));
+    // Keys of before there was this topic do not permit it, and the rest works.
+    if (auto told = status_publisher->tell_settings(config.overridden()); !told)
+      log::warning("{}; no recording knows how this was started", told.error().message());
     watch();
     answer();
     if (lockstep) {
@@ -239,7 +242,7 @@ Expected<std::unique_ptr<Shell>> Shell::create(int argc, char** argv, const Opti
   if (auto joined = raw->join(); !joined) return tl::unexpected(joined.error());
   if (raw->lockstep)
     shell->subscribe(dds::lab_clock,
-                     std::function([raw](const v1::LabClock& cycle, const dds::SampleInfo& info) {
+                     std::function([raw](const v2::LabClock& cycle, const dds::SampleInfo& info) {
                        if (!info.gone) raw->cycles->add(cycle);
                      }));
   return shell;
@@ -301,13 +304,11 @@ void Shell::arrive(Input& input, std::vector<Arrival> arrivals) {
   {
     const std::scoped_lock lock(state.exclusive);
     const bool at_once = state.lockstep ? input.topic == dds::lab_clock.name : state.running;
-    for (Arrival& arrival : arrivals) {
-      arrival.index = input.received++;
+    for (Arrival& arrival : arrivals)
       if (at_once)
         arrival.deliver();
       else
-        input.waiting.push_back(std::move(arrival));
-    }
+        input.add(std::move(arrival));
   }
   if (state.lockstep) state.tasks.wake();
 }

@@ -25,9 +25,9 @@ namespace prehend::service {
 ///
 /// Live, a sample is handed over in the thread that received it (a change of threads would cost as
 /// much as the whole hop), and the tick follows the system clock. In lockstep (lab.lockstep = true,
-/// or --lockstep) inputs are handed over in the order (stamp, topic, sequence) of what the clock's
-/// cycle says has been published, then comes one tick, then lab/progress is answered; nothing then
-/// depends on when messages arrive.
+/// or --lockstep) inputs are handed over in the order (stamp, topic, writer, sequence) of what the
+/// clock's cycle says has been published, then comes one tick, then lab/progress is answered;
+/// nothing then depends on when messages arrive.
 class Shell {
  public:
   struct Options {
@@ -160,7 +160,8 @@ class Shell::Listener : public eprosima::fastdds::dds::DataReaderListener {
       // A vanished instance carries no stamp of its own: it follows the topic's last sample.
       if (!sample.info.gone) stamp_ns_ = sample.data.stamp_ns();
       auto kept = std::make_shared<dds::Sample<T>>(std::move(sample));
-      arrivals.push_back({stamp_ns_, [this, kept] { on_sample_(kept->data, kept->info); }});
+      arrivals.push_back({stamp_ns_, [this, kept] { on_sample_(kept->data, kept->info); },
+                          kept->info.participant, kept->info.instance});
     }
     shell_.arrive(input_, std::move(arrivals));
   }

@@ -52,6 +52,25 @@ Expected<StatusPublisher> StatusPublisher::create(dds::Participant& participant,
   return made;
 }
 
+Expected<void> StatusPublisher::tell_settings(const std::map<std::string, std::string>& settings) {
+  auto writer = participant_->writer(dds::service_settings);
+  if (!writer) return tl::unexpected(writer.error());
+  settings_.emplace(std::move(*writer));
+  v1::ServiceSettings message;
+  message.service(message_.service());
+  message.stamp_ns(to_ns(started_));
+  message.name(message_.name());
+  for (const auto& [key, value] : settings) {
+    if (key.starts_with("lab.") || key.starts_with("keys.")) continue;
+    v1::GivenSetting given;
+    given.key(key.c_str());
+    given.value(value.c_str());
+    message.settings().push_back(given);
+  }
+  settings_->write(message);
+  return {};
+}
+
 void StatusPublisher::count_refusals(Status& status) {
   for (const dds::Dropped& dropped : dds::dropped_packets()) {
     const auto reason = dds::verdict_names[static_cast<std::size_t>(dropped.reason)];

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 
 #include "common/dds/guard/guarded_transport.hpp"
@@ -22,6 +23,8 @@ class StatusPublisher {
  public:
   static Expected<StatusPublisher> create(dds::Participant& participant, const std::string& name,
                                           const std::string& host, Time started);
+  /// Publishes service/settings, once for all.
+  Expected<void> tell_settings(const std::map<std::string, std::string>& settings);
 
   /// NAME@HOST/PID: the key of service/status.
   std::string service() const { return message_.service().to_string(); }
@@ -37,6 +40,7 @@ class StatusPublisher {
 
   dds::Participant* participant_;
   dds::Writer<v1::ServiceStatus> writer_;
+  std::optional<dds::Writer<v1::ServiceSettings>> settings_;
   v1::ServiceStatus message_;
   Time started_{}, next_{};
   std::map<dds::PacketVerdict, std::uint64_t> dropped_;  // packets, as far as the status tells

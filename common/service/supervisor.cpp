@@ -48,17 +48,19 @@ bool send(const std::string& socket, std::string_view state) {
 
 }  // namespace
 
+constexpr const char* not_by_hand = "systemd sets it; unset it where you start this by hand";
+
 Expected<Supervision> Supervision::from_environment() {
   Supervision found;
   found.socket = variable("NOTIFY_SOCKET");
   if (found.socket.empty()) return found;
   if ((found.socket[0] != '/' && found.socket[0] != '@') || found.socket.size() < 2 ||
       found.socket.size() >= sizeof(sockaddr_un::sun_path))
-    return fail("is no path and no abstract name", "NOTIFY_SOCKET", "systemd sets it");
+    return fail("must be a path, or @ and a name", "NOTIFY_SOCKET", not_by_hand);
   const std::string period = variable("WATCHDOG_USEC"), whose = variable("WATCHDOG_PID");
   if (period.empty()) return found;
   const auto us = number(period);
-  if (!us) return fail("is no whole number above 0", "WATCHDOG_USEC", "systemd sets it");
+  if (!us) return fail("must be a whole number above 0", "WATCHDOG_USEC", not_by_hand);
   // It is meant for another process, whose child this one is.
   if (!whose.empty() && number(whose) != ::getpid()) return found;
   found.watchdog = std::chrono::microseconds(std::min<std::int64_t>(*us, 86'400'000'000));
@@ -76,8 +78,9 @@ Supervisor::Supervisor() {
 bool Supervisor::tell(std::string_view state) {
   if (supervision_.socket.empty() || send(supervision_.socket, state)) return true;
   if (!complained_)
-    log::warning({std::string(std::strerror(errno)), supervision_.socket,
-                  "the supervisor is not told how this process fares"});
+    log::warning({std::string("no supervisor can be told how this process fares, which goes on: ") +
+                      std::strerror(errno),
+                  "NOTIFY_SOCKET=" + supervision_.socket, not_by_hand});
   complained_ = true;
   return false;
 }

@@ -10,40 +10,44 @@ Expected<Conductor> Conductor::create(dds::Participant& participant,
   if (!clock) return tl::unexpected(clock.error());
   auto progress = participant.reader(dds::lab_progress);
   if (!progress) return tl::unexpected(progress.error());
-  return Conductor(std::move(*clock), std::move(*progress), services);
+  return Conductor(std::move(*clock), std::move(*progress), participant.identity(), services);
 }
 
-Conductor::Conductor(dds::Writer<v1::LabClock> clock, dds::Reader<v1::LabProgress> progress,
-                     const std::vector<std::string>& services)
+Conductor::Conductor(dds::Writer<v2::LabClock> clock, dds::Reader<v1::LabProgress> progress,
+                     dds::GuidPrefix self, const std::vector<std::string>& services)
     : clock_(std::move(clock)),
       progress_(std::move(progress)),
+      self_(self),
       services_(services.begin(), services.end()) {}
 
 void Conductor::published(std::string_view topic, std::uint64_t count) {
-  own_[std::string(topic)] += count;
+  published_[self_][std::string(topic)] += count;
 }
 
 std::map<std::string, std::uint64_t> Conductor::totals() const {
-  std::map<std::string, std::uint64_t> sum = own_;
-  for (const auto& [service, counts] : by_service_)
+  Counts sum;
+  for (const auto& [participant, counts] : published_)
     for (const auto& [topic, count] : counts) sum[topic] += count;
   return sum;
 }
 
 Expected<void> Conductor::step(Time now, std::chrono::milliseconds patience,
                                const std::function<std::optional<Error>()>& dead) {
-  v1::LabClock message;
+  v2::LabClock message;
   message.cycle(++cycle_);
   message.stamp_ns(to_ns(now));
-  for (const auto& [topic, count] : totals()) {
-    v1::TopicCount entry;
-    entry.topic(topic.c_str());
-    entry.count(count);
-    message.published().push_back(entry);
-  }
+  for (const auto& [participant, counts] : published_)
+    for (const auto& [topic, count] : counts) {
+      v2::WriterCount entry;
+      entry.topic(topic.c_str());
+      entry.participant(participant);
+      entry.count(count);
+      message.published().push_back(entry);
+    }
   if (!clock_.write(message)) return fail("the clock cannot be published", "lab/clock");
 
-  std::set<std::string> missing = services_;
+  std::multiset<std::string> missing = services_;
+  std::set<dds::GuidPrefix> answered;
   const auto give_up = std::chrono::steady_clock::now() + patience;
   while (!missing.empty()) {
     const auto left = give_up - std::chrono::steady_clock::now();
@@ -57,11 +61,12 @@ Expected<void> Conductor::step(Time now, std::chrono::milliseconds patience,
       if (const auto error = dead()) return tl::unexpected(*error);
     for (const auto& sample : progress_.take()) {
       if (sample.info.gone || sample.data.cycle() != cycle_) continue;
-      const std::string service = sample.data.service().c_str();
-      auto& counts = by_service_[service];
+      if (!answered.insert(sample.info.participant).second) continue;
+      Counts& counts = published_[sample.info.participant];
       for (const auto& entry : sample.data.published())
         counts[entry.topic().c_str()] = entry.count();
-      missing.erase(service);
+      if (const auto one = missing.find(sample.data.service().c_str()); one != missing.end())
+        missing.erase(one);
     }
   }
   return {};

@@ -19,13 +19,13 @@ namespace prehend::stage {
 /// feeds the services (a replayer, a test) publishes with a Participant in lockstep and tells the
 /// conductor.
 ///
-/// Every cycle names how many samples of each topic have been published so far, so that what a
-/// service takes in a cycle does not depend on when messages arrive. What services publish in one
+/// Every cycle names how many samples of each topic each writer has published so far, so that what
+/// a service takes in a cycle does not depend on when messages arrive. What services publish in one
 /// cycle they read in the next; settle() goes on at the same stamp until nothing new comes.
-/// A topic should have one writer: the order among several writers of a topic is not fixed.
+/// Several writers of a topic should write other instances each: by these they are put in order.
 class Conductor {
  public:
-  /// `services`: names of those that must answer every cycle.
+  /// `services`: names of those that must answer every cycle; twice: two of that name.
   static Expected<Conductor> create(dds::Participant& participant,
                                     const std::vector<std::string>& services);
 
@@ -43,15 +43,16 @@ class Conductor {
   std::map<std::string, std::uint64_t> totals() const;
 
  private:
-  Conductor(dds::Writer<v1::LabClock> clock, dds::Reader<v1::LabProgress> progress,
-            const std::vector<std::string>& services);
+  Conductor(dds::Writer<v2::LabClock> clock, dds::Reader<v1::LabProgress> progress,
+            dds::GuidPrefix self, const std::vector<std::string>& services);
 
-  dds::Writer<v1::LabClock> clock_;
+  dds::Writer<v2::LabClock> clock_;
   dds::Reader<v1::LabProgress> progress_;
-  std::set<std::string> services_;
+  using Counts = std::map<std::string, std::uint64_t>;  // samples by topic
+  dds::GuidPrefix self_;
+  std::multiset<std::string> services_;
   std::uint64_t cycle_ = 0;
-  std::map<std::string, std::uint64_t> own_;
-  std::map<std::string, std::map<std::string, std::uint64_t>> by_service_;
+  std::map<dds::GuidPrefix, Counts> published_;  // by participant
 };
 
 }  // namespace prehend::stage

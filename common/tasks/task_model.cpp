@@ -67,4 +67,14 @@ Expected<void> check(const TaskModel& task) {
   return {};
 }
 
+std::optional<Error> lacking(const TaskModel& task,
+                             const std::function<bool(const std::string&)>& is_there) {
+  for (const Step& step : task.steps)
+    for (const std::string& name : {step.object, step.reference})
+      if (name != the_table && !is_there(name))
+        return Error{"is not in this lab, and the task " + task.name + " needs it", name,
+                     "put it in the camera's sight, or into the scene (lab.scene)", exit_no};
+  return std::nullopt;
+}
+
 }  // namespace prehend::tasks

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -38,6 +40,11 @@ double tilt(const Pose& X_WO);
 /// What a task must be: a name, steps with objects, finite poses, a reference that is not the
 /// object itself, an order without circles. Errors name the step.
 Expected<void> check(const TaskModel& task);
+
+/// What to say of an object or reference of its steps that `is_there` denies; nothing: all are
+/// there.
+std::optional<Error> lacking(const TaskModel& task,
+                             const std::function<bool(const std::string&)>& is_there);
 
 /// An order of the steps that keeps `after`, earlier steps first; fails on a circle.
 Expected<std::vector<std::size_t>> order_of(const TaskModel& task);

@@ -39,7 +39,7 @@ std::string record(const recording::types::Library& contract, const std::string&
     std::uint64_t time = 1'000'000'000;
     for (const auto& [topic, name] : {std::pair("object/detection", "prehend::v1::ObjectDetection"),
                                       std::pair("robot/command", "prehend::v2::HandCommand"),
-                                      std::pair("lab/clock", "prehend::v1::LabClock")}) {
+                                      std::pair("lab/clock", "prehend::v2::LabClock")}) {
       const recording::types::Structure& type = *contract.find(name);
       idl.metadata.emplace_back(name, recording::types::omgidl(type));
       const auto schema = writer

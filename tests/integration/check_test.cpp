@@ -12,6 +12,7 @@
 
 #include "common/recording/mcap/writer.hpp"
 #include "common/recording/types/idl.hpp"
+#include "common/recording/types/value.hpp"
 #include "tests/integration/rig.hpp"
 #include "tests/support/paths/paths.hpp"
 
@@ -226,6 +227,38 @@ TEST_F(Check, WhatBeginsWithAnAnswerIsTheSameAfterAnUpdate) {
   EXPECT_EQ(check(part, {"--update"}).exit_code, 0);
   const Answer again = check(part);
   EXPECT_EQ(again.exit_code, 0) << again.output << again.log;
+}
+
+/// What the hands of a recording were told, by their names.
+std::map<std::string, std::size_t> commands_by_hand(const std::string& path) {
+  auto tape = Tape::open({path}, [](const std::string& topic) { return topic == "robot/command"; });
+  const auto types = recording::types::load_contract().value();
+  std::map<std::string, std::size_t> counts;
+  while (const auto one = tape.value().next()) {
+    const auto command =
+        recording::types::decode(*types.find(one->stream->topic.type), one->sample.payload);
+    if (command) ++counts[std::get<std::string>(command->find("hand")->content)];
+  }
+  return counts;
+}
+
+// Two mappings write one topic, and two gloves another: each is run again with its own settings,
+// and who of two is first does not depend on the machine.
+TEST_F(Check, TwoHandsAnswerAsRecorded) {
+  const std::string two = file("two.mcap");
+  const auto shown = run("prehend",
+                         {"demo", "--hands", "left:barrett,right:barrett", "--seed", "1", "--quiet",
+                          "--record", two, "--timeout", "8", "--domain", std::to_string(domain_)},
+                         120);
+  ASSERT_TRUE(std::filesystem::exists(two)) << shown.log;
+  EXPECT_EQ(check(two, {"--update"}).exit_code, 0);
+  const Answer again = check(two, {"--json"});
+  EXPECT_EQ(again.exit_code, 0) << again.output << again.log;
+  const auto counts = commands_by_hand(two);
+  ASSERT_EQ(counts.size(), 2U);
+  for (const auto& [hand, count] : counts) EXPECT_GT(count, 100U) << hand;
+  const Answer alone = check(two, {"--service", "mapping"});
+  EXPECT_EQ(alone.exit_code, 0) << alone.output << alone.log;
 }
 
 TEST_F(Check, WhatCannotBeFoundOutIsNoVerdict) {

@@ -505,8 +505,9 @@ TEST_F(Console, InASecuredLabItGivesThePagesOrdersAndNoMore) {
     if (dds::may_write(dds::Role::console, topic)) written.emplace(topic.name);
     EXPECT_FALSE(dds::may_write(dds::Role::viewer, topic)) << topic.name;
   }
-  EXPECT_EQ(written, (std::set<std::string>{"operator/command", "operator/consent",
-                                            "service/status", "lab/progress", "lab/beacon"}));
+  EXPECT_EQ(written,
+            (std::set<std::string>{"operator/command", "operator/consent", "service/settings",
+                                   "service/status", "lab/progress", "lab/beacon"}));
   network_.keys = keys->folder();
   join("mapping");
   auto orders = reader(dds::operator_command);

@@ -181,7 +181,7 @@ TEST_F(Export, WhatCannotBeMeantIsRefused) {
   refused(test::in_sources("docs/results --format robomimic"), 1, "holds no recording");
   const Answer without = run("prehend recording export " + with_pictures + " --format aloha");
   EXPECT_EQ(without.code, 2);
-  EXPECT_THAT(without.complaint, HasSubstr("name it with -o"));
+  EXPECT_THAT(without.complaint, HasSubstr("give the output with -o PATH"));
 }
 
 TEST_F(Export, ARecordingWithoutCommandsIsRefused) {

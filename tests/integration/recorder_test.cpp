@@ -29,7 +29,7 @@ TEST_F(Recorder, RecordedPlayedAndRecordedAgainIsTheSame) {
     report.hand("hand");
     report.sequence_number(i);
     ASSERT_TRUE(reports.write(report));
-    v1::LabClock tick;
+    v2::LabClock tick;
     tick.cycle(i + 1);
     ASSERT_TRUE(clock.write(tick));
     std::this_thread::sleep_for(std::chrono::milliseconds(5));

@@ -115,6 +115,14 @@ TEST_F(TwoHands, CarryWhatIsTooWideForOne) {
   EXPECT_EQ(models_["right"], "barrett");
 }
 
+TEST_F(TwoHands, NeedAGloveThatSomebodyCarriesWith) {
+  const Answer answer =
+      order({"demo", "--hands", "left:barrett,right:barrett", "--glove", "topic"});
+  EXPECT_EQ(answer.exit_code, 2);
+  EXPECT_NE(answer.log.find("--glove topic: has nobody who carries an object"), std::string::npos)
+      << answer.log;
+}
+
 TEST_F(TwoHands, WhoLosesItsGloveInTheMiddleMakesTheOtherWait) {
   start_glove("left");
   start_glove("right");

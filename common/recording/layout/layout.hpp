@@ -53,5 +53,6 @@ inline constexpr std::string_view losses_record = "losses";  // topic: samples l
 inline constexpr std::string_view idl_record = "idl";        // type: one self-contained text
 inline constexpr std::string_view configuration_record = "configuration";  // lab.toml, key: value
 inline constexpr std::string_view scene_attachment = "scene.toml";
+inline constexpr std::string_view catalogue_attachment = "catalogue.toml";
 
 }  // namespace prehend::recording

@@ -61,8 +61,8 @@ Expected<std::optional<RawRecord>> ChunkRecords::next() {
   const auto opcode = cursor.number<std::uint8_t>();
   const View content = cursor.take(cursor.number<std::uint64_t>());
   if (!cursor.good())
-    return fail("a record does not end inside its chunk",
-                "byte " + std::to_string(position_) + " of the chunk");
+    return fail("damaged: a record does not end inside its chunk",
+                "byte " + std::to_string(position_) + " of the chunk", damage_hint);
   const RawRecord record{opcode, position_, content};
   position_ = record.end();
   return record;
@@ -73,7 +73,7 @@ Expected<Bytes> expand(const Chunk& chunk) {
   if (!compression) return tl::unexpected(compression.error());
   auto records = decompress(*compression, chunk.records, chunk.uncompressed_size);
   if (records && chunk.uncompressed_crc != 0 && crc32(*records) != chunk.uncompressed_crc)
-    return fail("a chunk's CRC is wrong: its bytes were changed");
+    return fail("damaged: the bytes of a chunk were changed, its CRC is wrong", {}, damage_hint);
   return records;
 }
 

@@ -10,6 +10,9 @@
 
 namespace prehend::recording::mcap {
 
+/// What to do about a file whose parts contradict each other.
+inline constexpr const char* damage_hint = "prehend recording recover keeps what can be read";
+
 /// The records of a part of a file, one after the other, as they lie there. Needs no summary and
 /// no footer. The file must outlive it.
 class RecordStream {

@@ -100,12 +100,13 @@ Expected<void> Survey::take_summary() {
   const Footer& footer = *frame_.footer;
   if (footer.summary_start == 0) return {};
   if (footer.summary_start < frame_.data_begin || footer.summary_start > frame_.footer_offset)
-    return fail("the footer points outside the file", file_.at(frame_.footer_offset));
+    return fail("damaged: the footer points outside the file", file_.at(frame_.footer_offset),
+                damage_hint);
   const std::uint64_t covered = frame_.footer_offset + record_head + 16;  // by the CRC
   const auto bytes = file_.read(footer.summary_start, covered - footer.summary_start);
   if (!bytes) return tl::unexpected(bytes.error());
   if (footer.summary_crc != 0 && crc32(*bytes) != footer.summary_crc)
-    return fail("the summary's CRC is wrong", file_.at(footer.summary_start));
+    return fail("damaged: the summary's CRC is wrong", file_.at(footer.summary_start), damage_hint);
   ChunkRecords records(View(*bytes).first(frame_.footer_offset - footer.summary_start));
   while (true) {
     const auto raw = records.next();
@@ -146,8 +147,8 @@ Expected<void> Survey::check_regions() {
       const auto [offset, length] = place(entry);
       const bool wrong = !is_record(offset, opcode, length);
       if (wrong)
-        contents_.damage.push_back(
-            Error{"an index points here, where its record is not", file_.at(offset), ""});
+        contents_.damage.push_back(Error{"damaged: an index points here, where its record is not",
+                                         file_.at(offset), damage_hint});
       return wrong;
     });
   };

@@ -94,7 +94,9 @@ Expected<FrameInput> FrameInput::recorded(const std::filesystem::path& file) {
       log::warning("{}: {}", file.string(), remark);
     state->recorded = frames_of(*recording);
   }
-  if (state->recorded.empty()) return fail("holds no glove/frame", file.string());
+  if (state->recorded.empty())
+    return fail("holds nothing of a glove, on glove/frame", file.string(),
+                "choose a recording that does: prehend recording info FILE says what it holds");
   return FrameInput(std::move(state));
 }
 

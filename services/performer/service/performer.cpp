@@ -226,17 +226,15 @@ class Performer::State {
     std::string missing;
     if (!robot_) missing = "robot/state";
     if (arm_ && posture_.size() == 0) missing = "arm/state";
-    for (const tasks::Step& step : doing_->task.steps)
-      for (const std::string& name : {step.object, step.reference})
-        if (name != tasks::the_table && !places_.contains(name)) missing = name;
+    const auto lacks =
+        lacking(doing_->task, [this](const std::string& name) { return places_.contains(name); });
+    if (lacks) missing = lacks->where;
     const Duration waited = now - doing_->begun;
     if (missing.empty() && gate_ && waited > look_around) return think();
     if (waited < look_time && (places_.empty() || waited < 4 * look_around || !gate_)) return;
     if (!robot_) return refuse({"no robot hand is there", hand_name_, "prehend status"});
     if (missing == "arm/state") return refuse({"no arm is there", arm_->name, "prehend status"});
-    if (!missing.empty())
-      return refuse(
-          {"is not in this lab", missing, "the task " + doing_->task.name + " needs it", exit_no});
+    if (lacks) return refuse(*lacks);
     refuse({"no gate of a robot answers", hand_name_, "prehend status"});
   }
 

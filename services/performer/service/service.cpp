@@ -95,7 +95,8 @@ Expected<std::string> Service::start(const std::string& name) {
 Expected<std::string> Service::stop(const std::string& name, const std::string& by) {
   if (!performer_->task()) return fail("no task is being done", our_name, "", exit_no);
   if (!name.empty() && name != performer_->task()->name)
-    return fail("is not being done; " + performer_->task()->name + " is", name, "", exit_no);
+    return fail("is not being done; what is done is " + performer_->task()->name, name, "",
+                exit_no);
   performer_->stop("ended by " + by);
   return performer_->task()->name + " ends";
 }

@@ -30,11 +30,17 @@ Expected<RecordingFile> RecordingFile::create(const std::filesystem::path& path,
           recording::mcap::Metadata{std::string(recording::configuration_record), pairs});
       if (!done) return done;
     }
-    if (heading.scene.empty()) return {};
-    return file.writer_.write(
-        recording::mcap::Attachment{.name = std::string(recording::scene_attachment),
-                                    .media_type = "application/toml",
-                                    .data = recording::mcap::view(heading.scene)});
+    for (const auto& [name, text] :
+         {std::pair(recording::scene_attachment, std::string_view(heading.scene)),
+          std::pair(recording::catalogue_attachment, std::string_view(heading.catalogue))}) {
+      if (text.empty()) continue;
+      const auto done =
+          file.writer_.write(recording::mcap::Attachment{.name = std::string(name),
+                                                         .media_type = "application/toml",
+                                                         .data = recording::mcap::view(text)});
+      if (!done) return done;
+    }
+    return {};
   };
   if (const auto done = write(); !done) return tl::unexpected(done.error());
   return file;

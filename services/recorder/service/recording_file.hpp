@@ -32,6 +32,7 @@ struct Heading {
   std::string scene;                                 // text of the scene file; empty: none
   /// Nothing for types that nobody has described.
   std::function<std::optional<Description>(const std::string& type)> describe;
+  std::string catalogue = {};  // text of the catalogue; empty: that of the programs
 };
 
 /// An MCAP file that is being written, in the layout of common/recording/layout. Keeps a reference

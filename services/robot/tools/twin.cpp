@@ -85,7 +85,7 @@ Expected<std::unique_ptr<Twin>> Twin::create(const service::Config& config,
                                              const std::string& twin) {
   if (name == twin) return wrong_use("the twin needs a name of its own", "--twin", "give twin");
   if (!config.text("lab.keys").empty())
-    return wrong_use("an emulated robot's twin joins no lab with keys", "lab.keys",
+    return wrong_use("the twin of an emulated robot cannot join a lab with keys", "lab.keys",
                      "emulate without --twin, or leave the keys out");
   auto participant =
       dds::Participant::create(service::membership(config, "emulated-robot", "mapping"));

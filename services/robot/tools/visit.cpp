@@ -57,7 +57,8 @@ int tell(const Connection& robot, bool json, bool good) {
 Expected<void> may_move(const service::Config& config) {
   const auto kept = KeptStop::create(config, config.text("robot.hand_name"));
   if (!kept)
-    return fail("nobody knows whether it is stopped", kept.error().message(), "see safety.state");
+    return fail("whether the hand is stopped cannot be told", kept.error().message(),
+                "set safety.state to a folder");
   const auto stop = kept->recall();
   if (!stop) return {};
   return fail("is stopped by " + stop->by + (stop->reason.empty() ? "" : ": " + stop->reason),

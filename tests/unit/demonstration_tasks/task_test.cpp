@@ -144,7 +144,7 @@ TEST(TaskModel, SaysWhatIsWrongWithAStep) {
   constexpr double nan = std::numeric_limits<double>::quiet_NaN();
   tasks::Step sound;
   sound.object = "cup";
-  std::vector<tasks::Step> wrong(8, sound);
+  std::vector<tasks::Step> wrong(9, sound);
   wrong[0].reference.clear();
   wrong[1].reference = "cup";
   wrong[2].grasp.assign(65, 'g');
@@ -153,6 +153,7 @@ TEST(TaskModel, SaysWhatIsWrongWithAStep) {
   wrong[5].spread = -1;
   wrong[6].spread = nan;
   wrong[7].via_height = 2.1;
+  wrong[8].object.clear();
   const std::vector<std::string> told{"needs a reference, an object or the table",
                                       "puts an object relative to itself",
                                       "the name of its grasp is too long",
@@ -160,7 +161,8 @@ TEST(TaskModel, SaysWhatIsWrongWithAStep) {
                                       "a pose is not finite",
                                       "its spread is not a length of 0 or more",
                                       "its spread is not a length of 0 or more",
-                                      "its via height is not between 0 and 2 m"};
+                                      "its via height is not between 0 and 2 m",
+                                      "needs the name of an object, 1 to 64 bytes"};
   for (std::size_t i = 0; i < wrong.size(); ++i) {
     const auto made = check(tasks::TaskModel{"t", 1, {sound, wrong[i]}});
     ASSERT_FALSE(made) << told[i];

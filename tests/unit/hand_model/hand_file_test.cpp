@@ -157,6 +157,7 @@ TEST(HandFile, RefusesWhatIsNoHandAndSaysWhere) {
            {true, "<sphere radius='0.01'/>", "<mesh filename='a.stl'/>", "palm"},
            {true, "value='1.0'", "value='0'", "palm"},
            {true, "value='1.0'", "value='inf'", "palm"},
+           {true, "<collision>", "<collision><origin xyz='1e9 0 0'/>", "is not finite or far away"},
            {true, "ixx='0.1'", "ixx='-0.1'", "palm"},
            {true, "ixy='0'", "ixy='0.2'", "palm"},
            {true, "xyz='0 0.1 0'", "xyz='0 nan 0'", "robot description"},
@@ -231,6 +232,9 @@ TEST(HandFile, RefusesWhatMovesNothingAndWhatHasTooMuch) {
   };
   EXPECT_EQ(refused(""), "hand.urdf: has no joint that moves");
   EXPECT_EQ(refused(links + joints), "hand.urdf: has more than 256 links");
+  EXPECT_EQ(refused("<link name='bare'/>" +
+                    joint("turn", "revolute", "palm", "bare", "<axis xyz='0 0 1'/>")),
+            "hand.urdf: bare: link has no mass (give it an <inertial>)");
 }
 
 // The parser keeps a link under both of its parents, which could make its tree endless.

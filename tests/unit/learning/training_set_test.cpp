@@ -6,6 +6,8 @@
 #include <filesystem>
 #include <limits>
 
+#include "common/proto/training_set.pb.h"
+
 namespace prehend::learning {
 namespace {
 
@@ -53,6 +55,13 @@ TEST(TrainingSet, RefusesWhatCannotBeTrained) {
   set = small_set();
   set.pairs[1].features = Eigen::VectorXd::Zero(4);
   EXPECT_FALSE(check(set)) << "different features";
+  set = small_set();
+  set.hand.clear();
+  EXPECT_EQ(check(set).error().what, "a training set names no hand");
+  messages::TrainingSet odd;
+  odd.add_pairs()->add_size(0.1);
+  EXPECT_EQ(parse_training_set(odd.SerializeAsString()).error().what,
+            "an object's size is not three numbers");
 }
 
 }  // namespace

@@ -117,7 +117,9 @@ TEST(TaskPerformer, NeedsAllThatTheTaskNames) {
     return made ? std::string("taken") : made.error().message();
   };
   EXPECT_EQ(said(shapes, places, 2), "put: needs a grasp for each step");
-  EXPECT_EQ(said(shapes, {}, 1), "Talc: is not in this lab (the task put needs it)");
+  EXPECT_EQ(said(shapes, {}, 1),
+            "Talc: is not in this lab, and the task put needs it (put it in the camera's sight, or "
+            "into the scene (lab.scene))");
   EXPECT_EQ(said({}, places, 1), "Talc: has no known shape");
 }
 

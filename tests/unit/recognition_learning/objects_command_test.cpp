@@ -32,16 +32,17 @@ TEST_F(ObjectsCommand, AddSaysWhatShapeItNeeds) {
       "add A --mesh " + file("mm.obj",
                              "v 0 0 0\nv 40 0 0\nv 0 40 0\nv 0 0 60\nf 1 3 2\nf 1 2 4\nf 1 4 3\n"
                              "f 2 3 4\n");
-  expect(
-      {{"add A", "A: needs a shape (--shape "},
-       {"add A --shape cube", "cube: is no shape ("},
-       {"add A --shape box", "A: needs a size (--size, in m: depth, length, height)"},
-       {"add A --shape box --size 0.1", "box: has no such size (--size, in m up to 2: depth, le"},
-       {"add A --shape sphere --size 3", "sphere: has no such size (--size, in m up to 2: radius)"},
-       {mesh + " --scale 0.1",
-        "mm.obj: is 4000 x 4000 x 6000 mm large (--scale says how many metres"},
-       {mesh + " --scale 0.001 --shape box",
-        "A: has its shape and size from its mesh (leave out"}});
+  expect({{"add A", "A: needs a shape (--shape "},
+          {"add A --shape cube", "cube: is no shape ("},
+          {"add A --shape box", "A: needs a size (--size, in m: depth, length, height)"},
+          {"add A --shape box --size 0.1",
+           "box: has no such size (give --size in metres, above 0 and up to 2: depth, le"},
+          {"add A --shape sphere --size 3",
+           "sphere: has no such size (give --size in metres, above 0 and up to 2: radius)"},
+          {mesh + " --scale 0.1",
+           "mm.obj: is 4000 x 4000 x 6000 mm large (--scale says how many metres"},
+          {mesh + " --scale 0.001 --shape box",
+           "A: has its shape and size from its mesh (leave out"}});
 }
 
 // An empty table, an object that rests there, and a picture that cannot be read: one view.

@@ -278,7 +278,7 @@ TEST_F(RecordingCommand, RecordsThatAreWrongAreSaid) {
                   "open.json: no DataEnd among the records (end them "),
         std::pair("write flat.json -o x.mcap", "flat.json: meta: meta.variant.features is no list"),
         std::pair("records killed.mcap", ": the file has no footer (prehend recording recover"),
-        std::pair("records nested.mcap", ": a chunk inside a chunk")}) {
+        std::pair("records nested.mcap", ": damaged: a chunk inside a chunk")}) {
     const Answer wrong = run(std::string("prehend recording ") + command);
     EXPECT_EQ(wrong.code, 1) << command;
     EXPECT_THAT(wrong.complaint, HasSubstr(says)) << command;

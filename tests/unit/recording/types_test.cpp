@@ -54,8 +54,8 @@ using TopicTypes =
                      v1::ObjectDetectionPubSubType, v2::HandCommandPubSubType,
                      v1::HandStatePubSubType, v1::SceneStatePubSubType, v1::ObjectStatePubSubType,
                      v1::GraspReportPubSubType, v1::OperatorCommandPubSubType,
-                     v1::OperatorReplyPubSubType, v1::LabClockPubSubType, v1::LabProgressPubSubType,
-                     v1::ServiceStatusPubSubType>;
+                     v1::OperatorReplyPubSubType, v2::LabClockPubSubType, v1::LabProgressPubSubType,
+                     v1::ServiceSettingsPubSubType, v1::ServiceStatusPubSubType>;
 TYPED_TEST_SUITE(EveryTopic, TopicTypes);
 
 template <class PubSub>

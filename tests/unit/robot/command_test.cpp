@@ -25,7 +25,8 @@ TEST_F(RobotCommand, WhatCannotBeIsOneLine) {
          "--link: a ros2_control has no port (nodes of ROS 2 find it by its topics)"},
         {"emulate --twin hand", "--twin: the twin needs a name of its own (give twin)"},
         {"emulate --twin twin --set lab.keys=keys",
-         "lab.keys: an emulated robot's twin joins no lab with keys (emulate without --twin, or "},
+         "lab.keys: the twin of an emulated robot cannot join a lab with keys (emulate without "
+         "--twin, or "},
         {"twin --twin hand", "--twin: the twin needs a name of its own (give twin)"},
         {"twin --set lab.keys=keys", "lab.keys: a twin is led in no lab with keys (leave "}}) {
     const auto answer = run(arguments + (" --config " + test::in_sources("deploy/lab.toml")));
@@ -40,9 +41,10 @@ TEST_F(RobotCommand, HomesNothingWhereAStopCannotBeLookedFor) {
   const auto answer = run("home --config " + file("lab.toml", "[robot]\nport = \"/dev/null\"\n") +
                           " --set safety.state=" + state);
   EXPECT_EQ(answer.code, exit_no);
-  EXPECT_THAT(answer.complaint,
-              ::testing::HasSubstr(state + ": Not a directory: nobody knows whether it is stopped "
-                                           "(see safety.state)"));
+  EXPECT_THAT(
+      answer.complaint,
+      ::testing::HasSubstr(state + ": Not a directory: whether the hand is stopped cannot be told "
+                                   "(set safety.state to a folder)"));
 }
 
 }  // namespace

@@ -81,6 +81,9 @@ TEST(Config, KnowsWhatWasGiven) {
   EXPECT_FALSE(Config::load(empty)->is_given("safety.deadman"));
   EXPECT_FALSE(Config::load(empty)->texts().contains("safety.deadman"));
   EXPECT_TRUE(Config::load(empty, {"safety.deadman=false"})->is_given("safety.deadman"));
+  EXPECT_TRUE(Config::load(file)->overridden().empty()) << "what the file says is no override";
+  EXPECT_EQ(Config::load(file, {"gate.box=[1, 2]", "glove.name=left"})->overridden(),
+            (std::map<std::string, std::string>{{"gate.box", "[1, 2]"}, {"glove.name", "left"}}));
   setenv("PREHEND_SAFETY_DEADMAN", "false", 1);
   EXPECT_TRUE(Config::load(empty)->is_given("safety.deadman"));
   EXPECT_EQ(Config::load(empty)->texts().at("safety.deadman"), "false");

@@ -165,7 +165,8 @@ Expected<model::Catalogue> objects_of(const Arguments& arguments) {
     const std::string_view text = std::string_view(arguments.objects).substr(drawn.size());
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), count);
     if (error != std::errc{} || end != text.data() + text.size() || count < 1 || count > 10'000)
-      return wrong_use("is no number of objects, 1 to 10000", arguments.objects, "drawn:200");
+      return wrong_use("needs a number of objects, 1 to 10000", arguments.objects,
+                       "for example drawn:200");
     return drawn_objects(count, arguments.seed);
   }
   if (arguments.objects.empty())

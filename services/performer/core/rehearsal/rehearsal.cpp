@@ -211,14 +211,12 @@ Expected<Rehearsal> rehearse(const model::HandModel& hand, const tasks::TaskMode
     if (auto added = world->add_body(thing.body, thing.X_WO); !added)
       return tl::unexpected(added.error());
   const Shapes shapes = shapes_of(things);
+  if (auto lacks = lacking(task, [&](const std::string& name) { return shapes.contains(name); }))
+    return tl::unexpected(*lacks);
   Rehearsal made{std::vector<RobotGrasp>(task.steps.size()),
                  std::vector<Verdict>(task.steps.size())};
   for (const std::size_t i : *order) {
     const tasks::Step& step = task.steps[i];
-    if (!shapes.contains(step.object))
-      return fail("is not in this lab", step.object, "the task " + task.name + " needs it");
-    if (step.reference != tasks::the_table && !shapes.contains(step.reference))
-      return fail("is not in this lab", step.reference, "the task " + task.name + " needs it");
     auto best = best_trial(hand, alone(task, i), *world, shapes,
                            all_grasps(hand, step, things, options.robot.has_value()), options,
                            [&](int attempt) { options.tell(i, attempt); });

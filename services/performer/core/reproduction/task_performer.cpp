@@ -39,12 +39,10 @@ Expected<TaskPerformer> TaskPerformer::create(const model::HandModel& hand, task
   auto order = tasks::order_of(task);
   if (!order) return tl::unexpected(order.error());
   if (grasps.size() != task.steps.size()) return fail("needs a grasp for each step", task.name);
-  for (const tasks::Step& step : task.steps) {
-    for (const std::string& name : {step.object, step.reference})
-      if (name != tasks::the_table && !places.contains(name))
-        return fail("is not in this lab", name, "the task " + task.name + " needs it");
+  if (auto lacks = lacking(task, [&](const std::string& name) { return places.contains(name); }))
+    return tl::unexpected(*lacks);
+  for (const tasks::Step& step : task.steps)
     if (!shapes.contains(step.object)) return fail("has no known shape", step.object);
-  }
   TaskPerformer made(hand);
   made.verdicts_.resize(task.steps.size());
   made.demanded_.resize(task.steps.size());

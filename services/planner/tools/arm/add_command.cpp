@@ -38,7 +38,8 @@ Expected<std::filesystem::path> new_folder(const AddArguments& arguments) {
         return wrong_use("there is an arm of this name already", arguments.name,
                          "choose another --name");
     if (data_directory().empty())
-      return fail("nobody says where your data lie", "HOME", "set it, or use --output FOLDER");
+      return fail("is not set, so your data have no folder", "HOME",
+                  "set it, or use --output FOLDER");
     folder = data_directory() / "models" / "arms" / arguments.name;
   }
   if (std::filesystem::exists(folder / "arm.urdf", ignored))

@@ -26,7 +26,7 @@ struct SolveArguments {
 Expected<Pose> pose_from(const std::string& text) {
   constexpr const char* form = "write x,y,z,qw,qx,qy,qz: metres, and a quaternion";
   const auto numbers = finite_list(text);
-  if (!numbers) return wrong_use("is no list of finite numbers", "--pose=" + text, form);
+  if (!numbers) return wrong_use("must be seven finite numbers", "--pose=" + text, form);
   const std::vector<double>& values = *numbers;
   if (values.size() != 7)
     return wrong_use(fmt::format("has {} numbers in place of 7", values.size()), "--pose=" + text,

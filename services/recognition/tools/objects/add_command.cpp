@@ -164,8 +164,9 @@ Expected<model::Shape> shape_of(AddArguments& arguments) {
   model::Shape made;
   if (arguments.size.size() == known->numbers) made = {*kind, known->size(arguments.size)};
   if (!model::is_valid(made) || made.size.maxCoeff() > max_size)
-    return fail("has no such size", arguments.shape,
-                fmt::format("--size, in m up to {}: {}", max_size, known->sizes));
+    return fail(
+        "has no such size", arguments.shape,
+        fmt::format("give --size in metres, above 0 and up to {}: {}", max_size, known->sizes));
   return made;
 }
 

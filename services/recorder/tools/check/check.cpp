@@ -5,16 +5,18 @@
 
 #include <algorithm>
 #include <condition_variable>
-#include <fstream>
 #include <mutex>
 #include <set>
+#include <tuple>
 
+#include "common/base/file_text.hpp"
 #include "common/dds/topics.hpp"
 #include "common/service/membership.hpp"
 #include "common/stage/conductor.hpp"
 #include "common/stage/lab.hpp"
 #include "services/recorder/service/describe.hpp"
 #include "services/recorder/service/recording_file.hpp"
+#include "services/recorder/tools/check/recorded_lab.hpp"
 
 namespace prehend::recorder {
 namespace {
@@ -65,32 +67,6 @@ std::int64_t ns_of(const Played& played) {
   return to_ns(played.log_time);
 }
 
-/// What the recording says of the lab that it was made in.
-struct RecordedLab {
-  std::map<std::string, std::string> configuration;
-  std::string scene;
-};
-bool is_setting(const std::string& name) {
-  const auto& keys = service::config_keys();
-  return std::any_of(keys.begin(), keys.end(), [&](const auto& key) { return key.name == name; });
-}
-/// Settings that there were when it was made and are no more are left out.
-RecordedLab recorded_lab(const recording::mcap::Reader& reader) {
-  RecordedLab lab;
-  for (const auto& index : reader.contents().metadata)
-    if (index.name == recording::configuration_record)
-      if (const auto record = reader.metadata(index))
-        for (const auto& [key, value] : record->metadata)
-          if (is_setting(key)) lab.configuration[key] = value;
-  for (const auto& index : reader.contents().attachments)
-    if (index.name == recording::scene_attachment) {
-      recording::mcap::Bytes buffer;
-      if (const auto attachment = reader.attachment(index, buffer))
-        lab.scene = recording::mcap::text(attachment->data);
-    }
-  return lab;
-}
-
 /// Answers on one topic, as they come.
 class Answers {
  public:
@@ -108,7 +84,13 @@ class Answers {
     for (; stamped_ < count; ++stamped_) samples_[stamped_].received = log_time;
     return true;
   }
-  std::vector<dds::RawSample> take() { return std::move(samples_); }
+  /// In order of their log times; equal ones of several services by what they are about.
+  std::vector<dds::RawSample> take() {
+    std::ranges::stable_sort(samples_, {}, [](const dds::RawSample& sample) {
+      return std::tuple(sample.received, sample.instance);
+    });
+    return std::move(samples_);
+  }
 
  private:
   std::mutex mutex_;
@@ -130,8 +112,12 @@ recording::ComparedSample compared(const std::string& topic,
 /// One run of the services over a recording.
 class Run {
  public:
-  Run(const CheckOptions& options, std::vector<Played> played)
-      : options_(options), played_(std::move(played)) {}
+  Run(const CheckOptions& options, std::vector<Played> played, RecordedLab lab,
+      std::vector<RecordedProcess> processes)
+      : options_(options),
+        played_(std::move(played)),
+        recorded_(std::move(lab)),
+        recorded_processes_(std::move(processes)) {}
 
   Expected<void> choose_services() {
     Topics recorded;
@@ -143,54 +129,50 @@ class Run {
           std::any_of(service.writes.begin(), service.writes.end(),
                       [&](const std::string& topic) { return recorded.contains(topic); });
       if (options_.services.empty() ? !answered : !asked) continue;
-      names_.push_back(service.name);
+      const std::size_t before = processes_.size();
+      for (const RecordedProcess& process : recorded_processes_)
+        if (process.service == service.name) processes_.push_back(process);
+      if (processes_.size() == before) {
+        // It did not run, where others told that they did: another wrote these.
+        if (!asked && !recorded_processes_.empty()) continue;
+        processes_.push_back({service.name, {}});
+      }
       reads_.insert(service.reads.begin(), service.reads.end());
       writes_.insert(service.writes.begin(), service.writes.end());
     }
-    if (names_.empty())
+    if (processes_.empty())
       return fail("holds nothing that a service answered", options_.file.string(),
-                  "record one that can be checked as well, as mapping or simulation");
+                  "record again while a mapping or a simulation runs in the lab");
     return {};
   }
   bool feeds(const std::string& topic) const {
     return reads_.contains(topic) && !writes_.contains(topic);
   }
   bool asks(const std::string& topic) const { return writes_.contains(topic); }
-  const std::vector<std::string>& names() const { return names_; }
+  std::vector<std::string> names() const {
+    std::vector<std::string> names;
+    for (const RecordedProcess& process : processes_) names.push_back(process.service);
+    return names;
+  }
 
-  Expected<void> start(const RecordedLab& recorded) {
+  Expected<void> start() {
     const auto config = options_.lab.load();
     if (!config) return tl::unexpected(config.error());
-    std::vector<std::string> sets;
-    for (const auto& [key, value] : recorded.configuration)
-      // Where the lab was recorded is not where it is checked.
-      if ((!key.starts_with("lab.") || key == "lab.catalogue") && key != "recognition.path" &&
-          key != "glove.file" && key != "glove.port")
-        sets.push_back(key + "=" + value);
-    if (!recorded.scene.empty()) {
-      const auto file = options_.log_folder / "scene.toml";
-      std::ofstream(file) << recorded.scene;
-      sets.push_back("lab.scene=" + file.string());
-    }
-    for (const std::string& set : options_.lab.overrides()) sets.push_back(set);
     const std::string rig = fmt::format(
         "check-{}-{:x}", ::getpid(), std::chrono::system_clock::now().time_since_epoch().count());
     dds::ParticipantOptions membership = service::membership(*config, "check", "replayer");
     membership.rig = rig;
     membership.lockstep = true;
-    for (const std::string& set :
-         {std::string("glove.device=topic"), std::string("recognition.source=topic"),
-          std::string("lab.lockstep=true"), "lab.rig=" + rig,
-          fmt::format("lab.domain={}", membership.domain)})
-      sets.push_back(set);
-    lab_.emplace(options_.lab.file(), sets, options_.log_folder);
-    for (const std::string& name : names_)
-      if (const auto started = lab_->start_service(name); !started) return started;
+    const std::vector<std::string> ours{"glove.device=topic", "recognition.source=topic",
+                                        "lab.lockstep=true", "lab.rig=" + rig,
+                                        fmt::format("lab.domain={}", membership.domain)};
+    lab_.emplace(options_.lab.file(), std::vector<std::string>(), options_.log_folder);
+    if (const auto started = start_services(ours); !started) return started;
 
     auto participant = dds::Participant::create(membership);
     if (!participant) return tl::unexpected(participant.error());
     participant_.emplace(std::move(*participant));
-    auto conductor = stage::Conductor::create(*participant_, names_);
+    auto conductor = stage::Conductor::create(*participant_, names());
     if (!conductor) return tl::unexpected(conductor.error());
     conductor_.emplace(std::move(*conductor));
     for (const std::string& topic : writes_) {
@@ -263,6 +245,35 @@ class Run {
   const std::vector<Played>& played() const { return played_; }
 
  private:
+  /// Each with what was recorded of it, under what the user sets and what we need.
+  Expected<void> start_services(const std::vector<std::string>& ours) {
+    std::vector<std::string> files;
+    for (const auto& [key, name, text] :
+         {std::tuple("lab.scene", "scene.toml", &recorded_.scene),
+          std::tuple("lab.catalogue", "catalogue.toml", &recorded_.catalogue)}) {
+      if (text->empty()) continue;
+      const auto file = options_.log_folder / name;
+      if (auto written = write_file(file, *text); !written) return written;
+      files.push_back(fmt::format("{}={}", key, file.string()));
+    }
+    std::map<std::string, int> started;  // of each service
+    for (const RecordedProcess& process : processes_) {
+      std::vector<std::string> sets;
+      for (const Settings* settings : {&std::as_const(recorded_.configuration), &process.settings})
+        for (const auto& [key, value] : *settings)
+          if (!is_of_the_machine(key)) sets.push_back(key + "=" + value);
+      std::vector<std::string> arguments{"--config", options_.lab.file()};
+      for (const auto& more : {sets, files, options_.lab.overrides(), ours})
+        for (const std::string& set : more) arguments.insert(arguments.end(), {"--set", set});
+      const int number = ++started[process.service];
+      const auto done =
+          lab_->start(number == 1 ? process.service : fmt::format("{} {}", process.service, number),
+                      "prehend-" + process.service, arguments);
+      if (!done) return done;
+    }
+    return {};
+  }
+
   /// As it was recorded, or as our contract has it.
   dds::RawTopic known(const std::string& name) const {
     for (const Played& one : played_)
@@ -280,7 +291,8 @@ class Run {
 
   const CheckOptions& options_;
   std::vector<Played> played_;
-  std::vector<std::string> names_;
+  RecordedLab recorded_;
+  std::vector<RecordedProcess> recorded_processes_, processes_;  // all, and those that are run
   Topics reads_, writes_;
   std::optional<stage::Lab> lab_;
   std::map<std::string, std::unique_ptr<Answers>> answers_;
@@ -305,10 +317,10 @@ Expected<Checked> check(const CheckOptions& options, const recording::types::Lib
   if (!tape->damage().empty()) return tl::unexpected(tape->damage().front());
 
   const auto began = std::chrono::steady_clock::now();
-  Run run(options, std::move(played));
+  auto processes = recorded_processes(played, types);
+  Run run(options, std::move(played), recorded_lab(tape->file(0)), std::move(processes));
   if (const auto chosen = run.choose_services(); !chosen) return tl::unexpected(chosen.error());
-  if (const auto started = run.start(recorded_lab(tape->file(0))); !started)
-    return tl::unexpected(started.error());
+  if (const auto started = run.start(); !started) return tl::unexpected(started.error());
   if (const auto done = run.play(progress); !done) return tl::unexpected(done.error());
   Checked result;
   result.services = run.names();
@@ -340,10 +352,10 @@ Expected<Checked> check(const CheckOptions& options, const recording::types::Lib
 Expected<void> update(const std::filesystem::path& file, const Checked& checked) {
   auto tape = Tape::open({file}, [](const std::string&) { return true; });
   if (!tape) return tl::unexpected(tape.error());
-  const RecordedLab lab = recorded_lab(tape->file(0));
   auto describe = describe_types("ros2msg");
   if (!describe) return tl::unexpected(describe.error());
-  const Heading heading{lab.configuration, lab.scene, std::move(*describe)};
+  const RecordedLab lab = recorded_lab(tape->file(0));
+  const Heading heading{lab.configuration, lab.scene, std::move(*describe), lab.catalogue};
 
   std::map<const recording::Stream*, Source> sources;
   std::map<std::string, const recording::Stream*> first;  // of each topic

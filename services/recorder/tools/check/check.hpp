@@ -30,15 +30,16 @@ struct CheckOptions {
 /// What came of it: the comparison, and the answers themselves by topic in the order given.
 struct Checked {
   recording::Report report;
-  std::vector<std::string> services;
+  std::vector<std::string> services;                           // those that ran, each process
   std::map<std::string, std::vector<dds::RawSample>> answers;  // `received` is the log time
   double recorded_s = 0, elapsed_s = 0;
 };
 
 /// Runs services as real processes on a recording's inputs, in lockstep and as fast as they can,
-/// and compares what they publish with what was recorded. Every cycle has the log time of what is
-/// fed in it; an answer's log time is the cycle in which others read it, so that one service alone
-/// finds its inputs in the same cycles as all together.
+/// as many of each as there were, with the settings that each had, and compares what they publish
+/// with what was recorded. Every cycle has the log time of what is fed in it; an answer's log time
+/// is the cycle in which others read it, so that one service alone finds its inputs in the same
+/// cycles as all together.
 Expected<Checked> check(const CheckOptions& options, const recording::types::Library& types,
                         const recording::ToleranceTable& tolerances,
                         const std::function<void(double share)>& progress);

@@ -231,8 +231,9 @@ Expected<std::string> hand_of(Reader& reader, const std::string& file, const std
   std::string names;
   for (const std::string& hand : hands) names += (names.empty() ? "" : ", ") + printable(hand);
   if (hands.empty())
-    return fail("holds no command of a hand (robot/command)", file,
-                "prehend recording info FILE says what it holds", exit_no);
+    return fail("holds no command of a hand, on robot/command", file,
+                "choose a recording that does: prehend recording info FILE says what it holds",
+                exit_no);
   if (wanted.empty() && hands.size() > 1)
     return wrong_use("holds several hands: " + names, file,
                      "choose one with --hand, or all as --hand NAME,NAME");

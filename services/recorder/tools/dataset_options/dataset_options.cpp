@@ -76,7 +76,7 @@ std::vector<std::string> to_arguments(const DatasetOptions& options) {
 
 Expected<void> check(const DatasetOptions& options) {
   if (options.output.empty())
-    return wrong_use("no place to write to", options.format, "name it with -o");
+    return wrong_use("nowhere to write to", options.format, "give the output with -o PATH");
   if (!(options.rate >= min_rate && options.rate <= max_rate))
     return wrong_use("out of range", fmt::format("--rate {}", options.rate),
                      fmt::format("{} to {} Hz", min_rate, max_rate));

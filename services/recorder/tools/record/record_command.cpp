@@ -152,13 +152,17 @@ Expected<Heading> heading_of(const service::Config& lab, const std::string& sche
   auto describe = describe_types(schema);
   if (!describe) return tl::unexpected(describe.error());
   Heading heading{lab.texts(), "", std::move(*describe)};
-  if (const auto file = lab.path("lab.scene"); !file.empty()) {
-    auto scene = read_file(file, "see lab.scene");
-    if (!scene) {
-      scene.error().exit = exit_wrong_use;
-      return tl::unexpected(scene.error());
+  const bool own_catalogue = !lab.text("lab.catalogue").starts_with("share:");
+  for (auto [key, text] : {std::pair("lab.scene", &heading.scene),
+                           std::pair(own_catalogue ? "lab.catalogue" : "", &heading.catalogue)}) {
+    const auto file = *key ? lab.path(key) : std::filesystem::path();
+    if (file.empty()) continue;
+    auto read = read_file(file, std::string("see ") + key);
+    if (!read) {
+      read.error().exit = exit_wrong_use;
+      return tl::unexpected(read.error());
     }
-    heading.scene = std::move(*scene);
+    *text = std::move(*read);
   }
   return heading;
 }

@@ -157,7 +157,8 @@ class Printer {
         if (!each) return tl::unexpected(each.error());
         if (!*each) return {};
         // A chunk in a chunk is not allowed; nor would its depth have an end.
-        if ((*each)->opcode == Chunk::opcode) return fail("a chunk inside a chunk");
+        if ((*each)->opcode == Chunk::opcode)
+          return fail("damaged: a chunk inside a chunk", {}, recording::mcap::damage_hint);
         if (auto done = print(**each); !done) return done;
       }
     }

@@ -102,8 +102,9 @@ TEST_F(ArmCommand, AddsAnArmThatThenHasAName) {
                                                        prehend::test::in_programs("prehend arm") +
                                                        " add " + urdf + " --name mine",
                                                    folder);
-  EXPECT_NE(homeless.complaint.find("HOME: nobody says where your data lie (set it, or use"),
-            std::string::npos)
+  EXPECT_NE(
+      homeless.complaint.find("HOME: is not set, so your data have no folder (set it, or use"),
+      std::string::npos)
       << homeless.complaint;
   const Answer handless = run("reach puma560 --hand nobody");
   EXPECT_EQ(handless.code, 2);

@@ -107,6 +107,11 @@ TEST_F(Reading, TheMeshFolderOfMujocosUrdf) {
   EXPECT_EQ(robot->links.at(0).collision.at(0).mesh_folder, "../assets");
 }
 
+TEST_F(Reading, AZeroByteIsNoText) {
+  EXPECT_EQ(planner::read_robot(std::string("<robot/>\0", 9)).error().message(),
+            "holds a zero byte (XML is text)");
+}
+
 constexpr const char* xacro_text =
     "<robot name='a' xmlns:xacro='http://www.ros.org/wiki/xacro'><link name='b'>"
     "<xacro:if value='1'/></link></robot>";
