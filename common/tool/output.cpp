@@ -15,7 +15,7 @@ namespace {
 
 int lost_output(const std::string& why) {
   return complain({"cannot be written: " + why, "standard output",
-                   "its end is missing: make room, or write elsewhere"},
+                   "it is not whole: make room, or write elsewhere"},
                   exit_broken);
 }
 

@@ -130,7 +130,7 @@ TEST_F(BadInput, WhatAServiceCannotWorkWith) {
             "lab.lockstep: the console shows a lab that is live (or "},
            {"ros-lead",
             {"lab.lockstep=true"},
-            "lab.lockstep: nodes of ROS 2 cannot lead in lockstep (set it to "},
+            "lab.lockstep: nodes of ROS 2 cannot lead in lockstep (set lab.lockstep to "},
            {"ros-lead", {"mapping.hand="}, "mapping.hand: names no hand (choose one of "}})
     expect_refusal(service, lab_arguments(sets), 2, words);
 }

@@ -286,7 +286,7 @@ TEST_F(Check, WhatCannotBeFoundOutIsNoVerdict) {
             0);
   expect_broken(check(file("inputs.mcap")), "nothing that a service answered");
   expect_broken(check(samples + "/direct-grasp.mcap", {"--service", "recognition"}),
-                "no answer of these services");
+                "holds no answer of recognition");
   // A message of 1970 among those of today used to be waited for in steps of 10 ms.
   {
     auto writer = recording::mcap::Writer::create(file("long.mcap")).value();

@@ -361,7 +361,7 @@ void Survey::note_what_follows(std::uint64_t position) {
     const auto next =
         file_.read(ended, std::min<std::uint64_t>(magic.size(), file_.size() - ended));
     contents_.damage.push_back(
-        {std::to_string(file_.size() - ended) + " bytes behind the recording's end are not read" +
+        {std::to_string(file_.size() - ended) + " bytes after the recording's end are not read" +
              (next && is_magic(*next) ? ", another recording begins there" : ""),
          file_.at(ended), "`tail -c +" + std::to_string(ended + 1) + "` gives them"});
     return;

@@ -195,7 +195,8 @@ class Service::Topics {
 
   Expected<std::string> begin(const std::string& task) {
     if (auto path = tasks::task_path(task, "."); !path || task.ends_with(".task"))
-      return wrong_use("is no name of a task", task, "letters, digits, spaces, dots, - and _");
+      return wrong_use("cannot be the name of a task", task,
+                       "use letters, digits, spaces, dots, - and _");
     if (auto begun = watcher_.begin(task, shell_.now()); !begun)
       return tl::unexpected(begun.error());
     return "watching " + task;
@@ -203,7 +204,7 @@ class Service::Topics {
 
   Expected<std::string> end(const std::string& task) {
     if (watcher_.task() && !task.empty() && task != *watcher_.task())
-      return fail("is not being shown; " + *watcher_.task() + " is", task);
+      return fail("is not being shown; what is shown is " + *watcher_.task(), task);
     std::vector<TimedSegment> rest;
     shown_ = watcher_.task().value_or("");
     const Time now = shell_.now();

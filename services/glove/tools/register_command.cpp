@@ -27,7 +27,8 @@ Expected<std::vector<Eigen::Vector3d>> known_points(const RegisterArguments& arg
   std::vector<Eigen::Vector3d> points;
   for (const std::string& text : arguments.points) {
     const auto numbers = finite_list(text);
-    if (!numbers || numbers->size() != 3) return fail("a point is not X,Y,Z in m", text);
+    if (!numbers || numbers->size() != 3)
+      return fail("must be X,Y,Z in m", "--point " + text, "for example 0.1,0.2,0.3");
     points.emplace_back(numbers->data());
   }
   return points;

@@ -176,7 +176,9 @@ class Service::Topics {
       return refuse("picture of another format than the calibration",
                     {"a picture has " + std::to_string(picture->width) + "x" +
                          std::to_string(picture->height) + " px",
-                     "camera", "the sides are not in the ratio of camera.width and camera.height"});
+                     "camera",
+                     "its sides must be in the ratio of camera.width and camera.height: set these, "
+                     "or the camera"});
     CameraModel camera = camera_.scaled(factor);
     camera.height = small.height;
     const Time stamp = from_ns(image.stamp_ns());

@@ -40,10 +40,11 @@ Expected<std::size_t> dof_of(const model::HandModel& hand, const std::string& na
 /// The hand that is emulated; which servo moves what of it goes to the arguments.
 Expected<model::HandModel> hand_of(const EmulatorKind& kind, EmulateArguments& arguments) {
   if (!kind.hand.empty() && !arguments.hand.empty() && arguments.hand != kind.hand)
-    return wrong_use("a " + arguments.device + " is no hand '" + arguments.hand + "'", "--hand",
+    return wrong_use("is not the hand of a " + arguments.device, "--hand " + arguments.hand,
                      "give " + std::string(kind.hand));
   if (kind.hand.empty() && arguments.hand.empty())
-    return wrong_use("a " + arguments.device + " may be many hands", "--hand", model::hand_hint());
+    return wrong_use("must be given: a " + arguments.device + " moves many hands", "--hand",
+                     model::hand_hint());
   const std::filesystem::path folder =
       model::hand_directory(kind.hand.empty() ? arguments.hand : std::string(kind.hand));
   if (!kind.wiring.empty()) {

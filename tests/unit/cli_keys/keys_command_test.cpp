@@ -53,7 +53,7 @@ TEST_F(Keys, RefusalsNameTheKey) {
   for (const auto& [arguments, says] : std::vector<std::pair<std::string, std::string>>{
            {"init " + in("keys") + " --rig any", "keys: is there already (name a new folder)"},
            {"show --store " + in("nowhere"), "nowhere: is no keystore (`prehend keys init DIR`"},
-           {"add anna --rig any" + store, "anna: says no role (name the key ROLE"},
+           {"add anna --rig any" + store, "anna: has no role in its name (name the key ROLE"},
            {"add viewer-Anna --rig any" + store, "viewer-Anna: is no name for a key (small"},
            {"add viewer-anna --rig any" + store,
             "viewer-anna: there is a key of this name (--renew"},
@@ -65,7 +65,8 @@ TEST_F(Keys, RefusalsNameTheKey) {
            {"request Anna" + store, "Anna: is no name for a key (small letters"},
            {"request viewer-a --store " + file("no-folder", ""),
             "next-key.pem: cannot be written: Not a directory"},
-           {"sign --rig any " + file("nameless", nameless) + store, "anna: says no role (give"},
+           {"sign --rig any " + file("nameless", nameless) + store,
+            "anna: has no role in its name (give"},
            {"sign --rig any " + file("shouted", shouted) + store,
             "Anna Smith: asks for a name that is none for a key (small letters"},
            {"install " + file("granted", "{}") + store,

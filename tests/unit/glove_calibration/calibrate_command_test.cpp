@@ -149,7 +149,7 @@ TEST_F(GloveTool, SaysInOneLineWhatItCannotUse) {
   for (const auto& [arguments, code, words] :
        {std::tuple("calibrate --user anna -o " + in("a.toml") + " --from " + in("other.mcap"), 3,
                    "other.mcap: holds nothing of a glove, on glove/frame"),
-        std::tuple("register --point 1,2"s, 2, "1,2: a point is not X,Y,Z in m"),
+        std::tuple("register --point 1,2"s, 2, "--point 1,2: must be X,Y,Z in m"),
         std::tuple("emulate --from telepathy"s, 3,
                    "--from: 'telepathy' is no source (give synthetic or recording:FILE)")}) {
     const auto answer = run(arguments);

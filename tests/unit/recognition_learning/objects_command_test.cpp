@@ -63,7 +63,7 @@ TEST_F(ObjectsCommand, AddSaysHowLittleWasSeen) {
   const std::string add =
       "add A --shape sphere --size 0.03 --model " + in("objects.model") + " --source ";
   expect({{add + "synthetic", "synthetic: shows one scene only (give "},
-          {add + "folder:" + in("shots"), "A: only 1 view(s) ("}});
+          {add + "folder:" + in("shots"), "A: 1 of at least 3 views ("}});
 }
 
 TEST_F(ObjectsCommand, EvaluateSaysWhatItCannotUse) {

@@ -19,8 +19,9 @@ TEST_F(RobotCommand, WhatCannotBeIsOneLine) {
   for (const auto& [arguments, words] :
        {std::pair("emulate --device toy", "--device: there is no emulator 'toy' (give barrett or "),
         {"emulate --stuck thumb", "--stuck: there is no joint 'thumb' (give one of spread, "},
-        {"emulate --hand robonaut", "--hand: a barrett is no hand 'robonaut' (give barrett)"},
-        {"emulate --device dynamixel", "--hand: a dynamixel may be many hands (choose one of "},
+        {"emulate --hand robonaut", "--hand robonaut: is not the hand of a barrett (give barrett)"},
+        {"emulate --device dynamixel",
+         "--hand: must be given: a dynamixel moves many hands (choose one of "},
         {"emulate --device ros2_control --hand barrett --link port",
          "--link: a ros2_control has no port (nodes of ROS 2 find it by its topics)"},
         {"emulate --twin hand", "--twin: the twin needs a name of its own (give twin)"},

@@ -102,7 +102,8 @@ int audit_command(const std::vector<std::string>& arguments) {
     if (!config) return service::complain(config.error(), exit_wrong_use);
     const auto folder = config->path("safety.audit");
     if (folder.empty())
-      return service::complain({"keeps no log", "safety.audit", "name a folder, or files here"},
+      return service::complain({"is not set, so no log is kept", "safety.audit",
+                                "set it to a folder, or give the files of a log"},
                                exit_wrong_use);
     auto kept = logs_in(folder);
     if (!kept) return service::complain(kept.error(), exit_broken);

@@ -83,7 +83,8 @@ Expected<dds::Role> choose_role(const std::string& name, const std::string& want
   if (const auto role = dds::role_named(wanted.empty() ? name : wanted)) return *role;
   std::string all;
   for (const auto& [role, word] : dds::role_names) (all += all.empty() ? "" : ", ") += word;
-  return fail("says no role", wanted.empty() ? name : "--role " + wanted,
+  return fail(wanted.empty() ? "has no role in its name" : "is no role",
+              wanted.empty() ? name : "--role " + wanted,
               fmt::format("name the key ROLE or ROLE-something, or give --role: {}", all));
 }
 

@@ -252,7 +252,7 @@ Expected<Bundle> Keystore::sign(const std::string& request, std::optional<dds::R
   if (!name) return tl::unexpected(name.error());
   if (!good_name(*name)) return fail("asks for a name that is none for a key", *name, name_hint);
   if (!role) role = dds::role_named(*name);
-  if (!role) return fail("says no role", *name, "give --role");
+  if (!role) return fail("has no role in its name", *name, "give --role");
   const auto authority = identity();
   if (!authority) return tl::unexpected(authority.error());
   const keys::Validity valid{now - keys::dated_back, now + validity};

@@ -190,7 +190,9 @@ Expected<Judged> load(const Arguments& arguments, const std::string& name) {
   auto grasps = arguments.objects.empty() ? load_robot_grasps(places->grasps, *hand)
                                           : grasps_of(*hand, *places, *objects, arguments.threads);
   if (!grasps) return tl::unexpected(grasps.error());
-  if (grasps->empty()) return fail("there is no grasp to repeat", hand->name());
+  if (grasps->empty())
+    return fail("there is no grasp to repeat", hand->name(),
+                "prehend train --hand HAND finds the grasps that are repeated");
   std::vector<BenchmarkTake> takes;
   if (arguments.takes.empty()) {
     takes = make_takes(*grasps, arguments);

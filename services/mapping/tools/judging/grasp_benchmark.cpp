@@ -240,7 +240,9 @@ Expected<std::vector<TrialResult>> run_grasp_benchmark(const BenchmarkedHand& pa
                                                        const GraspBenchmarkOptions& options,
                                                        const grasping::ForEach& for_each,
                                                        const OnTrial& on_trial) {
-  if (parts.grasps.empty()) return fail("there is no grasp to repeat", parts.hand.name());
+  if (parts.grasps.empty())
+    return fail("there is no grasp to repeat", parts.hand.name(),
+                "prehend train --hand HAND finds the grasps that are repeated");
   for (const BenchmarkedMode& mode : options.modes)
     if (auto allowed = check_mode(parts, mode); !allowed) return tl::unexpected(allowed.error());
 

@@ -71,7 +71,7 @@ Expected<std::multimap<std::string, double>> parse_labels(const std::vector<std:
     const auto time = at == std::string::npos
                           ? std::nullopt
                           : finite_number(std::string_view(text).substr(at + 1));
-    if (!time) return fail("a label is not POSTURE@SECONDS", text);
+    if (!time) return fail("must be POSTURE@SECONDS", "--label " + text, "for example open@2.5");
     labels.emplace(text.substr(0, at), *time);
   }
   return labels;

@@ -193,7 +193,8 @@ Expected<TrainingClass> take_views(const AddArguments& arguments, const Next& ne
       log::info("view {} of {}", taker.views().size(), arguments.views);
   }
   if (taker.views().size() < 3)
-    return fail(fmt::format("only {} view(s)", taker.views().size()), arguments.name, taker.hint());
+    return fail(fmt::format("{} of at least 3 views", taker.views().size()), arguments.name,
+                taker.hint());
   return TrainingClass{arguments.name, taker.views()};
 }
 

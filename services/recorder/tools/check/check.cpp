@@ -345,7 +345,9 @@ Expected<Checked> check(const CheckOptions& options, const recording::types::Lib
   result.report = comparison.finish();
   // No sample on either side is no sameness.
   if (result.report.topics.empty())
-    return fail("holds no answer of these services, and they gave none", options.file.string());
+    return fail(fmt::format("holds no answer of {}, and nothing was answered now",
+                            fmt::join(result.services, ", ")),
+                options.file.string(), "choose other services: prehend recording info FILE");
   return result;
 }
 

@@ -391,7 +391,7 @@ Expected<void> write_records(std::string_view text, const std::filesystem::path&
     if (!ended) return tl::unexpected(ended.error());
     if (*ended) return writer->close();
   }
-  return fail("no DataEnd among the records", {}, "end them with one");
+  return fail("no DataEnd among the records", {}, "put one behind the last message");
 }
 
 }  // namespace prehend::recorder

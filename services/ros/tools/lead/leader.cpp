@@ -44,7 +44,8 @@ dds::GuidPrefix node_of(const dds::RawSample& sample) {
 Expected<std::unique_ptr<Leader>> Leader::create(service::Shell& shell) {
   const service::Config& config = shell.config();
   if (shell.lockstep())
-    return wrong_use("nodes of ROS 2 cannot lead in lockstep", "lab.lockstep", "set it to false");
+    return wrong_use("nodes of ROS 2 cannot lead in lockstep", "lab.lockstep",
+                     "set lab.lockstep to false");
   const std::string& kind = config.text("mapping.hand");
   if (kind.empty()) return wrong_use("names no hand", "mapping.hand", model::hand_hint());
   auto hand = model::HandModel::load(model::hand_directory(kind));
