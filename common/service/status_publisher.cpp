@@ -65,7 +65,10 @@ Expected<void> StatusPublisher::tell_settings(const std::map<std::string, std::s
     v1::GivenSetting given;
     given.key(key.c_str());
     given.value(value.c_str());
-    message.settings().push_back(given);
+    if (given.value().to_string() == value)
+      message.settings().push_back(given);
+    else
+      log::warning("{}: is too long, so no recording knows of it", key);  // a part would mislead
   }
   settings_->write(message);
   return {};

@@ -93,8 +93,10 @@ int run(const EditArguments& arguments) {
       return matches(arguments.topics,
                      recording::recorded_topic(channel, sources.front().contents()).name);
     };
-  const auto result = copy(sources, arguments.to, options);
+  auto result = copy(sources, arguments.to, options);
   if (!result) return complain(result.error(), exit_broken);
+  // What else could be done is done here already.
+  for (Error& error : result->damage) error.hint.clear();
   for (const Error& error : result->damage) log::warning(error);
   for (const Error& error : result->remarks) log::warning(error);
   if (arguments.json) {
