@@ -42,7 +42,7 @@ TEST_F(RecordingCommand, RecoverSaysByItsExitCodeWhetherAnythingIsLost) {
   ASSERT_EQ(run("(cat one.mcap; echo more) > three.mcap").code, 0);
   const Answer three = run("prehend recording recover three.mcap -o d.mcap");
   EXPECT_EQ(three.code, 1);
-  EXPECT_THAT(three.complaint, HasSubstr("5 bytes behind"));
+  EXPECT_THAT(three.complaint, HasSubstr("5 bytes after"));
 }
 
 /// A recording of others: channels as given, each with messages at these times; statistics and the

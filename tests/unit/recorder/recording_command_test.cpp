@@ -274,8 +274,7 @@ TEST_F(RecordingCommand, RecordsThatAreWrongAreSaid) {
           record_of(6, std::string(16, 0) + little_endian(inner.size()) + std::string(8, 0) +
                            little_endian(inner.size()) + inner));
   for (const auto& [command, says] :
-       {std::pair("write open.json -o x.mcap",
-                  "open.json: no DataEnd among the records (end them "),
+       {std::pair("write open.json -o x.mcap", "open.json: no DataEnd among the records (put one "),
         std::pair("write flat.json -o x.mcap", "flat.json: meta: meta.variant.features is no list"),
         std::pair("records killed.mcap", ": the file has no footer (prehend recording recover"),
         std::pair("records nested.mcap", ": damaged: a chunk inside a chunk")}) {

@@ -13,6 +13,7 @@
 #include "common/base/terminal.hpp"
 #include "common/base/to_terminal.hpp"
 #include "common/recording/compare/recorded_topic.hpp"
+#include "common/recording/mcap/record_stream.hpp"
 #include "services/recorder/tools/recording/commands.hpp"
 #include "services/recorder/tools/recording/copy.hpp"
 
@@ -95,8 +96,9 @@ int run(const EditArguments& arguments) {
     };
   auto result = copy(sources, arguments.to, options);
   if (!result) return complain(result.error(), exit_broken);
-  // What else could be done is done here already.
-  for (Error& error : result->damage) error.hint.clear();
+  // What that tells to do is done here.
+  for (Error& error : result->damage)
+    if (error.hint == recording::mcap::damage_hint) error.hint.clear();
   for (const Error& error : result->damage) log::warning(error);
   for (const Error& error : result->remarks) log::warning(error);
   if (arguments.json) {
