@@ -198,6 +198,7 @@ const std::vector<std::string>& other_variables() {
       "PREHEND_LOG",          // common/tool/program.hpp
       "PREHEND_SEED",         // containers (deploy): the scene, the gateway between sites,
       "PREHEND_GATEWAY",      //
+      "PREHEND_HANDS",        // two that carry something together,
       "PREHEND_TRACKER",      // devices on the host,
       "PREHEND_CAMERA",       //
       "PREHEND_RECORDING",    // and what is played instead

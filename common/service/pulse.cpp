@@ -10,8 +10,9 @@
 #include <atomic>
 #include <cerrno>
 #include <cstring>
-#include <map>
 #include <string_view>
+
+#include "common/service/instance.hpp"
 
 namespace prehend::service {
 namespace {
@@ -52,11 +53,8 @@ bool is_ours(int handle) {
 std::string pulse_name(const Config& config, const std::string& service) {
   std::string name = fmt::format("prehend/{}/{}/{}", config.integer("lab.domain"),
                                  config.text("lab.rig"), service);
-  // Of what a lab has for each hand, by the hand.
-  static const std::map<std::string, std::string, std::less<>> by_hand{
-      {"glove", "glove.name"}, {"mapping", "mapping.hand_name"}, {"robot", "robot.hand_name"}};
-  if (const auto key = by_hand.find(service); key != by_hand.end())
-    name += "/" + config.text(key->second);
+  if (const std::string instance = instance_of(config, service); !instance.empty())
+    name += "/" + instance;
   return name;
 }
 

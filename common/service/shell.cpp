@@ -18,6 +18,7 @@
 #include "common/dds/dds_log.hpp"
 #include "common/dds/security.hpp"
 #include "common/dds/topics.hpp"
+#include "common/service/instance.hpp"
 #include "common/service/lockstep_loop.hpp"
 #include "common/service/membership.hpp"
 #include "common/service/pulse.hpp"
@@ -194,7 +195,8 @@ struct Shell::State {
               *keys, seconds(86400 * config.number("keys.revocation_max_age")), started))
         return tl::unexpected(std::move(*trouble));
     const std::string host = host_name();
-    auto publisher = StatusPublisher::create(*participant, options.name, host, started);
+    auto publisher = StatusPublisher::create(*participant, options.name, host,
+                                             instance_of(config, options.name), started);
     if (!publisher) return tl::unexpected(publisher.error());
     status_publisher.emplace(std::move(*publisher));
     // Keys of before there was this topic do not permit it, and the rest works.

@@ -9,6 +9,7 @@
 
 #include "common/base/log.hpp"
 #include "common/dds/topics.hpp"
+#include "common/service/instance.hpp"
 
 namespace prehend::service {
 namespace {
@@ -41,14 +42,13 @@ StatusPublisher::StatusPublisher(dds::Participant& participant,
 
 Expected<StatusPublisher> StatusPublisher::create(dds::Participant& participant,
                                                   const std::string& name, const std::string& host,
-                                                  Time started) {
+                                                  const std::string& instance, Time started) {
   auto writer = participant.writer(dds::service_status);
   if (!writer) return tl::unexpected(writer.error());
   StatusPublisher made(participant, std::move(*writer), started);
   made.message_.name(name.c_str());
   made.message_.host(host.c_str());
-  made.message_.service(
-      (name + "@" + host + "/" + std::to_string(getpid())).substr(0, 128).c_str());
+  made.message_.service(status_key(name, host, instance).c_str());
   return made;
 }
 

@@ -21,12 +21,14 @@ std::string host_name();
 /// were refused before they reached it, its uptime and memory.
 class StatusPublisher {
  public:
+  /// instance: whose it is, of several of that name.
   static Expected<StatusPublisher> create(dds::Participant& participant, const std::string& name,
-                                          const std::string& host, Time started);
+                                          const std::string& host, const std::string& instance,
+                                          Time started);
   /// Publishes service/settings, once for all.
   Expected<void> tell_settings(const std::map<std::string, std::string>& settings);
 
-  /// NAME@HOST/PID: the key of service/status.
+  /// The key of service/status.
   std::string service() const { return message_.service().to_string(); }
   Time next() const { return next_; }
   /// Publishes when it is due, and says when the next one is.

@@ -74,14 +74,15 @@ class TwoHands : public Rig {
   std::map<std::string, std::string> models_;
   Pose X_WO_ = Pose::Identity();  // of the crate
 
- private:
-  void write_text(const std::string& name, const std::string& text) {
-    ASSERT_TRUE(write_file(folder_ / name, text));
-  }
   Strings sets(Strings own) const {
     own.push_back("lab.catalogue=" + (folder_ / "catalogue.toml").string());
     own.push_back("lab.scene=" + (folder_ / "scene.toml").string());
     return own;
+  }
+
+ private:
+  void write_text(const std::string& name, const std::string& text) {
+    ASSERT_TRUE(write_file(folder_ / name, text));
   }
 
   dds::Reader<v1::HandState> states_ = reader(dds::robot_state);
@@ -94,7 +95,11 @@ class TwoHands : public Rig {
   std::map<std::string, stage::Process> gloves_;
 };
 
+// Who did not start them tells what they do as well.
 TEST_F(TwoHands, CarryWhatIsTooWideForOne) {
+  Strings look{"demo", "--hands", "left:barrett,right:barrett", "--attach", "--json"};
+  for (const std::string& set : sets({})) look.insert(look.end(), {"--set", set});
+  auto attached = start_program("prehend", with_lab(look));
   start_glove("left");
   start_glove("right");
   const auto crate = [&](const auto& holds) {
@@ -113,6 +118,25 @@ TEST_F(TwoHands, CarryWhatIsTooWideForOne) {
   EXPECT_LT(tilt, 10 * M_PI / 180);
   EXPECT_EQ(models_["left"], "barrett_left");
   EXPECT_EQ(models_["right"], "barrett");
+  const auto exit = attached.wait(seconds(30));
+  ASSERT_TRUE(exit);
+  EXPECT_EQ(exit->code, 0) << file_text(attached.log());
+}
+
+TEST_F(TwoHands, WhoLooksMustKnowWhatIsCarried) {
+  const Answer none = order({"demo", "--hands", "left:barrett,right:barrett", "--attach"});
+  EXPECT_EQ(none.exit_code, 2);
+  EXPECT_NE(none.log.find("lab.scene: tells nothing that two hands could carry"), std::string::npos)
+      << none.log;
+  Strings words{"demo",     "--hands",   "left:barrett,right:barrett", "--task",
+                "hand-over", "--attach"};
+  for (const std::string& set : sets({})) words.insert(words.end(), {"--set", set});
+  const Answer other = order(words);
+  EXPECT_EQ(other.exit_code, 2);
+  EXPECT_NE(other.log.find("scene.toml: shows another --task"), std::string::npos) << other.log;
+  const Answer half = order({"scene", "--hands", "left:barrett,right:barrett"});
+  EXPECT_EQ(half.exit_code, 2);
+  EXPECT_NE(half.log.find("--hands requires --catalogue"), std::string::npos) << half.log;
 }
 
 TEST_F(TwoHands, NeedAGloveThatSomebodyCarriesWith) {

@@ -1,6 +1,6 @@
 // Starts what the manifests start (lab.mjs). Then startup, readiness and liveness probes, the outcome of
 // the jobs, and that a container is locked up and a stranger is shut out.
-// Exit code 77: skipped. With PREHEND_LONG also the two sites, a recording and a planner.
+// Exit code 77: skipped. With PREHEND_LONG also the two sites, a recording, a planner and two hands.
 import { chmodSync, mkdirSync, readdirSync } from "node:fs";
 import { Lab, begin, clean, docker, images } from "./lab.mjs";
 
@@ -39,6 +39,7 @@ await together([new Lab("demo", folder)], {});
 if (process.env.PREHEND_LONG) {
   await together([new Lab("replay", folder)], {});
   await together([new Lab("planned", folder)], {});
+  await together([new Lab("two-hands", folder)], {});
   const secrets = keys(folder, "sites");
   const robot = new Lab("robot-site-planned", folder, secrets), glove = new Lab("glove-site", folder, secrets);
   const gateway = robot.objects.find((o) => o.kind === "ConfigMap").data.GATEWAY;

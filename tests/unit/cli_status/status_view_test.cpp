@@ -91,6 +91,31 @@ TEST(StatusView, ThePageSaysWhatGoesOn) {
   EXPECT_THAT(StatusView({}).page(start), HasSubstr("no service is there"));
 }
 
+// A lab of two hands has two of some: it says whose each is, and one of them is not both.
+TEST(StatusView, OfSeveralOfANameItSaysWhose) {
+  StatusView view({});
+  const auto mapping_of = [](const std::string& hand) {
+    v1::ServiceStatus mapping = status("mapping");
+    mapping.service("mapping@here/" + hand + "/1");
+    return mapping;
+  };
+  view.hear(status("simulation"), start);
+  view.hear(mapping_of("left"), start);
+  EXPECT_EQ(view.up("mapping", start), 1u);
+  EXPECT_THAT(view.page(start), Not(HasSubstr("mapping left")));
+  view.hear(mapping_of("right"), start);
+  EXPECT_EQ(view.up("mapping", start), 2u);
+  EXPECT_EQ(view.up("simulation", start), 1u);
+  EXPECT_THAT(view.page(start), HasSubstr("\nmapping left  here"));
+  EXPECT_THAT(view.page(start), HasSubstr("\nmapping right here"));
+  EXPECT_THAT(view.page(start), HasSubstr("\nsimulation    here"));
+  const json document = json::parse(view.json(start));
+  EXPECT_EQ(document["services"][0]["instance"], "left");
+  EXPECT_EQ(document["services"][2]["instance"], "");
+  view.lose("mapping@here/left/1", start);
+  EXPECT_EQ(view.up("mapping", start), 1u);
+}
+
 // Whatever a service calls itself: the terminal shows it and does not obey it.
 TEST(StatusView, NamesCommandNoTerminal) {
   v1::ServiceStatus evil = status("a\x1b[2J", "b\x1b]0;c\x07");

@@ -15,7 +15,7 @@ namespace {
 
 std::string to_json(const Carried& carried, const CarryOptions& options) {
   return nlohmann::ordered_json{{"task", options.task == CarryTask::carry ? "carry" : "hand-over"},
-                                {"hands", {{"left", options.left}, {"right", options.right}}},
+                                {"hands", {{"left", options.hands.left}, {"right", options.hands.right}}},
                                 {"seed", options.seed},
                                 {"lifted_m", carried.lifted},
                                 {"off_m", carried.off},
@@ -71,13 +71,18 @@ int carry_command(const std::vector<std::string>& arguments) {
   app.add_option("--timeout", options.timeout, "s until it must stand again")
       ->check(CLI::Range(1.0, 3600.0));
   app.add_option("--record", options.record, "record all topics into this file");
-  app.add_flag("--watch", options.watch, "with a page that shows it (console.port), until Ctrl-C");
+  auto* watch = app.add_flag("--watch", options.watch,
+                             "with a page that shows it (console.port), until Ctrl-C");
+  app.add_flag("--attach", options.attach, "start nothing, judge the lab that runs")
+      ->excludes(watch);
   app.add_flag("--keep", options.keep, "keep scene and logs");
   app.add_flag("--json", json, "one JSON document on standard output");
   app.add_flag("--quiet", quiet, "no progress");
   if (const auto code = service::parse(app, arguments)) return *code;
   options.task = task == "carry" ? CarryTask::carry : CarryTask::hand_over;
-  if (auto read = read_hands(hands, options); !read) return service::complain(read.error());
+  const auto read = read_hands(hands);
+  if (!read) return service::complain(read.error());
+  options.hands = *read;
 
   Screen screen(quiet);
   const auto carried = carry(options, screen.progress());

@@ -8,8 +8,6 @@
 #include <optional>
 #include <set>
 
-#include "common/base/file_text.hpp"
-#include "common/base/random.hpp"
 #include "common/convert/convert.hpp"
 #include "common/dds/participant.hpp"
 #include "common/dds/topics.hpp"
@@ -19,87 +17,57 @@
 #include "services/cli/tools/demo/chosen_hand.hpp"
 #include "services/cli/tools/demo/emulated_glove.hpp"
 #include "services/cli/tools/demo/page.hpp"
-#include "services/cli/tools/demo/pressing.hpp"
-#include "services/cli/tools/demo/setting.hpp"
 
 namespace prehend::cli {
 namespace {
 
-using Eigen::Vector3d;
-
-const Vector3d aside(0.30, 0, 0);  // m
-/// Where a crate is pressed: so much of half its height above its middle, that it hangs level.
-constexpr double pressed_above = 0.3;
-/// Where a tube is taken: so much of half its height above its middle, and below it.
-constexpr double taken_above = 0.5;
-
 /// Whom the gloves wait for: nobody reaches before they are there.
 const std::set<std::string> awaited{"simulation", "mapping", "person"};
-
-/// A crate that no hand holds alone.
-model::CatalogueObject drawn_crate(Random& random) {
-  model::CatalogueObject object;
-  object.name = "Crate";
-  object.shape = {
-      model::ShapeKind::box,
-      Vector3d(random.uniform(0.26, 0.34), random.uniform(0.22, 0.28), random.uniform(0.22, 0.28))};
-  object.mass = random.uniform(0.4, 0.8);
-  object.material = "wood";
-  return object;
-}
-
-/// A tube on which two hands find room, one above the other.
-model::CatalogueObject drawn_tube(Random& random) {
-  model::CatalogueObject object;
-  object.name = "Tube";
-  const double radius = random.uniform(0.028, 0.034);
-  object.shape = {model::ShapeKind::cylinder, Vector3d(radius, radius, random.uniform(0.30, 0.34))};
-  object.mass = random.uniform(0.1, 0.3);
-  object.material = "plastic";
-  return object;
-}
-
-/// Where the right hand takes a tube that stands: from its own side.
-Pose taking_pose(const model::Shape& tube) {
-  const Vector3d toward = -Vector3d::UnitX();
-  return make_pose(Vector3d(0, 0, taken_above * model::half_extents(tube).z()),
-                   model::grasp_axes(toward, toward.cross(Vector3d::UnitZ())));
-}
-
-std::string entry_of(const model::CatalogueObject& object) {
-  const Vector3d& size = object.shape.size;
-  return fmt::format(
-      "[[object]]\nname = \"{}\"\nshape = \"{}\"\nsize = [{:.4f}, {:.4f}, {:.4f}]\nmass = {:.3f}\n"
-      "material = \"{}\"\n[object.appearance]\ncolours = [[0.68, 0.51, 0.33]]\npattern = "
-      "\"plain\"\nseed = 1\n",
-      object.name, model::to_string(object.shape.kind), size.x(), size.y(), size.z(), object.mass,
-      object.material);
-}
 
 /// The lab of a play, and what is heard of it.
 class CarryPlay {
  public:
-  CarryPlay(const CarryOptions& options, stage::Stage& stage)
-      : options_(options), stage_(stage), judge_(aside) {}
+  CarryPlay(const CarryOptions& options, stage::Stage& stage) : options_(options), stage_(stage) {}
 
   Expected<Carried> play() {
-    if (auto chosen = choose_glove(); !chosen) return tl::unexpected(chosen.error());
-    if (auto set = set_up(); !set) return tl::unexpected(set.error());
-    if (auto started = start(); !started) return tl::unexpected(started.error());
+    if (auto ready = options_.attach ? attach() : put_up(); !ready)
+      return tl::unexpected(ready.error());
     const auto over = stage_.until(
-        "carrying", [&] { return judge_.is_over(); },
+        "carrying", [&] { return judge_->is_over(); },
         [&] {
-          return Error{fmt::format("the {} was not lifted and set down again", object_.name),
+          return Error{fmt::format("the {} was not lifted and set down again", object_),
                        "demo", "", exit_no};
         });
     if (!over && over.error().exit != exit_no) return tl::unexpected(over.error());
-    const Carried carried = judge_.carried();
+    const Carried carried = judge_->carried();
     while (over && options_.watch && stage_.look("watching")) {
     }
     return carried;
   }
 
  private:
+  Expected<void> put_up() {
+    return choose_glove().and_then([&] { return set_up(); }).and_then([&] { return start(); });
+  }
+
+  /// Starts nothing: hears the lab of the configuration, whose scene says what is carried, and where
+  /// to.
+  Expected<void> attach() {
+    const auto config = options_.lab.load();
+    if (!config) return wrong_use(config.error().what, config.error().where, config.error().hint);
+    const auto file = config->path("lab.scene");
+    if (file.empty())
+      return wrong_use("tells nothing that two hands could carry", "lab.scene",
+                       "--set lab.scene=FILE, as `prehend scene --hands …` writes it");
+    const auto catalogue = model::Catalogue::load(config->path("lab.catalogue"));
+    if (!catalogue) return tl::unexpected(catalogue.error());
+    const auto scene = model::load_scene(file, *catalogue);
+    if (!scene) return tl::unexpected(scene.error());
+    if (scene->demonstrator.hands_over != (options_.task == CarryTask::hand_over))
+      return wrong_use("shows another --task", file.string());
+    return listen(*config, scene->demonstrator);
+  }
+
   Expected<void> choose_glove() {
     auto gloves = ask_glove_rows();
     if (!gloves) return tl::unexpected(gloves.error());
@@ -115,41 +83,28 @@ class CarryPlay {
 
   /// Scene and catalogue, which all are told of.
   Expected<void> set_up() {
-    Random random(options_.seed * 7919 + 17);
-    const bool pressed = options_.task == CarryTask::carry;
-    object_ = pressed ? drawn_crate(random) : drawn_tube(random);
+    const auto setting = make_carry_setting(options_.task, options_.seed, options_.hands.right);
+    if (!setting) return tl::unexpected(setting.error());
     const auto catalogue_file = stage_.folder() / "catalogue.toml";
     const auto scene_file = stage_.folder() / "scene.toml";
-    if (auto written = write_file(catalogue_file, entry_of(object_)); !written) return written;
-    auto scene =
-        model::make_scene(model::Catalogue({object_}), options_.seed,
-                          {.target = object_.name, .graspable = {object_.name}, .distractors = 0});
-    if (!scene) return tl::unexpected(scene.error());
-    const double height = model::half_extents(object_.shape).z();
-    scene->objects.front().X_WO = make_pose(
-        Vector3d(-0.15 + random.uniform(-0.04, 0.04), random.uniform(-0.05, 0.05), height));
-    scene->demonstrator.carry_W = aside;
-    const auto hand = model::HandModel::load(model::hand_directory(options_.right));
-    if (!hand) return tl::unexpected(hand.error());
-    const auto X_OG = pressed ? pressing_pose(*hand, object_.shape, pressed_above * height)
-                              : taking_pose(object_.shape);
-    if (!X_OG) return wrong_use("does not reach the crate", options_.right);
-    scene->demonstrator.X_OG = *X_OG;
-    scene->demonstrator.hands_over = !pressed;
-    if (auto written = write_setting(*scene, scene_file); !written) return written;
+    if (auto written = write_carry_setting(*setting, catalogue_file, scene_file); !written)
+      return written;
+    const model::Demonstrator& person = setting->scene.demonstrator;
     stage_.set("lab.catalogue=" + catalogue_file.string());
     stage_.set("lab.scene=" + scene_file.string());
     stage_.set("mapping.model=");  // that of the hand
-    stage_.set("glove.user=" + scene->demonstrator.user);
-    stage_.set(fmt::format("glove.hand_scale={:.3f}", scene->demonstrator.hand_scale));
+    stage_.set("glove.user=" + person.user);
+    stage_.set(fmt::format("glove.hand_scale={:.3f}", person.hand_scale));
     scene_file_ = scene_file.string();
-    return listen();
-  }
-
-  Expected<void> listen() {
     const auto config = stage_.config();
     if (!config) return tl::unexpected(config.error());
-    auto participant = dds::Participant::create(service::membership(*config, "prehend", "viewer"));
+    return listen(*config, person);
+  }
+
+  Expected<void> listen(const service::Config& config, const model::Demonstrator& person) {
+    object_ = person.target;
+    judge_.emplace(person.carry_W);
+    auto participant = dds::Participant::create(service::membership(config, "prehend", "viewer"));
     if (!participant) return tl::unexpected(participant.error());
     participant_.emplace(std::move(*participant));
     auto statuses = participant_->reader(dds::service_status);
@@ -161,7 +116,7 @@ class CarryPlay {
     touches_.emplace(std::move(*touches));
     stage_.on_look([this] {
       hear();
-      return fmt::format("lifted by {:.0f} mm", 1000 * judge_.carried().lifted);
+      return fmt::format("lifted by {:.0f} mm", 1000 * judge_->carried().lifted);
     });
     return {};
   }
@@ -174,14 +129,14 @@ class CarryPlay {
     for (const auto& sample : touches_->take()) {
       if (sample.info.gone) continue;
       const auto& pads = sample.data.pads();
-      judge_.feel(sample.data.hand().to_string(),
+      judge_->feel(sample.data.hand().to_string(),
                   std::any_of(pads.begin(), pads.end(),
                               [](const v1::PadTouch& pad) { return pad.touching(); }));
     }
     for (const auto& sample : objects_->take()) {
-      if (sample.info.gone || sample.data.body().to_string() != object_.name) continue;
+      if (sample.info.gone || sample.data.body().to_string() != object_) continue;
       if (const auto X_WO = convert::from_message(sample.data.X_WO()))
-        judge_.see(*X_WO, from_ns(sample.data.stamp_ns()));
+        judge_->see(*X_WO, from_ns(sample.data.stamp_ns()));
     }
   }
 
@@ -194,7 +149,8 @@ class CarryPlay {
         return started;
     if (options_.watch)
       if (auto started = show_page(stage_); !started) return started;
-    const std::string left = hand_setting(options_.left), right = hand_setting(options_.right);
+    const std::string left = hand_setting(options_.hands.left),
+                      right = hand_setting(options_.hands.right);
     auto started = stage_.start_service(
         "simulation", {fmt::format("simulation.hands=[\"left:{}\", \"right:{}\"]", left, right)});
     for (const std::string side : {"left", "right"}) {
@@ -236,8 +192,8 @@ class CarryPlay {
 
   const CarryOptions& options_;
   stage::Stage& stage_;
-  CarryJudge judge_;
-  model::CatalogueObject object_;  // that is carried
+  std::optional<CarryJudge> judge_;
+  std::string object_;  // that is carried
   std::string scene_file_;
   std::vector<GloveRow> gloves_;  // that there are
   GloveRow glove_;
@@ -250,33 +206,11 @@ class CarryPlay {
 
 }  // namespace
 
-Expected<void> read_hands(const std::vector<std::string>& entries, CarryOptions& options) {
-  const std::string some = model::hand_names().front();
-  const std::string hint = fmt::format("as --hands left:{},right:{}", some, some);
-  std::map<std::string, std::string> hands;
-  for (const std::string& entry : entries) {
-    const std::size_t colon = entry.find(':');
-    const std::string side = entry.substr(0, colon);
-    if (colon == std::string::npos || colon + 1 == entry.size() ||
-        (side != "left" && side != "right") || hands.contains(side))
-      return wrong_use("«" + entry + "» is no hand", "--hands", hint);
-    hands[side] = entry.substr(colon + 1);
-  }
-  if (hands.size() != 2) return wrong_use("names one hand", "--hands", hint);
-  std::string& left = hands["left"];
-  if (!left.ends_with("_left")) left += "_left";
-  for (const auto& [side, hand] : hands)
-    if (!model::is_hand(model::hand_directory(hand)))
-      return wrong_use("'" + hand + "' is no hand", "--hands", model::hand_hint());
-  options.left = left;
-  options.right = hands["right"];
-  return {};
-}
-
 Expected<Carried> carry(const CarryOptions& options, const stage::Progress& progress) {
   // The mirror image is led by the same networks.
-  if (auto trained = train_hand({.lab = options.lab, .hand = options.right}); !trained)
-    return tl::unexpected(trained.error());
+  if (!options.attach)
+    if (auto trained = train_hand({.lab = options.lab, .hand = options.hands.right}); !trained)
+      return tl::unexpected(trained.error());
   auto stage = stage::Stage::create({options.lab, options.timeout, options.keep, progress});
   if (!stage) return tl::unexpected(stage.error());
   return CarryPlay(options, *stage).play();

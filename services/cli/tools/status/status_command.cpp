@@ -56,7 +56,7 @@ struct Arguments {
     lab.add_to(app);
     app.add_option("--wait", awaited,
                    "ends as soon as this service is up, with exit code 1 when it is not in time; "
-                   "repeatable")
+                   "repeatable, and twice the same awaits two of it")
         ->type_size(1)
         ->allow_extra_args(false);
     app.add_option("--timeout", timeout, "s to listen, where the table is not renewed")
@@ -110,8 +110,10 @@ int status_command(const std::vector<std::string>& arguments) {
 
   StatusView view(config->names("lab.services"));
   const auto all_up = [&] {
-    return std::all_of(given.awaited.begin(), given.awaited.end(),
-                       [&](const std::string& name) { return view.is_up(name, process_now()); });
+    return std::all_of(given.awaited.begin(), given.awaited.end(), [&](const std::string& name) {
+      const auto times = std::count(given.awaited.begin(), given.awaited.end(), name);
+      return view.up(name, process_now()) >= static_cast<std::size_t>(times);
+    });
   };
   const bool live =
       !given.json && !given.once && given.awaited.empty() && has_cursor(STDOUT_FILENO);

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "common/base/printable.hpp"
+#include "common/service/instance.hpp"
 #include "common/service/status.hpp"
 
 namespace prehend::cli {
@@ -87,13 +88,14 @@ bool StatusView::is_silent(const Service& service, Time now) const {
   return service.gone || now - service.heard > max_silence;
 }
 
-bool StatusView::is_up(std::string_view name, Time now) const {
-  return std::any_of(services_.begin(), services_.end(), [&](const auto& entry) {
-    const Service& service = entry.second;
-    return service.status.name().to_string() == name && !is_silent(service, now) &&
-           (service.status.state() == v1::STATE_RUNNING ||
-            service.status.state() == v1::STATE_DEGRADED);
-  });
+std::size_t StatusView::up(std::string_view name, Time now) const {
+  return static_cast<std::size_t>(
+      std::count_if(services_.begin(), services_.end(), [&](const auto& entry) {
+        const Service& service = entry.second;
+        return service.status.name().to_string() == name && !is_silent(service, now) &&
+               (service.status.state() == v1::STATE_RUNNING ||
+                service.status.state() == v1::STATE_DEGRADED);
+      }));
 }
 
 std::vector<std::string> StatusView::missing(Time now) const {
@@ -139,6 +141,15 @@ std::string StatusView::state(const Service& service, Time now) const {
   return std::string(to_string(service.status.state()));
 }
 
+std::string StatusView::title(const Service& service) const {
+  const auto& name = service.status.name();
+  const auto same = std::count_if(services_.begin(), services_.end(), [&](const auto& entry) {
+    return entry.second.status.name() == name;
+  });
+  const std::string whose = service::instance_in(service.status.service().to_string());
+  return same < 2 || whose.empty() ? shown(name) : shown(name) + " " + printable(whose);
+}
+
 std::string StatusView::page(Time now) const {
   if (services_.empty()) return "no service is there\n" + strangers();
   std::set<std::string> hosts;
@@ -159,7 +170,7 @@ std::string StatusView::page(Time now) const {
         : offset->against == key
             ? "the measure"
             : fmt::format("{:+.4f} s ± {}", offset->offset, latency(1e6 * offset->uncertainty));
-    text += fmt::format("{:<14}{:<18}{:<12}{:>8}{:>6.0f} MB{}{}\n", shown(status.name()),
+    text += fmt::format("{:<14}{:<18}{:<12}{:>8}{:>6.0f} MB{}{}\n", title(service),
                         shown(status.host()), state(service, now), age(status.uptime()),
                         status.resident() / 1e6, right(by, 24),
                         told_ ? right(service.middleware, 15) : "");
@@ -174,25 +185,25 @@ std::string StatusView::page(Time now) const {
     if (!lines.empty()) text += "\n" + title + "\n" + lines;
   };
   section(fmt::format("{:<14}{:<40}{:>10}{:>14}", "SERVICE", "RATE", "A SECOND", "TOTAL"),
-          [](const Service& service, std::string& lines) {
+          [&](const Service& service, std::string& lines) {
             for (const v1::Rate& rate : service.status.rates())
-              lines += fmt::format("{:<14}{:<40}{:>10.1f}{:>14}\n", shown(service.status.name()),
+              lines += fmt::format("{:<14}{:<40}{:>10.1f}{:>14}\n", title(service),
                                    shown(rate.name()), rate.per_second(), rate.total());
           });
   section(fmt::format("{:<14}{:<40}{:>10}{:>10}{:>10}", "SERVICE", "LATENCY", "P50", "P99", "MOST"),
-          [](const Service& service, std::string& lines) {
+          [&](const Service& service, std::string& lines) {
             for (const v1::StageLatency& stage : service.status.latency())
-              lines += fmt::format("{:<14}{:<40}{}{}{}\n", shown(service.status.name()),
+              lines += fmt::format("{:<14}{:<40}{}{}{}\n", title(service),
                                    shown(stage.stage()), right(latency(stage.p50_us()), 10),
                                    right(latency(stage.p99_us()), 10),
                                    right(latency(stage.max_us()), 10));
           });
   section(fmt::format("{:<14}{:<40}{:>10}{:>14}", "SERVICE", "DROPPED", "NOW", "TOTAL"),
-          [](const Service& service, std::string& lines) {
+          [&](const Service& service, std::string& lines) {
             for (const v1::Drop& drop : service.status.drops()) {
               const auto fresh = service.fresh_drops.find(drop.reason().to_string());
               lines += fmt::format(
-                  "{:<14}{:<40}{:>10}{:>14}\n", shown(service.status.name()), shown(drop.reason()),
+                  "{:<14}{:<40}{:>10}{:>14}\n", title(service), shown(drop.reason()),
                   fresh == service.fresh_drops.end() ? "" : fmt::format("+{}", fresh->second),
                   drop.count());
             }
@@ -265,6 +276,7 @@ std::string StatusView::json(Time now) const {
     if (const auto beacon = beacons_.find(key); beacon != beacons_.end() && !time.is_null())
       time["system_clock_was_set_s"] = 1e-9 * static_cast<double>(beacon->second.first.step_ns());
     list.push_back({{"name", status.name().to_string()},
+                    {"instance", service::instance_in(key)},
                     {"host", status.host().to_string()},
                     {"key", key},
                     {"state", service.gone              ? "gone"

@@ -29,8 +29,8 @@ class StatusView {
   /// Peers that this process does not let in, with the reason.
   void refuse(std::vector<std::string> peers) { refused_ = std::move(peers); }
 
-  /// A service of this name says of itself that it works, and does so still.
-  bool is_up(std::string_view name, Time now) const;
+  /// How many services of this name say of themselves that they work, and do so still.
+  std::size_t up(std::string_view name, Time now) const;
   bool empty() const { return services_.empty(); }
   /// Names of expected services of which none is heard.
   std::vector<std::string> missing(Time now) const;
@@ -58,6 +58,8 @@ class StatusView {
   const v1::ClockBeacon* measure(Time now) const;
   std::optional<Clock> clock(const std::string& key, Time now) const;
   std::string state(const Service& service, Time now) const;
+  /// Its name, and where there are others of that name, whose it is.
+  std::string title(const Service& service) const;
   std::string gates(Time now) const;
   std::string strangers() const;
 
