@@ -87,6 +87,8 @@ const std::vector<ConfigKey>& config_keys() {
       {"mapping.placement", true, "let them correct the hand's placement as well"},
       {"mapping.glove", Text(""),
        "glove.name of the glove that leads; empty: the first that comes"},
+      {"mapping.other_hands", Names{},
+       "hands in the same world that this one keeps off, by their names in robot/state"},
       {"mapping.clutch_speed", 0.1, "m/s, at which the hands come together after an interruption"},
       {"mapping.clutch_turn_speed", 0.5, "rad/s, at which their orientations do"},
       {"mapping.clutch_finger_speed", 0.5, "rad/s, at which their fingers do"},

@@ -17,45 +17,8 @@ constexpr int max_steps = 32;       // of one command
 constexpr double rounding = 1e-6;   // m
 constexpr double part_of = 0.0025;  // m, by which a piece may stick out of one that stands for it
 
-/// Where on the line from a to b the point nearest to p is, 0 to 1.
-double nearest(const Vector3d& a, const Vector3d& b, const Vector3d& p) {
-  const Vector3d along = b - a;
-  const double length = along.squaredNorm();
-  return length > 0 ? std::clamp(along.dot(p - a) / length, 0.0, 1.0) : 0.0;
-}
-
-/// Least distance between the lines from a to b and from c to d: the nearest points of the endless
-/// lines, or else one of them is an end.
-double distance_of_lines(const Vector3d& a, const Vector3d& b, const Vector3d& c,
-                         const Vector3d& d) {
-  const Vector3d u = b - a, v = d - c, w = a - c;
-  const double uu = u.squaredNorm(), vv = v.squaredNorm(), uv = u.dot(v);
-  const double determinant = uu * vv - uv * uv;
-  double s = 0;
-  if (determinant > 1e-12 * uu * vv)
-    s = std::clamp((uv * v.dot(w) - vv * u.dot(w)) / determinant, 0.0, 1.0);
-  const double t = nearest(c, d, a + s * u);
-  s = nearest(a, b, c + t * v);
-  return (a + s * u - c - t * v).norm();
-}
-
-/// The capsule that stands for a part of a finger: from -end to end in the part's frame.
-struct Capsule {
-  Vector3d end = Vector3d::Zero();
-  double radius = 0;
-};
-Capsule capsule_of(const model::Shape& shape) {
-  const Vector3d half = half_extents(shape);
-  int along = 2;
-  if (shape.kind == model::ShapeKind::box) half.maxCoeff(&along);
-  Capsule made;
-  made.radius = 0.5 * (half.sum() - half[along]);
-  // Cylinders of a finger have round ends, or are as squat as a ball; a box is flat there.
-  if (shape.kind == model::ShapeKind::cylinder && half[along] > made.radius)
-    made.end[along] = half[along];
-  if (shape.kind == model::ShapeKind::box)
-    made.end[along] = std::max(0.0, half[along] - 0.5 * made.radius);
-  return made;
+double length(const Capsule& capsule) {
+  return (capsule.b - capsule.a).norm();
 }
 
 /// The fingers that a DoF moves, a bit each.
@@ -76,27 +39,28 @@ FingerCollisionLimiter::FingerCollisionLimiter(const model::HandModel& hand) : h
     if (link.finger < 0) continue;
     std::vector<Piece> made;
     for (const model::CollisionShape& part : link.collision) {
-      const auto [end, radius] = capsule_of(part.shape);
-      made.push_back({static_cast<int>(i), link.finger, part.X_LS * -end, part.X_LS * end, radius});
+      const Capsule it = finger_capsule(part.shape);
+      made.push_back({static_cast<int>(i), link.finger, {part.X_LS * it.a, part.X_LS * it.b, it.radius}});
     }
     // The longest first; what lies within one that is there already adds nothing.
     std::stable_sort(made.begin(), made.end(), [](const Piece& one, const Piece& other) {
-      return (one.b_L - one.a_L).norm() > (other.b_L - other.a_L).norm();
+      return length(one.capsule_L) > length(other.capsule_L);
     });
     const auto first = static_cast<std::ptrdiff_t>(pieces_.size());
     for (const Piece& piece : made) {
-      const auto within = [&](const Piece& known) {
+      const auto within = [&](const Piece& other) {
+        const Capsule &known = other.capsule_L, &it = piece.capsule_L;
         const auto inside = [&](const Vector3d& p) {
-          const double s = nearest(known.a_L, known.b_L, p);
-          const double off = (known.a_L + s * (known.b_L - known.a_L) - p).norm();
-          return off + piece.radius <= known.radius + part_of;
+          const double s = nearest(known.a, known.b, p);
+          const double off = (known.a + s * (known.b - known.a) - p).norm();
+          return off + it.radius <= known.radius + part_of;
         };
-        return inside(piece.a_L) && inside(piece.b_L);
+        return inside(it.a) && inside(it.b);
       };
       if (std::none_of(pieces_.begin() + first, pieces_.end(), within)) pieces_.push_back(piece);
     }
   }
-  const auto open = place(hand.postures().at("open")).lines;
+  const auto open = place(hand.postures().at("open")).placed;
   for (std::size_t i = 0; i < pieces_.size(); ++i)
     for (std::size_t k = i + 1; k < pieces_.size(); ++k)
       if (pieces_[i].finger != pieces_[k].finger && distance({i, k}, open) > 0)
@@ -122,11 +86,8 @@ FingerCollisionLimiter::FingerCollisionLimiter(const model::HandModel& hand) : h
 
 FingerCollisionLimiter::Placed FingerCollisionLimiter::place(const VectorXd& dof) const {
   Placed placed{dof, hand_.link_poses(hand_.joint_angles(dof)), {}};
-  placed.lines.reserve(pieces_.size());
-  for (const Piece& piece : pieces_) {
-    const Pose& X = placed.X_BL[static_cast<std::size_t>(piece.link)];
-    placed.lines.push_back({X * piece.a_L, X * piece.b_L});
-  }
+  placed.placed.reserve(pieces_.size());
+  for (const Piece& piece : pieces_) placed.placed.push_back(placed_at(piece, placed));
   return placed;
 }
 
@@ -142,16 +103,16 @@ void FingerCollisionLimiter::move(Placed& hand, const Group& group) const {
     else
       X_BC.translate(q * joint.axis_J);
   }
-  for (const std::size_t i : group.pieces) {
-    const Pose& X = hand.X_BL[static_cast<std::size_t>(pieces_[i].link)];
-    hand.lines[i] = {X * pieces_[i].a_L, X * pieces_[i].b_L};
-  }
+  for (const std::size_t i : group.pieces) hand.placed[i] = placed_at(pieces_[i], hand);
 }
 
-double FingerCollisionLimiter::distance(const Pair& pair, const std::vector<Line>& lines) const {
-  const Line &one = lines[pair.one], &other = lines[pair.other];
-  return distance_of_lines(one.a, one.b, other.a, other.b) - pieces_[pair.one].radius -
-         pieces_[pair.other].radius;
+Capsule FingerCollisionLimiter::placed_at(const Piece& piece, const Placed& hand) {
+  const Pose& X_BL = hand.X_BL[static_cast<std::size_t>(piece.link)];
+  return {X_BL * piece.capsule_L.a, X_BL * piece.capsule_L.b, piece.capsule_L.radius};
+}
+
+double FingerCollisionLimiter::distance(const Pair& pair, const std::vector<Capsule>& placed) {
+  return mapping::distance(placed[pair.one], placed[pair.other]);
 }
 
 bool FingerCollisionLimiter::moves(const Group& group, const Pair& pair) const {
@@ -160,31 +121,32 @@ bool FingerCollisionLimiter::moves(const Group& group, const Pair& pair) const {
 }
 
 double FingerCollisionLimiter::clearance(const VectorXd& dof) const {
-  const auto lines = place(dof).lines;
+  const auto placed = place(dof).placed;
   double least = std::numeric_limits<double>::infinity();
-  for (const Pair& pair : pairs_) least = std::min(least, distance(pair, lines));
+  for (const Pair& pair : pairs_) least = std::min(least, distance(pair, placed));
   return least;
 }
 
 VectorXd FingerCollisionLimiter::go(const VectorXd& before, const VectorXd& after) const {
   Placed begin = place(before);
-  const auto end = place(after).lines;
+  const auto end = place(after).placed;
   std::vector<double> moved(pieces_.size());
   for (std::size_t i = 0; i < pieces_.size(); ++i)
-    moved[i] = std::max((end[i].a - begin.lines[i].a).norm(), (end[i].b - begin.lines[i].b).norm());
+    moved[i] =
+        std::max((end[i].a - begin.placed[i].a).norm(), (end[i].b - begin.placed[i].b).norm());
 
   // Pairs that can meet on the way. Most cannot, as the balls around them say.
   std::vector<Approach> close;
   bool free = true;
   for (const Pair& pair : pairs_) {
-    const Line &one = end[pair.one], &other = end[pair.other];
+    const Capsule &one = end[pair.one], &other = end[pair.other];
     const double way = moved[pair.one] + moved[pair.other];
-    const double thick = pieces_[pair.one].radius + pieces_[pair.other].radius;
-    const double reach = way + thick + 0.5 * ((one.b - one.a).norm() + (other.b - other.a).norm());
+    const double thick = one.radius + other.radius;
+    const double reach = way + thick + 0.5 * (length(one) + length(other));
     if (0.25 * (one.a + one.b - other.a - other.b).squaredNorm() > reach * reach) continue;
     const double then = distance(pair, end);
     if (then > way) continue;
-    close.push_back({pair, distance(pair, begin.lines)});
+    close.push_back({pair, distance(pair, begin.placed)});
     // A way as short as they are thick does not lead through each other.
     free = free && way < thick && then >= std::min(close.back().distance, 0.0) - rounding;
   }
@@ -221,7 +183,7 @@ bool FingerCollisionLimiter::creep(Placed& hand, const std::vector<Careful>& car
     move(hand, *group);
     then.clear();
     for (const std::size_t i : approaches) {
-      const double there = distance(close[i].pair, hand.lines);
+      const double there = distance(close[i].pair, hand.placed);
       if (there < std::min(close[i].distance, 0.0) - rounding) break;
       then.push_back(there);
     }

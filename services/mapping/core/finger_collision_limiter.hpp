@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "common/model/hand_model.hpp"
+#include "services/mapping/core/capsules.hpp"
 
 namespace prehend::mapping {
 
@@ -26,14 +27,10 @@ class FingerCollisionLimiter {
   double clearance(const Eigen::VectorXd& dof) const;
 
  private:
-  /// A piece of a link: all points up to `radius` from the line between two points.
+  /// Of a link.
   struct Piece {
     int link = 0, finger = 0;
-    Eigen::Vector3d a_L, b_L;
-    double radius = 0;
-  };
-  struct Line {
-    Eigen::Vector3d a, b;  // in B, m
+    Capsule capsule_L;
   };
   struct Pair {
     std::size_t one = 0, other = 0;  // pieces of different fingers
@@ -58,12 +55,13 @@ class FingerCollisionLimiter {
   struct Placed {
     Eigen::VectorXd dof;
     std::vector<Pose> X_BL;
-    std::vector<Line> lines;  // of the pieces
+    std::vector<Capsule> placed;  // pieces, in B
   };
 
   Placed place(const Eigen::VectorXd& dof) const;
   void move(Placed& hand, const Group& group) const;
-  double distance(const Pair& pair, const std::vector<Line>& lines) const;
+  static Capsule placed_at(const Piece& piece, const Placed& hand);
+  static double distance(const Pair& pair, const std::vector<Capsule>& placed);
   bool moves(const Group& group, const Pair& pair) const;
   bool creep(Placed& hand, const std::vector<Careful>& careful, const Eigen::VectorXd& change,
              std::vector<Approach>& close) const;

@@ -48,6 +48,7 @@ Mapping::Mapping(const model::HandModel& hand, const MappingModel& model,
       follow_through_(hand),
       grip_(hand, options.grip),
       motion_(hand, options.motion),
+      others_(hand),
       hold_(options.hold) {}
 
 Expected<void> Mapping::use(const MappingModes& modes) {
@@ -271,7 +272,9 @@ Eigen::VectorXd Mapping::follow_through(const Eigen::VectorXd& dof, Duration ela
 void Mapping::move_toward(const Eigen::VectorXd& dof, const Pose& X_WB, Duration elapsed) {
   const double together = options_.modes.intelligent ? weight() : 0;
   command_.dof = motion_.fingers(command_.dof, limited(dof), together, elapsed);
-  command_.X_WB = motion_.base(command_.X_WB, X_WB, elapsed);
+  const Pose before = command_.X_WB, free = motion_.base(before, X_WB, elapsed);
+  // Past another hand it may be pushed further than it may go.
+  command_.X_WB = motion_.base(before, others_.go(before, free, command_.dof), elapsed);
 }
 
 std::optional<Command> Mapping::tick(Time now) {

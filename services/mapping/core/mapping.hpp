@@ -22,6 +22,7 @@
 #include "services/mapping/core/mapping_modes.hpp"
 #include "services/mapping/core/motion_limits.hpp"
 #include "services/mapping/core/object_tracks.hpp"
+#include "services/mapping/core/other_hands.hpp"
 #include "services/mapping/core/placement.hpp"
 #include "services/mapping/core/posture.hpp"
 #include "services/mapping/core/target_selector.hpp"
@@ -106,6 +107,11 @@ class Mapping {
   /// Whether the robot hand obeys anybody, as its gate says. While it does not, commands stay where
   /// it is. placed: it is somewhere already; nothing: nobody says so.
   void on_gate(bool obeys, std::optional<bool> placed = {});
+  /// Another robot hand in the same world, which this one keeps off; capsules in W.
+  void on_other_hand(const std::string& name, std::vector<Capsule> capsules) {
+    others_.observe(name, std::move(capsules));
+  }
+  void on_other_hand_gone(const std::string& name) { others_.remove(name); }
   /// The next posture is of somebody else: the hands come together slowly.
   void interrupt() { interrupted_ = true; }
   /// A command to stay, once no posture has been answered for a while (HoldTimerOptions).
@@ -119,19 +125,19 @@ class Mapping {
   // The steps of a posture, in order; numbers are those of README.md.
   Expected<Features> features_of(const Posture& posture, Time now) const;  // 1, 2
   bool start(const Pose& X_WG, Time stamp, Time now);                      // 3
-  Pose clutch(const Pose& X_WG, Duration elapsed);                         // 3
+  Pose clutch(const Pose& X_WG, Duration elapsed);                         // 4
   bool are_apart(const Eigen::VectorXd& a, const Eigen::VectorXd& b) const;
   bool robot_is_elsewhere() const;
   void take_place_of_robot();
-  std::optional<GraspTarget> select_target(const Pose& X_WG, Time now);  // 4
-  void weigh(const std::optional<GraspTarget>& seen, Duration elapsed);  // 5, 6
+  std::optional<GraspTarget> select_target(const Pose& X_WG, Time now);  // 5, 6
+  void weigh(const std::optional<GraspTarget>& seen, Duration elapsed);  // 7, 8
   Expected<NetworkAnswer> answer(const Posture& posture, const Features& features,
-                                 Duration elapsed);                                        // 7, 8
-  NetworkAnswer known_answer(const Features& features, const GraspTarget& target) const;   // 8
-  void place(const Pose& X_WG, const std::optional<GraspTarget>& seen, Duration elapsed);  // 10, 11
+                                 Duration elapsed);                                        // 9, 10
+  NetworkAnswer known_answer(const Features& features, const GraspTarget& target) const;   // 10
+  void place(const Pose& X_WG, const std::optional<GraspTarget>& seen, Duration elapsed);  // 12, 13
   Eigen::VectorXd limited(const Eigen::VectorXd& dof) const;
-  Eigen::VectorXd follow_through(const Eigen::VectorXd& dof, Duration elapsed);      // 12
-  void move_toward(const Eigen::VectorXd& dof, const Pose& X_WB, Duration elapsed);  // 14 to 16
+  Eigen::VectorXd follow_through(const Eigen::VectorXd& dof, Duration elapsed);      // 14
+  void move_toward(const Eigen::VectorXd& dof, const Pose& X_WB, Duration elapsed);  // 16, 17
 
   /// Of the intelligent answer, 0 to 1.
   double weight() const { return std::min(arbitration_.weight(), trust_.bound()); }
@@ -153,6 +159,7 @@ class Mapping {
   FollowThrough follow_through_;
   GripController grip_;
   MotionLimits motion_;
+  OtherHands others_;
   HoldTimer hold_;
   std::optional<RobotState> state_;
   std::optional<Time> first_posture_;

@@ -33,6 +33,12 @@ RobotState Mirror::state(RobotState state) const {
   return state;
 }
 
+std::vector<Capsule> Mirror::capsules(std::vector<Capsule> in_W) const {
+  for (Capsule& one : in_W)
+    for (Eigen::Vector3d* p : {&one.a, &one.b}) p->x() = 2 * x_W_ - p->x();
+  return in_W;
+}
+
 Command Mirror::command(Command command) const {
   command.X_WB = pose(command.X_WB);
   return command;

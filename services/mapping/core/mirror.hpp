@@ -15,6 +15,7 @@ class Mirror {
   Pose pose(const Pose& X_W) const;
   Detection detection(Detection detection) const;
   RobotState state(RobotState state) const;
+  std::vector<Capsule> capsules(std::vector<Capsule> in_W) const;
   Command command(Command command) const;
   /// Objects are their own mirror images.
   model::GraspCandidates candidates(model::GraspCandidates planned) const;

@@ -19,6 +19,7 @@
 #include "services/mapping/core/mirror.hpp"
 #include "services/mapping/files/mapping_model_file.hpp"
 #include "services/mapping/service/messages.hpp"
+#include "services/mapping/service/other_states.hpp"
 #include "services/mapping/service/trained_model.hpp"
 
 namespace prehend::mapping {
@@ -84,6 +85,7 @@ class Service::Topics {
         modes_(modes),
         hand_name_(shell.config().text("mapping.hand_name")),
         wanted_glove_(shell.config().text("mapping.glove")),
+        others_(shell.config().names("mapping.other_hands"), shell.config().text("mapping.hand")),
         output_(shell.publish(dds::robot_command)),
         feedback_(shell.publish(dds::glove_feedback)),
         replies_(shell.publish(dds::operator_reply)),
@@ -176,13 +178,24 @@ class Service::Topics {
   }
 
   void on_state(const v1::HandState& message, const dds::SampleInfo& info) {
-    if (info.gone || message.hand() != hand_name_) return;
+    if (message.hand() != hand_name_) return on_other_state(message, info);
+    if (info.gone) return;
     const auto taken = state_from_message(message).and_then([&](RobotState state) {
       if (known_.mirror) state = known_.mirror->state(std::move(state));
       return mapping_.on_state(state);
     });
     if (!taken) return shell_.status().drop(taken.error().what);
     dof_ = convert::from_message(message.dof());
+  }
+
+  void on_other_state(const v1::HandState& message, const dds::SampleInfo& info) {
+    const std::string name = message.hand().to_string();
+    if (!others_.names(name)) return;
+    if (info.gone) return mapping_.on_other_hand_gone(name);
+    auto placed = others_.place(message);
+    if (!placed) return shell_.status().drop(placed.error().what);
+    if (known_.mirror) placed = known_.mirror->capsules(std::move(*placed));
+    mapping_.on_other_hand(name, std::move(*placed));
   }
 
   /// What the hand feels goes to the glove that leads it; while none does, nobody is told.
@@ -311,6 +324,7 @@ class Service::Topics {
   service::OrderBook orders_;
   MappingModes modes_;
   std::string hand_name_, wanted_glove_;
+  OtherStates others_;
   service::Shell::Output<v2::HandCommand> output_;
   service::Shell::Output<v1::GloveFeedback> feedback_;
   service::Shell::Output<v1::OperatorReply> replies_;

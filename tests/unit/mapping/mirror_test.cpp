@@ -80,5 +80,23 @@ TEST(Mirror, TwiceIsTheSameAgain) {
                   .X_OR.isApprox(planned.candidates[0].X_OR));
 }
 
+TEST(Mirror, OfCapsulesIsThatOfTheMirroredHand) {
+  const Mirror mirror(x_W);
+  const model::HandModel& right = test::hand("barrett");
+  const model::HandModel left = right.mirrored();
+  const Pose X_WB = make_pose({0.1, -0.2, 0.3}, Eigen::Quaterniond(0.9, 0.3, -0.2, 0.1).normalized());
+  const Eigen::VectorXd dof = 0.4 * right.postures().at("open") + Eigen::VectorXd::Constant(4, 0.3);
+  const auto there = mirror.capsules(HandCapsules(left).at(mirror.pose(X_WB), dof));
+  const auto here = HandCapsules(right).at(X_WB, dof);
+  ASSERT_EQ(there.size(), here.size());
+  for (std::size_t i = 0; i < here.size(); ++i) {
+    // Which of its ends comes first says nothing.
+    const bool as_is = (there[i].a - here[i].a).norm() < 1e-9 && (there[i].b - here[i].b).norm() < 1e-9;
+    const bool turned = (there[i].a - here[i].b).norm() < 1e-9 && (there[i].b - here[i].a).norm() < 1e-9;
+    EXPECT_TRUE(as_is || turned) << i;
+    EXPECT_EQ(there[i].radius, here[i].radius);
+  }
+}
+
 }  // namespace
 }  // namespace prehend::mapping

@@ -157,7 +157,8 @@ class CarryPlay {
       if (!started) return started;
       started = stage_.start(side + " mapping", "prehend-mapping", {},
                              {"mapping.hand=" + (side == "left" ? left : right),
-                              "mapping.hand_name=" + side, "mapping.glove=" + side});
+                              "mapping.hand_name=" + side, "mapping.glove=" + side,
+                              "mapping.other_hands=[\"left\", \"right\"]"});
     }
     std::size_t services = 3;
     // A tube is known, also where a hand hides it.
