@@ -196,6 +196,7 @@ void Gatekeeper::note_refused(audit::Event event, std::string_view reason,
 // --- commands
 
 void Gatekeeper::on_command(const v2::HandCommand& message, const dds::SampleInfo& info) {
+  if (std::ranges::find(robot_.beside, message.hand().to_string()) != robot_.beside.end()) return;
   const Time now = shell_.now();
   const auto passed = gate_.admit(from_message(message, info), now);
   const bool ours = passed || passed.error() != gate::Refusal::another_hand;

@@ -36,6 +36,8 @@ struct Robot {
   std::function<bool()> rests = [] { return true; };
   /// Goes there, though nobody commands it: to open while it is stopped.
   std::function<void(const gate::Place& place, Time now)> go;
+  /// Other hands that the same process moves: a command for them is nobody's mistake.
+  std::vector<std::string> beside = {};
   /// Can it hurt somebody? Then it wants consent unless safety.deadman says otherwise.
   bool is_real = false;
 };

@@ -15,8 +15,7 @@ std::string instance_of(const Config& config, std::string_view service) {
   return key == by_hand.end() ? "" : config.text(key->second);
 }
 
-std::string status_key(std::string_view service, std::string_view host,
-                       std::string_view instance) {
+std::string status_key(std::string_view service, std::string_view host, std::string_view instance) {
   return fmt::format("{}@{}/{}{}{}", service, host, instance, instance.empty() ? "" : "/",
                      ::getpid());
 }

@@ -9,7 +9,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr int most_of_a_box = 6;  // capsules beside each other
+constexpr int max_rows = 6;  // capsules beside each other
 
 /// Of a part that is no finger's: boxes, as palms are, by capsules side by side.
 std::vector<Capsule> capsules_of(const model::Shape& shape) {
@@ -21,7 +21,7 @@ std::vector<Capsule> capsules_of(const model::Shape& shape) {
   const double radius = half[thin];
   if (radius <= 0) return {finger_capsule(shape)};
   const double aside = half[across] - radius;
-  const int rows = std::min(most_of_a_box, 1 + static_cast<int>(std::ceil(aside / radius)));
+  const int rows = std::min(max_rows, 1 + static_cast<int>(std::ceil(aside / radius)));
   std::vector<Capsule> made;
   for (int row = 0; row < rows; ++row) {
     Vector3d middle = Vector3d::Zero(), end = Vector3d::Zero();
@@ -87,8 +87,8 @@ HandCapsules::HandCapsules(const model::HandModel& hand) : hand_(hand) {
         away[static_cast<std::size_t>(joint.parent)] + joint.X_PJ.translation().norm() + slid;
   }
   for (const auto& [link, capsule] : parts_)
-    reach_ = std::max(reach_, away[link] + capsule.radius +
-                                  std::max(capsule.a.norm(), capsule.b.norm()));
+    reach_ = std::max(reach_,
+                      away[link] + capsule.radius + std::max(capsule.a.norm(), capsule.b.norm()));
 }
 
 std::vector<Capsule> HandCapsules::at(const Pose& X_WB, const Eigen::VectorXd& dof) const {

@@ -40,7 +40,8 @@ FingerCollisionLimiter::FingerCollisionLimiter(const model::HandModel& hand) : h
     std::vector<Piece> made;
     for (const model::CollisionShape& part : link.collision) {
       const Capsule it = finger_capsule(part.shape);
-      made.push_back({static_cast<int>(i), link.finger, {part.X_LS * it.a, part.X_LS * it.b, it.radius}});
+      made.push_back(
+          {static_cast<int>(i), link.finger, {part.X_LS * it.a, part.X_LS * it.b, it.radius}});
     }
     // The longest first; what lies within one that is there already adds nothing.
     std::stable_sort(made.begin(), made.end(), [](const Piece& one, const Piece& other) {

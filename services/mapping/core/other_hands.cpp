@@ -24,8 +24,8 @@ void OtherHands::observe(const std::string& name, std::vector<Capsule> capsules)
   middle /= static_cast<double>(capsules.size());
   double radius = 0;
   for (const Capsule& one : capsules)
-    radius = std::max({radius, (one.a - middle).norm() + one.radius,
-                       (one.b - middle).norm() + one.radius});
+    radius = std::max(
+        {radius, (one.a - middle).norm() + one.radius, (one.b - middle).norm() + one.radius});
   others_[name] = {std::move(capsules), {middle, middle, radius}};
 }
 
@@ -62,12 +62,13 @@ Pose OtherHands::go(const Pose& before, const Pose& goal, const Eigen::VectorXd&
   Pose reached = before;
   Vector3d pushed = Vector3d::Zero();  // off the straight way
   for (int i = 1; i <= steps; ++i) {
-    Pose next = interpolate(before, goal, static_cast<double>(i) / steps);
+    Pose next = i == steps ? goal : interpolate(before, goal, static_cast<double>(i) / steps);
     next.pretranslate(pushed);
     std::vector<Capsule> ours = hand_.at(next, dof);
     Gap left = gap(ours);
-    for (int push = 0; push < max_pushes && left.distance < due - rounding; ++push) {
-      const Vector3d by = (due - left.distance) * left.away;
+    for (int push = 0; push < max_pushes && left.distance < due; ++push) {
+      // A little further than it must: else it would come nearer with each command.
+      const Vector3d by = (due + rounding - left.distance) * left.away;
       pushed += by;
       next.pretranslate(by);
       for (Capsule& one : ours) {
@@ -76,7 +77,7 @@ Pose OtherHands::go(const Pose& before, const Pose& goal, const Eigen::VectorXd&
       }
       left = gap(ours);
     }
-    if (left.distance < due - rounding) break;
+    if (left.distance < due) break;
     reached = next;
   }
   return reached;

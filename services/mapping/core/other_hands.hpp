@@ -8,9 +8,9 @@
 
 namespace prehend::mapping {
 
-/// Keeps a robot hand off others in the same world: its base goes no nearer than leaves 5 mm between
-/// them, and past them it slides. Who is nearer already comes no nearer; fingers do as they are
-/// told. Hands count as capsules. A value of what it was told last.
+/// Keeps a robot hand off others in the same world: its base goes no nearer than leaves 5 mm
+/// between them, and past them it slides. Who is nearer already comes no nearer; fingers do as they
+/// are told. Hands count as capsules. A value of what it was told last.
 class OtherHands {
  public:
   explicit OtherHands(const model::HandModel& hand) : hand_(hand) {}

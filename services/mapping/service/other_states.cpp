@@ -28,8 +28,7 @@ const std::optional<OtherStates::Model>& OtherStates::model(const std::string& n
   if (const auto known = models_.find(name); known != models_.end()) return known->second;
   if (models_.size() >= max_models) return none;
   const auto hand = model::named_hand(name, told_).and_then(model::HandModel::load);
-  if (!hand)
-    log::warning("another hand cannot be kept off: {}", hand.error().message());
+  if (!hand) log::warning("another hand cannot be kept off: {}", hand.error().message());
   return models_[name] = hand ? std::optional(Model{HandCapsules(*hand),
                                                     static_cast<Eigen::Index>(hand->dofs().size())})
                               : std::nullopt;

@@ -140,6 +140,8 @@ Expected<void> Service::open_gate(int hand) {
   robot.rests = [this, hand] { return !simulation_->is_braking(hand); };
   robot.go = [this, hand](const gate::Place& place, Time now) { go(place, now, hand); };
   Hand& own = hands_[static_cast<std::size_t>(hand)];
+  for (const Hand& other : hands_)
+    if (&other != &own) robot.beside.push_back(other.name);
   auto gate = robot::Gatekeeper::create(shell_, own.model, own.name, std::move(robot));
   if (!gate) return tl::unexpected(gate.error());
   own.gate = std::move(*gate);

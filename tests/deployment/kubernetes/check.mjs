@@ -146,6 +146,12 @@ function planned(overlay) {
   const planner = running("prehend-planner"), mapping = running("prehend-mapping");
   assert.ok(planner && mapping, `${overlay} has no planner`);
   assert.deepEqual(planner.envFrom, mapping.envFrom, overlay);
+  // In one pod each listens at a port of its own, or takes the first free one, which may be another's.
+  const port = (one) => one.command.map((word) => /^lab\.listen=.*:(\d+)$/.exec(word)?.[1]).find(Boolean);
+  if (port(mapping)) {
+    const ports = containers.map(port);
+    assert.ok(ports.every(Boolean) && new Set(ports).size === ports.length, `${overlay}: ports ${ports}`);
+  }
   const share = (one) => parseInt(one.resources.requests.cpu);
   for (const other of containers.filter((one) => one !== planner))
     assert.ok(share(planner) * 10 < share(other), `${overlay}: ${other.name} waits for the planner`);

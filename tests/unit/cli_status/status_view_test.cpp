@@ -140,16 +140,16 @@ TEST(StatusView, NamesCommandNoTerminal) {
 TEST(StatusView, WhoFallsSilentOrSaysGoodbyeIsMissing) {
   StatusView view({"glove", "mapping"});
   view.hear(status("glove"), start);
-  EXPECT_TRUE(view.is_up("glove", start + seconds(1)));
+  EXPECT_EQ(view.up("glove", start + seconds(1)), 1u);
   EXPECT_THAT(view.missing(start + seconds(1)), ElementsAre("mapping"));
   // Killed: nobody says so, but nothing is heard any more.
-  EXPECT_FALSE(view.is_up("glove", start + seconds(4)));
+  EXPECT_EQ(view.up("glove", start + seconds(4)), 0u);
   EXPECT_THAT(view.missing(start + seconds(4)), ElementsAre("glove", "mapping"));
   EXPECT_THAT(view.page(start + seconds(4)), HasSubstr("silent 4 s"));
   // Heard again, then stopped as it should be.
   view.hear(status("glove"), start + seconds(5));
   view.lose("glove@here/1", start + seconds(5));
-  EXPECT_FALSE(view.is_up("glove", start + seconds(5)));
+  EXPECT_EQ(view.up("glove", start + seconds(5)), 0u);
   EXPECT_EQ(json::parse(view.json(start + seconds(5)))["services"][0]["state"], "gone");
 }
 
@@ -160,7 +160,7 @@ TEST(StatusView, ARestartedServiceIsUp) {
   v1::ServiceStatus second = status("glove");
   second.service("glove@here/2");
   view.hear(second, start + seconds(4));
-  EXPECT_TRUE(view.is_up("glove", start + seconds(4)));
+  EXPECT_EQ(view.up("glove", start + seconds(4)), 1u);
   EXPECT_TRUE(view.missing(start + seconds(4)).empty());
 }
 

@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "common/base/random.hpp"
 #include "tests/support/hands.hpp"
 
@@ -84,18 +86,20 @@ TEST(Mirror, OfCapsulesIsThatOfTheMirroredHand) {
   const Mirror mirror(x_W);
   const model::HandModel& right = test::hand("barrett");
   const model::HandModel left = right.mirrored();
-  const Pose X_WB = make_pose({0.1, -0.2, 0.3}, Eigen::Quaterniond(0.9, 0.3, -0.2, 0.1).normalized());
+  const Pose X_WB =
+      make_pose({0.1, -0.2, 0.3}, Eigen::Quaterniond(0.9, 0.3, -0.2, 0.1).normalized());
   const Eigen::VectorXd dof = 0.4 * right.postures().at("open") + Eigen::VectorXd::Constant(4, 0.3);
   const auto there = mirror.capsules(HandCapsules(left).at(mirror.pose(X_WB), dof));
   const auto here = HandCapsules(right).at(X_WB, dof);
   ASSERT_EQ(there.size(), here.size());
-  for (std::size_t i = 0; i < here.size(); ++i) {
-    // Which of its ends comes first says nothing.
-    const bool as_is = (there[i].a - here[i].a).norm() < 1e-9 && (there[i].b - here[i].b).norm() < 1e-9;
-    const bool turned = (there[i].a - here[i].b).norm() < 1e-9 && (there[i].b - here[i].a).norm() < 1e-9;
-    EXPECT_TRUE(as_is || turned) << i;
-    EXPECT_EQ(there[i].radius, here[i].radius);
-  }
+  // In any order, and with either end first.
+  for (const Capsule& one : here)
+    EXPECT_TRUE(std::any_of(there.begin(), there.end(), [&](const Capsule& other) {
+      const auto is = [&](const Vector3d& end, const Vector3d& far) {
+        return (end - one.a).norm() + (far - one.b).norm() < 1e-9;
+      };
+      return other.radius == one.radius && (is(other.a, other.b) || is(other.b, other.a));
+    })) << one.a.transpose();
 }
 
 }  // namespace

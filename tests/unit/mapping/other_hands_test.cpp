@@ -16,7 +16,7 @@ using Eigen::Vector3d;
 
 constexpr double margin = 0.005, rounding = 2e-4;  // m
 
-double least_distance(const std::vector<Capsule>& ours, const std::vector<Capsule>& theirs) {
+double distance_between(const std::vector<Capsule>& ours, const std::vector<Capsule>& theirs) {
   double least = std::numeric_limits<double>::infinity();
   for (const Capsule& one : ours)
     for (const Capsule& other : theirs) least = std::min(least, distance(one, other));
@@ -66,10 +66,11 @@ TEST_P(EveryPair, ComeNoNearerThanTheMargin) {
     for (int frame = 0; frame < 90; ++frame) {  // as MotionLimits lets a hand go in 1/30 s
       const Pose free = limit_step(now, goal, 0.033, 0.1);
       const Pose next = others.go(now, free, open_);
-      const double distance = least_distance(ours_.at(next, open_), theirs);
+      const double distance = distance_between(ours_.at(next, open_), theirs);
       ASSERT_GT(distance, margin - rounding) << "round " << round << " frame " << frame;
-      if (least_distance(ours_.at(free, open_), theirs) > 0.04)
+      if (distance_between(ours_.at(free, open_), theirs) > 0.04) {
         EXPECT_TRUE(next.isApprox(free, 1e-12)) << "nothing is in the way";
+      }
       met += distance < margin + 1e-3;
       now = next;
     }
@@ -85,9 +86,9 @@ TEST_P(EveryPair, WhoIsNearerAlreadyComesNoNearerAndMayLeave) {
     const auto theirs = other_at(Pose::Identity());
     others.observe("other", theirs);
     const Pose start = drawn_pose(random, 0.05);
-    const double before = least_distance(ours_.at(start, open_), theirs);
+    const double before = distance_between(ours_.at(start, open_), theirs);
     const Pose deeper = others.go(start, drawn_pose(random, 0.05), open_);
-    EXPECT_GT(least_distance(ours_.at(deeper, open_), theirs),
+    EXPECT_GT(distance_between(ours_.at(deeper, open_), theirs),
               std::min(before, margin) - rounding);
     others.remove("other");
     const Pose goal = drawn_pose(random, 0.05);
@@ -96,7 +97,7 @@ TEST_P(EveryPair, WhoIsNearerAlreadyComesNoNearerAndMayLeave) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Hands, EveryPair, testing::ValuesIn(test::hand_names()),
-                         [](const auto& info) { return info.param; });
+                         [](const auto& one) { return one.param; });
 
 // What is in the way is passed by, not run into and not stood before.
 TEST(OtherHands, AreSlidPast) {
@@ -126,7 +127,7 @@ TEST(OtherHands, AreKeptOffByTheMapping) {
     const auto command = mapping->on_posture({now, now, X_WH, 1.0, tips({})}, now);
     if (!command) continue;  // no state yet
     X_WB = command->X_WB;
-    EXPECT_GT(least_distance(HandCapsules(barrett()).at(X_WB, command->dof), theirs),
+    EXPECT_GT(distance_between(HandCapsules(barrett()).at(X_WB, command->dof), theirs),
               margin - 1e-3)
         << frame;  // fingers may move on
   }

@@ -10,7 +10,7 @@ namespace {
 
 TEST(Instance, IsThatOfTheConfiguration) {
   const auto config = Config::load(test::in_sources("deploy/lab.toml"),
-                                    {"mapping.hand_name=left", "glove.name=blue"});
+                                   {"mapping.hand_name=left", "glove.name=blue"});
   ASSERT_TRUE(config);
   EXPECT_EQ(instance_of(*config, "mapping"), "left");
   EXPECT_EQ(instance_of(*config, "glove"), "blue");
@@ -20,7 +20,8 @@ TEST(Instance, IsThatOfTheConfiguration) {
 TEST(Instance, IsReadFromTheKey) {
   for (const std::string instance : {"left", "", "a/b"})
     EXPECT_EQ(instance_in(status_key("mapping", "host.example", instance)), instance);
-  for (const std::string strange : {"", "mapping", "mapping@", "mapping@host", "mapping@host/1", "/@/"})
+  for (const std::string strange :
+       {"", "mapping", "mapping@", "mapping@host", "mapping@host/1", "/@/"})
     EXPECT_EQ(instance_in(strange), "") << strange;
 }
 

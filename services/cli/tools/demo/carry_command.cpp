@@ -14,17 +14,18 @@ namespace prehend::cli {
 namespace {
 
 std::string to_json(const Carried& carried, const CarryOptions& options) {
-  return nlohmann::ordered_json{{"task", options.task == CarryTask::carry ? "carry" : "hand-over"},
-                                {"hands", {{"left", options.hands.left}, {"right", options.hands.right}}},
-                                {"seed", options.seed},
-                                {"lifted_m", carried.lifted},
-                                {"off_m", carried.off},
-                                {"tilt_rad", carried.tilt},
-                                {"both", carried.both},
-                                {"held", carried.held},
-                                {"handed_over", carried.handed_over},
-                                {"set_down", carried.set_down},
-                                {"done", carried.done(options.task)}}
+  return nlohmann::ordered_json{
+      {"task", options.task == CarryTask::carry ? "carry" : "hand-over"},
+      {"hands", {{"left", options.hands.left}, {"right", options.hands.right}}},
+      {"seed", options.seed},
+      {"lifted_m", carried.lifted},
+      {"off_m", carried.off},
+      {"tilt_rad", carried.tilt},
+      {"both", carried.both},
+      {"held", carried.held},
+      {"handed_over", carried.handed_over},
+      {"set_down", carried.set_down},
+      {"done", carried.done(options.task)}}
       .dump();
 }
 

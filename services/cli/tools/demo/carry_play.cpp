@@ -35,8 +35,8 @@ class CarryPlay {
     const auto over = stage_.until(
         "carrying", [&] { return judge_->is_over(); },
         [&] {
-          return Error{fmt::format("the {} was not lifted and set down again", object_),
-                       "demo", "", exit_no};
+          return Error{fmt::format("the {} was not lifted and set down again", object_), "demo", "",
+                       exit_no};
         });
     if (!over && over.error().exit != exit_no) return tl::unexpected(over.error());
     const Carried carried = judge_->carried();
@@ -50,8 +50,8 @@ class CarryPlay {
     return choose_glove().and_then([&] { return set_up(); }).and_then([&] { return start(); });
   }
 
-  /// Starts nothing: hears the lab of the configuration, whose scene says what is carried, and where
-  /// to.
+  /// Starts nothing: hears the lab of the configuration, whose scene says what is carried, and
+  /// where to.
   Expected<void> attach() {
     const auto config = options_.lab.load();
     if (!config) return wrong_use(config.error().what, config.error().where, config.error().hint);
@@ -130,8 +130,8 @@ class CarryPlay {
       if (sample.info.gone) continue;
       const auto& pads = sample.data.pads();
       judge_->feel(sample.data.hand().to_string(),
-                  std::any_of(pads.begin(), pads.end(),
-                              [](const v1::PadTouch& pad) { return pad.touching(); }));
+                   std::any_of(pads.begin(), pads.end(),
+                               [](const v1::PadTouch& pad) { return pad.touching(); }));
     }
     for (const auto& sample : objects_->take()) {
       if (sample.info.gone || sample.data.body().to_string() != object_) continue;
@@ -155,10 +155,10 @@ class CarryPlay {
         "simulation", {fmt::format("simulation.hands=[\"left:{}\", \"right:{}\"]", left, right)});
     for (const std::string side : {"left", "right"}) {
       if (!started) return started;
-      started = stage_.start(side + " mapping", "prehend-mapping", {},
-                             {"mapping.hand=" + (side == "left" ? left : right),
-                              "mapping.hand_name=" + side, "mapping.glove=" + side,
-                              "mapping.other_hands=[\"left\", \"right\"]"});
+      started = stage_.start(
+          side + " mapping", "prehend-mapping", {},
+          {"mapping.hand=" + (side == "left" ? left : right), "mapping.hand_name=" + side,
+           "mapping.glove=" + side, "mapping.other_hands=[\"left\", \"right\"]"});
     }
     std::size_t services = 3;
     // A tube is known, also where a hand hides it.

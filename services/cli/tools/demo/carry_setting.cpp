@@ -93,8 +93,8 @@ Expected<CarrySetting> make_carry_setting(CarryTask task, std::uint64_t seed,
                         {.target = object.name, .graspable = {object.name}, .distractors = 0});
   if (!scene) return tl::unexpected(scene.error());
   const double height = model::half_extents(object.shape).z();
-  scene->objects.front().X_WO = make_pose(
-      Vector3d(-0.15 + random.uniform(-0.04, 0.04), random.uniform(-0.05, 0.05), height));
+  scene->objects.front().X_WO =
+      make_pose(Vector3d(-0.15 + random.uniform(-0.04, 0.04), random.uniform(-0.05, 0.05), height));
   scene->demonstrator.carry_W = aside;
   const auto hand = model::HandModel::load(model::hand_directory(right));
   if (!hand) return tl::unexpected(hand.error());

@@ -34,9 +34,8 @@ struct CarryWishes {
 int draw_carry(const CarryWishes& wishes, std::uint64_t seed, const std::string& output) {
   const auto hands = read_hands(wishes.hands);
   if (!hands) return service::complain(hands.error());
-  const auto setting =
-      make_carry_setting(wishes.task == "carry" ? CarryTask::carry : CarryTask::hand_over, seed,
-                         hands->right);
+  const auto setting = make_carry_setting(
+      wishes.task == "carry" ? CarryTask::carry : CarryTask::hand_over, seed, hands->right);
   if (!setting) return service::complain(setting.error(), exit_wrong_use);
   if (const auto written = write_carry_setting(*setting, wishes.catalogue, output); !written)
     return service::complain(written.error(), exit_broken);

@@ -193,8 +193,8 @@ std::string StatusView::page(Time now) const {
   section(fmt::format("{:<14}{:<40}{:>10}{:>10}{:>10}", "SERVICE", "LATENCY", "P50", "P99", "MOST"),
           [&](const Service& service, std::string& lines) {
             for (const v1::StageLatency& stage : service.status.latency())
-              lines += fmt::format("{:<14}{:<40}{}{}{}\n", title(service),
-                                   shown(stage.stage()), right(latency(stage.p50_us()), 10),
+              lines += fmt::format("{:<14}{:<40}{}{}{}\n", title(service), shown(stage.stage()),
+                                   right(latency(stage.p50_us()), 10),
                                    right(latency(stage.p99_us()), 10),
                                    right(latency(stage.max_us()), 10));
           });
