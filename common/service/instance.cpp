@@ -16,8 +16,8 @@ std::string instance_of(const Config& config, std::string_view service) {
 }
 
 std::string status_key(std::string_view service, std::string_view host, std::string_view instance) {
-  return fmt::format("{}@{}/{}{}{}", service, host, instance, instance.empty() ? "" : "/",
-                     ::getpid());
+  return fmt::format("{}@{}/{}{}{}", service, host, instance.substr(0, 32),
+                     instance.empty() ? "" : "/", ::getpid());
 }
 
 std::string instance_in(std::string_view key) {

@@ -7,11 +7,7 @@
 
 namespace prehend::mapping {
 
-/// All points up to `radius` from the line between two points, m.
-struct Capsule {
-  Eigen::Vector3d a, b;
-  double radius = 0;
-};
+using model::Capsule;
 
 /// Where on the line from a to b the point nearest to p is, 0 to 1.
 double nearest(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& p);

@@ -272,9 +272,12 @@ Eigen::VectorXd Mapping::follow_through(const Eigen::VectorXd& dof, Duration ela
 void Mapping::move_toward(const Eigen::VectorXd& dof, const Pose& X_WB, Duration elapsed) {
   const double together = options_.modes.intelligent ? weight() : 0;
   command_.dof = motion_.fingers(command_.dof, limited(dof), together, elapsed);
-  const Pose before = command_.X_WB, free = motion_.base(before, X_WB, elapsed);
+  const Pose before = command_.X_WB;
+  command_.X_WB = motion_.base(before, X_WB, elapsed);
+  if (others_.empty()) return;
   // Past another hand it may be pushed further than it may go.
-  command_.X_WB = motion_.base(before, others_.go(before, free, command_.dof), elapsed);
+  const Pose beside = others_.go(before, command_.X_WB, command_.dof);
+  command_.X_WB = motion_.base(before, beside, elapsed);
 }
 
 std::optional<Command> Mapping::tick(Time now) {

@@ -52,6 +52,14 @@ bool OtherHands::is_far(const Pose& before, double way) const {
   });
 }
 
+/// Two hands that are in each other come apart by this, whatever is nearest on the way.
+bool OtherHands::leaves(const Pose& from, const Pose& to) const {
+  return std::all_of(others_.begin(), others_.end(), [&](const auto& entry) {
+    const Vector3d& middle = entry.second.all.a;
+    return (to.translation() - middle).norm() > (from.translation() - middle).norm();
+  });
+}
+
 Pose OtherHands::go(const Pose& before, const Pose& goal, const Eigen::VectorXd& dof) const {
   // What is farthest from the base goes farthest when it turns.
   const double way = (goal.translation() - before.translation()).norm() +
@@ -64,6 +72,10 @@ Pose OtherHands::go(const Pose& before, const Pose& goal, const Eigen::VectorXd&
   for (int i = 1; i <= steps; ++i) {
     Pose next = i == steps ? goal : interpolate(before, goal, static_cast<double>(i) / steps);
     next.pretranslate(pushed);
+    if (due < 0 && leaves(reached, next)) {
+      reached = next;
+      continue;
+    }
     std::vector<Capsule> ours = hand_.at(next, dof);
     Gap left = gap(ours);
     for (int push = 0; push < max_pushes && left.distance < due; ++push) {

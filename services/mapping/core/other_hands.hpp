@@ -9,7 +9,8 @@
 namespace prehend::mapping {
 
 /// Keeps a robot hand off others in the same world: its base goes no nearer than leaves 5 mm
-/// between them, and past them it slides. Who is nearer already comes no nearer; fingers do as they
+/// between them, and past them it slides. Who is nearer already comes no nearer; hands that are in
+/// each other may always go away from each other's middle, and so come apart. Fingers do as they
 /// are told. Hands count as capsules. A value of what it was told last.
 class OtherHands {
  public:
@@ -18,6 +19,7 @@ class OtherHands {
   /// Where another hand is, in W.
   void observe(const std::string& name, std::vector<Capsule> capsules);
   void remove(const std::string& name) { others_.erase(name); }
+  bool empty() const { return others_.empty(); }
 
   /// As much of the way of the base from `before` to `goal` as there is room for. dof: of our hand
   /// on the way, m or rad.
@@ -28,13 +30,14 @@ class OtherHands {
     std::vector<Capsule> capsules;
     Capsule all;  // that holds them: a ball
   };
-  /// From what of another hand is nearest; its length is the distance, or 0 where that overlaps.
+  /// What of another hand is nearest to ours.
   struct Gap {
-    double distance = 0;  // m, negative where they overlap
-    Eigen::Vector3d away = Eigen::Vector3d::UnitZ();
+    double distance = 0;                              // m, negative where they overlap
+    Eigen::Vector3d away = Eigen::Vector3d::UnitZ();  // unit, from there to ours
   };
   Gap gap(const std::vector<Capsule>& ours) const;
   bool is_far(const Pose& before, double way) const;
+  bool leaves(const Pose& from, const Pose& to) const;
 
   HandCapsules hand_;
   std::map<std::string, Other> others_;

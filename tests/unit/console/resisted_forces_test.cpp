@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 namespace prehend::console {
 namespace {
@@ -48,6 +49,21 @@ TEST(ResistedForces, OfACubeHeldAllAroundReachOneNewtonAlongEachAxis) {
     }
   // No contact's force is longer than sqrt(1 + 0.5²) N, so no sum of them is.
   for (const Vector3d& corner : corners) EXPECT_LT(corner.norm(), std::sqrt(1.25) + 1e-9);
+}
+
+// Each side of a triangle is that of one other: no hole, and nothing twice.
+TEST(ResistedForces, AreAClosedSurface) {
+  const auto corners = resisted_forces(all_around(0.5));
+  const auto number = [&](const Vector3d& corner) {
+    return std::find_if(corners.begin(), corners.end(),
+                        [&](const Vector3d& one) { return (one - corner).norm() < 1e-9; }) -
+           corners.begin();
+  };
+  std::map<std::pair<std::ptrdiff_t, std::ptrdiff_t>, int> sides;
+  for (std::size_t i = 0; i < corners.size(); i += 3)
+    for (std::size_t k = 0; k < 3; ++k)
+      ++sides[std::minmax(number(corners[i + k]), number(corners[i + (k + 1) % 3]))];
+  for (const auto& [side, count] : sides) EXPECT_EQ(count, 2) << side.first << ' ' << side.second;
 }
 
 // Who only pushes cannot pull.

@@ -93,6 +93,17 @@ TEST_F(EveryObject, GraspsWhereTheObjectStands) {
     }
 }
 
+// Also where it grasps from above: a hand that waits there would hide the object, and knock it over
+// as it comes.
+TEST_F(EveryObject, RestsBesideIt) {
+  for (const auto& object : known.objects()) {
+    const auto hand = SyntheticHand::create(scene_with(object), known, {.X_WT = X_WT});
+    ASSERT_TRUE(hand) << hand.error().message();
+    const Vector3d away = hand->hand(0).X_WH.translation() - hand->grasp().translation();
+    EXPECT_NEAR(away.head<2>().norm(), 0.25, 1e-6) << object.name;
+  }
+}
+
 // The person used to reach as deep as a human hand can: longer robot fingers met the table.
 TEST_F(EveryObject, LeavesTheHandThatIsLedItsRoom) {
   int above = 0, beside = 0;

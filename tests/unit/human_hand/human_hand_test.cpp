@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "common/model/placement.hpp"
 
 namespace prehend::model {
@@ -36,6 +38,20 @@ double clearance(const HumanHand& hand, const std::array<double, finger_count>& 
       least = std::min(least, signed_distance(shape, X_HO.inverse() * p) - capsule.radius);
     }
   return least;
+}
+
+// The same bone of the finger beside it is at most 1.4 times as long.
+TEST(HumanHand, BonesGetShorterTowardTheTip) {
+  const HumanHand hand(1);
+  for (int f = index; f <= little; ++f) {
+    const auto bones = hand.bones(static_cast<Finger>(f));
+    EXPECT_GT(bones[0], 1.2 * bones[1]) << f;
+    EXPECT_GT(bones[1], 0.9 * bones[2]) << f;
+    for (std::size_t i = 0; f > index && i < bones.size(); ++i) {
+      const double beside = hand.bones(static_cast<Finger>(f - 1))[i];
+      EXPECT_LT(std::max(bones[i], beside), 1.4 * std::min(bones[i], beside)) << f << ' ' << i;
+    }
+  }
 }
 
 TEST(HumanHand, FrameHPointsAsDocumented) {

@@ -23,6 +23,12 @@ double distance_between(const std::vector<Capsule>& ours, const std::vector<Caps
   return least;
 }
 
+Vector3d middle_of(const std::vector<Capsule>& hand) {
+  Vector3d sum = Vector3d::Zero();
+  for (const Capsule& one : hand) sum += 0.5 * (one.a + one.b);
+  return sum / static_cast<double>(hand.size());
+}
+
 Pose drawn_pose(Random& random, double width) {
   const auto in = [&](double most) { return random.uniform(-most, most); };
   return make_pose({in(width), in(width), in(width)},
@@ -78,21 +84,44 @@ TEST_P(EveryPair, ComeNoNearerThanTheMargin) {
   EXPECT_GT(met, 100) << "hardly any of them met";
 }
 
-// As the lab starts, or where one was put by hand: it may leave, and gets no deeper.
-TEST_P(EveryPair, WhoIsNearerAlreadyComesNoNearerAndMayLeave) {
+// As the lab starts, or where one was put by hand. Guards a hand that was held fast for ever.
+TEST_P(EveryPair, WhoIsInAnotherLeavesItAwayFromItsMiddle) {
   Random random(13);
+  const auto theirs = other_at(Pose::Identity());
+  const Vector3d middle = middle_of(theirs);
   for (int round = 0; round < 30; ++round) {
     OtherHands others(hand_);
-    const auto theirs = other_at(Pose::Identity());
     others.observe("other", theirs);
-    const Pose start = drawn_pose(random, 0.05);
-    const double before = distance_between(ours_.at(start, open_), theirs);
-    const Pose deeper = others.go(start, drawn_pose(random, 0.05), open_);
-    EXPECT_GT(distance_between(ours_.at(deeper, open_), theirs),
-              std::min(before, margin) - rounding);
+    Pose now = drawn_pose(random, 0.05);
+    const Pose start = now;
+    const Vector3d away = (start.translation() - middle).normalized();
+    Pose outside = start;
+    outside.pretranslate((ours_.reach() + theirs_.reach() + 0.1) * away);
+    for (int frame = 0; frame < 90; ++frame)
+      now = others.go(now, limit_step(now, outside, 0.033, 0.1), open_);
+    EXPECT_LT((now.translation() - outside.translation()).norm(), 1e-6) << round;
+    // And what comes back comes no nearer than any other.
+    for (int frame = 0; frame < 90; ++frame)
+      now = others.go(now, limit_step(now, start, 0.033, 0.1), open_);
+    EXPECT_GT(distance_between(ours_.at(now, open_), theirs), margin - rounding) << round;
     others.remove("other");
-    const Pose goal = drawn_pose(random, 0.05);
-    EXPECT_TRUE(others.go(start, goal, open_).isApprox(goal)) << "nobody is there any more";
+    EXPECT_TRUE(others.go(now, start, open_).isApprox(start)) << "nobody is there any more";
+  }
+}
+
+TEST_P(EveryPair, WhoIsInAnotherComesNoDeeperTowardItsMiddle) {
+  Random random(17);
+  const auto theirs = other_at(Pose::Identity());
+  OtherHands others(hand_);
+  others.observe("other", theirs);
+  for (int round = 0; round < 30; ++round) {
+    const Pose start = drawn_pose(random, 0.05);
+    // As far as between two looks.
+    const Pose deeper = limit_step(
+        start, make_pose(middle_of(theirs), Eigen::Quaterniond(start.linear())), 0.004, 0);
+    const double before = distance_between(ours_.at(start, open_), theirs);
+    const Pose next = others.go(start, deeper, open_);
+    EXPECT_GT(distance_between(ours_.at(next, open_), theirs), std::min(before, margin) - rounding);
   }
 }
 

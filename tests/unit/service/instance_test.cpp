@@ -20,6 +20,8 @@ TEST(Instance, IsThatOfTheConfiguration) {
 TEST(Instance, IsReadFromTheKey) {
   for (const std::string instance : {"left", "", "a/b"})
     EXPECT_EQ(instance_in(status_key("mapping", "host.example", instance)), instance);
+  EXPECT_EQ(instance_in(status_key("mapping", "host", std::string(200, 'x'))),
+            std::string(32, 'x'));
   for (const std::string strange :
        {"", "mapping", "mapping@", "mapping@host", "mapping@host/1", "/@/"})
     EXPECT_EQ(instance_in(strange), "") << strange;

@@ -7,7 +7,6 @@
 #include "common/base/file_text.hpp"
 #include "common/base/random.hpp"
 #include "common/model/hand_model.hpp"
-#include "services/cli/service/outcome.hpp"
 #include "services/cli/tools/demo/pressing.hpp"
 #include "services/cli/tools/demo/setting.hpp"
 

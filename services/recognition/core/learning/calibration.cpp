@@ -20,10 +20,9 @@ Grounds grounds(const Eigen::VectorXf& scores, const Eigen::VectorXf& similarity
   Eigen::Index best;
   made.score = scores.maxCoeff(&best);
   made.best = static_cast<int>(best);
-  double second = 0;  // a class that is nowhere near scores about nothing
-  for (Eigen::Index i = 0; i < scores.size(); ++i)
-    if (i != best) second = std::max<double>(second, scores[i]);
-  made.margin = made.score - second;
+  Eigen::VectorXf others = scores;
+  others[best] = 0;  // a class that is nowhere near scores about nothing
+  made.margin = made.score - std::max<double>(0, others.maxCoeff());
   made.similarity = similarity[best];
   return made;
 }
