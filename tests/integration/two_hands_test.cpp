@@ -2,6 +2,7 @@
 // Who loses its glove stays where it is, alone, unless both hold something up; a stop stops both.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -38,8 +39,10 @@ class TwoHands : public Rig {
                                                "mapping.glove=" + side + "_glove"})));
     }
   }
-  void start_glove(const std::string& side) {
-    gloves_.emplace(side, start("glove", sets({"glove.device=synthetic", "glove.hand=" + side,
+  void start_glove(const std::string& side) { start_glove(side, side); }
+  /// worn: on which hand the one of that side is.
+  void start_glove(const std::string& side, const std::string& worn) {
+    gloves_.emplace(side, start("glove", sets({"glove.device=synthetic", "glove.hand=" + worn,
                                                "glove.name=" + side + "_glove"})));
   }
   /// Until every hand has been heard anew so often.
@@ -69,11 +72,20 @@ class TwoHands : public Rig {
     for (const auto& [name, p] : bases_) by[name] = (p - before.at(name)).norm();
     return by;
   }
+  static bool names_both(const v1::GraspReport& report) {
+    const std::string other = report.hand() == "left" ? "right/" : "left/";
+    const auto is_other = [&](const v1::Contact& contact) {
+      return contact.link().to_string().starts_with(other);
+    };
+    const auto others = std::ranges::count_if(report.contacts(), is_other);
+    return others > 0 && others < std::ssize(report.contacts());
+  }
   Answer order(Strings words) { return run("prehend", with_lab(std::move(words)), 30); }
 
   std::map<std::string, Vector3d> bases_;
   std::map<std::string, std::string> models_;
   Pose X_WO_ = Pose::Identity();  // of the crate
+  dds::Reader<v1::GraspReport> reports_ = reader(dds::grasp_report);
 
   Strings sets(Strings own) const {
     own.push_back("lab.catalogue=" + (folder_ / "catalogue.toml").string());
@@ -123,6 +135,17 @@ TEST_F(TwoHands, CarryWhatIsTooWideForOne) {
   ASSERT_TRUE(exit);
   EXPECT_EQ(exit->code, 0) << stage::last_lines(attached.log(), 5);
 
+  // What both press together is judged of each, with the contacts of both.
+  std::set<std::string> judged;
+  EXPECT_TRUE(eventually(20,
+                         [&] {
+                           for (const auto& sample : reports_.take())
+                             if (sample.data.held() && names_both(sample.data))
+                               judged.insert(sample.data.hand().to_string());
+                           return judged.size() == 2;
+                         }))
+      << judged.size() << " hands have a report that names the other";
+
   // What is for the other hand is no mistake, and of two mappings it is said whose each is.
   std::multiset<std::string> whose;
   const json document = json::parse(order({"status", "--once", "--json"}).output);
@@ -154,6 +177,28 @@ TEST_F(TwoHands, NeedAGloveThatSomebodyCarriesWith) {
   EXPECT_EQ(answer.exit_code, 2);
   EXPECT_NE(answer.log.find("--glove topic: has nobody who carries an object"), std::string::npos)
       << answer.log;
+}
+
+// It would move its robot hand as in a mirror, and nothing else would tell.
+TEST_F(TwoHands, TheDoctorNamesAGloveOfTheWrongSide) {
+  const auto hands = [this] {
+    const json document = json::parse(order({"doctor", "--json", "--listen", "1.5"}).output);
+    for (const json& check : document["checks"])
+      if (check["name"] == "hands") return check["detail"].get<std::string>();
+    return std::string();
+  };
+  start_glove("right");
+  start_glove("left", "right");
+  ASSERT_TRUE(hear_states(3));
+  EXPECT_TRUE(eventually(30, [&] {
+    return hands() == "left_glove is on a right hand and leads left, a barrett_left";
+  })) << hands();
+  gloves_.at("left").stop(seconds(5));
+  gloves_.erase("left");
+  start_glove("left");
+  EXPECT_TRUE(eventually(30, [&] {
+    return hands() == "left_glove leads left, right_glove leads right";
+  })) << hands();
 }
 
 TEST_F(TwoHands, WhoLosesItsGloveInTheMiddleMakesTheOtherWait) {

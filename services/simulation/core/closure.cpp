@@ -11,14 +11,17 @@ namespace prehend::simulation {
 namespace {
 
 using Eigen::Index;
+using Eigen::Vector3d;
 using Eigen::VectorXd;
 
-constexpr double window = 0.3;         // s
-constexpr double long_window = 1.0;    // s, of fingers that tremble
-constexpr double still = 0.015;        // rad, that what presses may move in the window
-constexpr double still_closing = 0.1;  // rad, that the rest and the command may
-constexpr double pressing = 0.03;      // rad, that the command is ahead of a joint that presses
-constexpr double anew = 0.1;           // rad, of movement that makes a new closure
+constexpr double window = 0.3;          // s
+constexpr double long_window = 1.0;     // s, of fingers that tremble
+constexpr double still = 0.015;         // rad, that what presses may move in the window
+constexpr double still_closing = 0.1;   // rad, that the rest and the command may
+constexpr double pressing = 0.03;       // rad, that the command is ahead of a joint that presses
+constexpr double anew = 0.1;            // rad, of movement that makes a new closure
+constexpr double pushing = 0.005;       // m, that a base which pushes stays behind
+constexpr double still_pushing = 0.01;  // m, by which that may change
 
 /// Which DoFs are ahead in the closing direction by more than `margin` rad.
 std::vector<bool> ahead(const model::HandModel& hand, const VectorXd& command,
@@ -49,12 +52,19 @@ bool has_moved(const model::HandModel& hand, const VectorXd& joint, const Vector
   return false;
 }
 
-/// By this hand, with two links at least.
-bool is_gripped(const std::vector<analysis::Contact>& contacts, int hand) {
+/// By this hand, with two links at least; or, when it pushes, between it and another.
+bool is_gripped(const std::vector<analysis::Contact>& contacts, int hand, bool pushes) {
   std::set<std::string_view> links;
+  bool other = false;
   for (const analysis::Contact& contact : contacts)
-    if (contact.hand == hand) links.insert(contact.link);
-  return links.size() > 1;
+    contact.hand == hand ? void(links.insert(contact.link)) : void(other = true);
+  return links.size() > 1 || (pushes && other && !links.empty());
+}
+
+/// How far the base is behind where it is told to be, m, in W. One of several gives way.
+Vector3d behind_of(const grasping::World& world, int hand) {
+  if (world.hand_count() < 2) return Vector3d::Zero();
+  return world.commanded_base(hand).translation() - world.base(hand).translation();
 }
 
 }  // namespace
@@ -77,25 +87,29 @@ GraspVerdict judge(Closure& closure) {
   return verdict;
 }
 
+void ClosureDetector::forget(const grasping::World& world, const grasping::HandMotion& motion) {
+  const auto& dofs = world.hand(hand_).dofs();
+  for (std::size_t i = 0; judged_ && i < dofs.size(); ++i) {
+    const auto k = static_cast<Index>(i);
+    const double moved = std::abs(motion.dof[k] - (*judged_)[k]);
+    if (dofs[i].closing != 0 && moved > anew * model::radian_of(dofs[i])) judged_.reset();
+  }
+  if (judged_ && pushed_ && !world.hand_touches_anything(hand_)) judged_.reset();
+}
+
 std::optional<int> ClosureDetector::update(const grasping::World& world) {
   const model::HandModel& hand = world.hand(hand_);
   const grasping::HandMotion motion = world.hand_motion(hand_);
   const VectorXd& command = world.commanded_dof(hand_);
-  if (judged_) {
-    for (Index i = 0; i < motion.dof.size(); ++i) {
-      const model::HandDof& dof = hand.dofs()[static_cast<std::size_t>(i)];
-      if (dof.closing != 0 &&
-          std::abs(motion.dof[i] - (*judged_)[i]) > anew * model::radian_of(dof)) {
-        judged_.reset();
-        break;
-      }
-    }
-  }
+  forget(world, motion);
   const std::vector<bool> presses = ahead(hand, command, motion.dof, pressing);
+  const Vector3d behind = behind_of(world, hand_);
+  const bool grips = any(presses), pushes = behind.norm() > pushing;
   const auto rested = [&](Rest& rest, double margin, double wanted) {
+    const bool pushes_on = pushes && (behind - rest.behind).norm() < still_pushing;
     if (has_moved(hand, motion.joint, rest.joint, presses, margin) || judged_ ||
-        any(ahead(hand, command, rest.command, still_closing)) || !any(presses)) {
-      rest = {0, motion.joint, command};
+        any(ahead(hand, command, rest.command, still_closing)) || !(grips || pushes_on)) {
+      rest = {0, motion.joint, command, behind};
       return false;
     }
     rest.time += time_step_;
@@ -105,8 +119,9 @@ std::optional<int> ClosureDetector::update(const grasping::World& world) {
   const bool trembling = rested(trembling_, still_closing, long_window);
   if (!steady && !trembling) return std::nullopt;
   for (int body = 0; body < world.body_count(); ++body)
-    if (is_gripped(world.contacts(body), hand_)) {
+    if (is_gripped(world.contacts(body), hand_, pushes)) {
       judged_ = motion.dof;
+      pushed_ = pushes;
       return body;
     }
   return std::nullopt;

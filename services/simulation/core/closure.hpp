@@ -46,28 +46,32 @@ GraspVerdict judge(Closure& closure);
 /// two contacts on two links carry force. One drive may press the object against fingers that stand
 /// at their ends; those that touch nothing tremble with the operator's hand. Weak fingers tremble
 /// also where they press, or give way: they have closed when for 1 s none moves by more than 0.1
-/// rad.
+/// rad. Of several hands one may also push the object against another with its base, which then
+/// stays behind where it is told to be; its fingers need not press.
 class ClosureDetector {
  public:
   /// hand: its number in the world.
   explicit ClosureDetector(double time_step, int hand = 0) : time_step_(time_step), hand_(hand) {}
 
   /// The body that the hand has just closed on. Once a closure: not again until a closing DoF has
-  /// moved by more than 0.1 rad.
+  /// moved by more than 0.1 rad, or a hand that pushed touches nothing.
   std::optional<int> update(const grasping::World& world);
 
  private:
   /// Since when the joints stand still.
   struct Rest {
-    double time = 0;          // s
-    Eigen::VectorXd joint;    // where they were when they came to rest
-    Eigen::VectorXd command;  // what the DoFs were told then
+    double time = 0;                                   // s
+    Eigen::VectorXd joint;                             // where they were when they came to rest
+    Eigen::VectorXd command;                           // what the DoFs were told then
+    Eigen::Vector3d behind = Eigen::Vector3d::Zero();  // m, how far the base was then
   };
+  void forget(const grasping::World& world, const grasping::HandMotion& motion);
 
   double time_step_;
   int hand_;
   Rest steady_, trembling_;
   std::optional<Eigen::VectorXd> judged_;  // DoFs at the last closure
+  bool pushed_ = false;                    // the base pushed then
 };
 
 }  // namespace prehend::simulation

@@ -80,8 +80,10 @@ v1::BodyDescription to_message(const grasping::Body& body) {
   return message;
 }
 
-v1::GraspReport to_message(const Closure& closure, const GraspVerdict& verdict) {
+v1::GraspReport to_message(const Closure& closure, const GraspVerdict& verdict,
+                           const std::vector<std::string>& hands) {
   v1::GraspReport message;
+  message.hand(hands[static_cast<std::size_t>(closure.hand)]);
   message.sequence_number(closure.number);
   message.stamp_ns(to_ns(closure.time));
   message.origin_ns(to_ns(closure.command.origin));
@@ -95,7 +97,8 @@ v1::GraspReport to_message(const Closure& closure, const GraspVerdict& verdict) 
   const std::size_t most = 64;  // of the message
   for (const analysis::Contact& contact : analysis::spread_contacts(closure.contacts, most)) {
     v1::Contact entry;
-    entry.link(contact.link);
+    const std::string& other = hands[static_cast<std::size_t>(contact.hand)];
+    entry.link(contact.hand == closure.hand ? contact.link : other + "/" + contact.link);
     entry.p_OC(convert::to_message(contact.p_OC));
     entry.normal_O(convert::to_message(contact.normal_O));
     entry.friction(contact.friction);

@@ -30,6 +30,8 @@ v1::HandState to_message(const grasping::HandMotion& motion);
 v1::HandTouch to_message(const std::vector<PadTouch>& pads, const model::HandModel& hand);
 v1::ObjectState to_message(const grasping::Body& body, const grasping::BodyMotion& motion);
 v1::BodyDescription to_message(const grasping::Body& body);
-v1::GraspReport to_message(const Closure& closure, const GraspVerdict& verdict);
+/// hands: their names, by their numbers in the world.
+v1::GraspReport to_message(const Closure& closure, const GraspVerdict& verdict,
+                           const std::vector<std::string>& hands);
 
 }  // namespace prehend::simulation

@@ -325,9 +325,9 @@ void Service::judge_queued() {
 }
 
 void Service::publish_report(const Closure& closure, const GraspVerdict& verdict) {
-  v1::GraspReport report = to_message(closure, verdict);
-  report.hand(hands_[static_cast<std::size_t>(closure.hand)].name);
-  reports_.publish(report);
+  std::vector<std::string> names;
+  for (const Hand& hand : hands_) names.push_back(hand.name);
+  reports_.publish(to_message(closure, verdict, names));
   log::info("{}: {} contacts, epsilon {:.4f}, {}", closure.object.name, closure.contacts.size(),
             verdict.quality.epsilon, verdict.hold.held ? "held" : verdict.hold.reason);
   if (verdict.blocking.empty()) return;

@@ -79,6 +79,26 @@ TEST(Hands, StandSideBySideFromWhereAllAreLed) {
   EXPECT_EQ(std::ranges::count(names, "object_Crate"), 1);
 }
 
+// A crate between two hands is judged of each. It is carried after that, so nothing is cut off.
+TEST(Hands, WhatBothGraspIsOneEpisodeToItsEnd) {
+  RecordingLog left = lead_for(9000), right = lead_from(200, 9000);
+  left.judgements = {{ms(1000), "Cup", true}, {ms(3000), "Crate", true}, {ms(8000), "Cup", true}};
+  right.judgements = {{ms(3200), "Crate", true}, {ms(4000), "Crate", false}};
+  auto episodes = find_episodes({{"left", &left}, {"right", &right}});
+  ASSERT_EQ(episodes.size(), 3u);
+  EXPECT_EQ(episodes[0].end, ms(2000));
+  EXPECT_EQ(episodes[1].begin, ms(2000));
+  EXPECT_EQ(episodes[1].end, ms(6000));  // the other half belongs to what is grasped next
+  EXPECT_EQ(episodes[1].task, "grasp Crate");
+  EXPECT_EQ(episodes[1].success, false);
+  EXPECT_EQ(episodes[2].end, ms(9000));
+  left.judgements.pop_back();
+  EXPECT_EQ(find_episodes({{"left", &left}, {"right", &right}}).back().end, ms(9000));
+  right.judgements.clear();
+  left.judgements.push_back({ms(4000), "Crate", true});
+  EXPECT_EQ(find_episodes({{"left", &left}, {"right", &right}}).size(), 3u) << "of one hand alone";
+}
+
 TEST(Hands, OfOneAloneAreAsBefore) {
   const RecordingLog log = lead_for(1000);
   const auto one = make_rows({{"left", &log}}, from_to(0, 1000), {.rate = 10});
@@ -99,7 +119,7 @@ TEST(Hands, EpisodesAreThoseInWhichAllAreLed) {
   EXPECT_EQ(episodes[0].success, std::nullopt);
 
   left.judgements.push_back({ms(1500), "Cup", true});
-  right.judgements.push_back({ms(2500), "Cup", false});
+  right.judgements.push_back({ms(2500), "Talc", false});
   episodes = find_episodes(both);
   ASSERT_EQ(episodes.size(), 2u);
   EXPECT_EQ(episodes[0].success, true);

@@ -16,6 +16,7 @@
 #include "common/dds/participant.hpp"
 #include "common/dds/release/user_data.hpp"
 #include "common/service/membership.hpp"
+#include "services/cli/tools/doctor/leading.hpp"
 #include "services/cli/tools/doctor/wire.hpp"
 
 namespace prehend::cli {
@@ -154,11 +155,15 @@ Expected<Findings> check_neighbours(const service::Config& config, Duration list
   auto statuses = participant->reader(dds::service_status);
   if (!statuses) return tl::unexpected(statuses.error());
 
+  auto leading = Leading::create(*participant);
+  if (!leading) return tl::unexpected(leading.error());
+
   std::map<std::string, Duration> offsets;
   std::set<std::string> known;  // the first status of a service may be as old as its last second
   const auto end = std::chrono::steady_clock::now() + listen;
   while (std::chrono::steady_clock::now() < end) {
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    leading->hear();
     const Time now = std::chrono::time_point_cast<Duration>(std::chrono::system_clock::now());
     for (const auto& sample : statuses->take()) {
       if (sample.info.gone || known.insert(sample.data.service().to_string()).second) continue;
@@ -186,6 +191,7 @@ Expected<Findings> check_neighbours(const service::Config& config, Duration list
   findings.push_back(judge_middleware(*participant));
   findings.push_back(judge_security(*participant));
   findings.push_back(judge_clocks(offsets));
+  findings.push_back(leading->judge());
   return findings;
 }
 

@@ -8,7 +8,8 @@
 namespace prehend::cli {
 
 /// Joins the lab only to look, for as long as it takes to hear everyone's status twice, and checks
-/// the discovery server, domain, rig, types, shared memory, security, and clocks of other hosts.
+/// the discovery server, domain, rig, types, shared memory, security, clocks of other hosts, and
+/// which glove leads which hand.
 Expected<Findings> check_neighbours(const service::Config& config, Duration listen);
 
 }  // namespace prehend::cli

@@ -40,7 +40,7 @@ std::vector<Episode> of_judgements(const RecordingLog& log) {
   Time begin = log.command_dof.times.front();
   for (std::size_t i = 0; i < log.judgements.size(); ++i) {
     const Judgement& judgement = log.judgements[i];
-    Time end = judgement.time + tail;
+    Time end = judgement.until.value_or(judgement.time + tail);
     // The other half of the time belongs to the next one.
     if (i + 1 < log.judgements.size())
       end = std::min(end, judgement.time + (log.judgements[i + 1].time - judgement.time) / 2);

@@ -24,7 +24,8 @@ inline constexpr Duration tail = std::chrono::seconds(1);
 /// - an episode each demonstration between the operator's marks, a success where every grasp in it
 ///   was held and there was one;
 /// - an episode each judged grasp, from the end of the one before (or the first command) to
-///   `tail` after the judgement, but half way to the next one at most, a success where it was held;
+///   `tail` after the judgement, or what was done with the object, but half way to the next one at
+///   most, a success where it was held;
 /// - all of it, from the first command to the last one, not judged.
 /// Nothing of a recording without commands.
 std::vector<Episode> find_episodes(const RecordingLog& log);

@@ -16,6 +16,30 @@ void append(Feature& to, const Feature& of_one, const std::string& prefix) {
   for (const std::string& column : of_one.columns) to.columns.push_back(prefix + column);
 }
 
+/// By which hand a grasp was judged.
+struct OfHand {
+  Judgement judgement;
+  std::size_t hand;
+};
+
+/// In order of time; what several hands have judged of one object is one judgement, until `end`.
+std::vector<Judgement> together(std::vector<OfHand> judged, Time end) {
+  std::ranges::stable_sort(judged, {}, [](const OfHand& one) { return one.judgement.time; });
+  std::vector<Judgement> all;
+  std::size_t hand = 0;  // that the last of them is of
+  for (const OfHand& each : judged) {
+    const bool same = !all.empty() && all.back().object == each.judgement.object;
+    if (same && (all.back().until || hand != each.hand)) {
+      all.back() = {each.judgement.time, each.judgement.object,
+                    all.back().held && each.judgement.held, end};
+    } else {
+      all.push_back(each.judgement);
+    }
+    hand = each.hand;
+  }
+  return all;
+}
+
 /// All of the same rows.
 Rows side_by_side(const std::vector<HandLog>& hands, std::vector<Rows> of_each) {
   Rows all;
@@ -49,13 +73,14 @@ std::vector<Episode> find_episodes(const std::vector<HandLog>& hands) {
   if (hands.size() == 1) return find_episodes(first);
   Time begin = Time::min(), end = Time::max();
   RecordingLog all;
-  for (const HandLog& each : hands) {
-    const RecordingLog& log = *each.log;
+  std::vector<OfHand> judged;
+  for (std::size_t i = 0; i < hands.size(); ++i) {
+    const RecordingLog& log = *hands[i].log;
     if (log.command_dof.empty()) return {};
     begin = std::max(begin, log.command_dof.times.front());
     end = std::min(end, log.command_dof.times.back());
     all.runs.insert(all.runs.end(), log.runs.begin(), log.runs.end());
-    all.judgements.insert(all.judgements.end(), log.judgements.begin(), log.judgements.end());
+    for (const Judgement& judgement : log.judgements) judged.push_back({judgement, i});
   }
   if (begin >= end) return {};
   all.command_dof.add(begin, {});
@@ -63,7 +88,7 @@ std::vector<Episode> find_episodes(const std::vector<HandLog>& hands) {
   all.command_object = first.command_object;
   all.shown = first.shown;
   std::ranges::sort(all.runs, {}, &Attempt::begin);
-  std::ranges::sort(all.judgements, {}, &Judgement::time);
+  all.judgements = together(std::move(judged), end);
   return find_episodes(all);
 }
 

@@ -12,7 +12,8 @@ struct HandLog {
 };
 
 /// Episodes in which all these hands are led, by the rules of find_episodes() for what was judged
-/// of any of them. None if they are never led together.
+/// of any of them. What several of them grasp one after the other is one episode, to its very end:
+/// they carry it, or hand it over. None if they are never led together.
 std::vector<Episode> find_episodes(const std::vector<HandLog>& hands);
 
 /// An episode with hands side by side, in their order: state, action, rate and effort of all in one

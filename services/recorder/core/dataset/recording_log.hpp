@@ -21,6 +21,7 @@ struct Judgement {
   Time time;
   std::string object;
   bool held = false;
+  std::optional<Time> until;  // when what was done with the object ended, where that is known
 };
 
 /// Pictures of one camera: only when they came. Pictures themselves are read when they are written.
