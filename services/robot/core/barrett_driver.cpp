@@ -27,8 +27,10 @@ constexpr Duration homing_patience = std::chrono::seconds(40);
 constexpr Duration quiet = milliseconds(60);  // after which nothing more comes
 constexpr Duration wake_period = milliseconds(100);
 constexpr std::size_t wake_bytes = 24;  // there and back
-constexpr double late = 0.55;           // of lost_after, that an answer may come too late
-constexpr double max_gap = 0.03;        // s, after which a jump has to be seen twice
+// So long an answer may come too late, and no longer: two of them are not a lost wire.
+constexpr double late = 0.55;  // of lost_after
+constexpr Duration latest = milliseconds(150);
+constexpr double max_gap = 0.03;  // s, after which a jump has to be seen twice
 constexpr Duration heat_period = milliseconds(1000);
 constexpr std::size_t max_heard = 4096;
 
@@ -324,7 +326,7 @@ std::string Driver::loop(Time now) {
 /// hand was. So its motors stand still, and nothing is asked, until none can come any more.
 std::string Driver::miss(Time now) {
   reject("no answer", now);
-  deaf_until_ = now + seconds(late * to_seconds(options_.lost_after));
+  deaf_until_ = now + std::min<Duration>(seconds(late * to_seconds(options_.lost_after)), latest);
   for (MotorControl& motor : control_) motor.rest();
   return control_block({});
 }

@@ -18,8 +18,9 @@ const model::HandModel& hand() {
 }
 
 struct Wire : ComputedWire<Emulator, Driver> {
-  explicit Wire(const EmulatedOptions& options = {.initialized = true})
-      : ComputedWire(Emulator(hand(), options), Driver(hand(), {.baud = 38400})) {}
+  explicit Wire(const EmulatedOptions& options = {.initialized = true},
+                const DriverOptions& told = {.baud = 38400})
+      : ComputedWire(Emulator(hand(), options), Driver(hand(), told)) {}
 };
 
 Eigen::VectorXd dof(double spread, double f1, double f2, double f3) {
@@ -195,6 +196,29 @@ TEST(BarrettDriver, ALateAnswerIsNotTakenForTheNextOne) {
   EXPECT_EQ(wire.driver.phase(), Phase::ready) << wire.first_trouble;
   EXPECT_GT(wire.rejects, 3u);
   EXPECT_LT((wire.driver.reading()->dof - wire.robot.measured()).cwiseAbs().maxCoeff(), 0.02);
+}
+
+// Guards a fault of busy machines: with 2 s allowed, two answers in a row that did not come within
+// 40 ms were «the wire is lost».
+TEST(BarrettDriver, TwoAnswersThatAreMissingAreNoLostWire) {
+  Wire wire({.initialized = true}, {.baud = 38400, .lost_after = std::chrono::seconds(2)});
+  wire.run(1);
+  int left = 2;
+  Duration until{};
+  wire.hear = [&](const std::string&) {
+    if (left == 0 || wire.passed() < until) return;
+    --left;
+    until = wire.passed() + std::chrono::milliseconds(80);
+  };
+  wire.spoil = [&](std::string answer) {
+    return wire.passed() < until ? std::string() : std::move(answer);
+  };
+  wire.tell = dof(0.2, 0.6, 0.7, 0.8);
+  wire.run(4);
+  EXPECT_EQ(left, 0);
+  EXPECT_GE(wire.rejects, 2u);
+  EXPECT_EQ(wire.first_trouble, "");
+  EXPECT_LT((wire.robot.measured() - *wire.tell).cwiseAbs().maxCoeff(), 0.02);
 }
 
 TEST(BarrettDriver, AStuckJointIsNamed) {
