@@ -27,10 +27,8 @@ constexpr Duration homing_patience = std::chrono::seconds(40);
 constexpr Duration quiet = milliseconds(60);  // after which nothing more comes
 constexpr Duration wake_period = milliseconds(100);
 constexpr std::size_t wake_bytes = 24;  // there and back
-// So long an answer may come too late, and no longer: two of them are not a lost wire.
-constexpr double late = 0.55;  // of lost_after
-constexpr Duration latest = milliseconds(150);
-constexpr double max_gap = 0.03;  // s, after which a jump has to be seen twice
+constexpr double late = 0.55;           // of lost_after, that an answer may come too late
+constexpr double max_gap = 0.03;        // s, after which a jump has to be seen twice
 constexpr Duration heat_period = milliseconds(1000);
 constexpr std::size_t max_heard = 4096;
 
@@ -310,8 +308,8 @@ std::string Driver::loop(Time now) {
   if (now < deaf_until_) {
     heard_.clear();
   } else if (waiting_ && !take_block(now)) {
-    const Duration due =
-        milliseconds(40) + 2 * time_on_line(5 + 1 + feedback_size(2), options_.baud);
+    Duration due = milliseconds(40) + 2 * time_on_line(5 + 1 + feedback_size(2), options_.baud);
+    if (standing_) due = std::max(due, options_.lost_after / 4);
     if (now - asked_ > due && now - heard_at_ > quiet / 2)
       return heard_.empty() ? miss(now) : (reject("garbled answer", now), std::string());
   }
@@ -323,10 +321,13 @@ std::string Driver::loop(Time now) {
 }
 
 /// An answer that comes too late would be taken for the one to the next question, and say where the
-/// hand was. So its motors stand still, and nothing is asked, until none can come any more.
+/// hand was. So its motors stand still until one comes in time, and nothing is asked until none can
+/// come too late any more. Of motors that stand still a late answer tells nothing wrong.
 std::string Driver::miss(Time now) {
   reject("no answer", now);
-  deaf_until_ = now + std::min<Duration>(seconds(late * to_seconds(options_.lost_after)), latest);
+  if (standing_) return {};
+  deaf_until_ = now + seconds(late * to_seconds(options_.lost_after));
+  standing_ = true;
   for (MotorControl& motor : control_) motor.rest();
   return control_block({});
 }
@@ -334,7 +335,7 @@ std::string Driver::miss(Time now) {
 std::string Driver::exchange_block(Time now) {
   if (waiting_ || now - asked_ < seconds(1 / options_.rate)) return {};
   std::array<std::int8_t, motors> velocity{};
-  for (std::size_t i = 0; i < motors; ++i) {
+  for (std::size_t i = 0; i < motors && !standing_; ++i) {
     const double unit = std::clamp(control_[i].command(now) / counts_per_second(i), -127.0, 127.0);
     velocity[i] = static_cast<std::int8_t>(std::lround(unit));
   }
@@ -393,6 +394,7 @@ void Driver::accept(const Feedback& feedback, Time now) {
   if (feedback.temperature) temperature_ = feedback.temperature;
   doubted_.reset();
   doubted_before_.reset();
+  standing_ = false;
   silence_.end(now);
   publish(now);
 }

@@ -130,6 +130,7 @@ class Driver final : public robot::Driver {
   Duration patience_{};
   std::size_t setting_ = 0;
   int temperature_bytes_ = 0;
+  bool standing_ = false;  // told to, since an answer did not come in time
   bool waiting_ = false, is_homed_ = false, hot_ = false;
   bool wants_home_ = false, gives_up_ = false;  // homing
 };
