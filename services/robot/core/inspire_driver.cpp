@@ -77,7 +77,7 @@ void Driver::follow(const Eigen::VectorXd& dof, const Eigen::VectorXd& effort, T
 
 void Driver::hold() {
   if (phase_ == Phase::homing) be(Phase::ready);
-  if (phase_ == Phase::ready && commanded_) wanted_[angle] = halt();
+  if (phase_ == Phase::ready) wanted_[angle] = halt();
 }
 
 std::string Driver::stay() {

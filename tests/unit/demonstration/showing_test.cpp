@@ -45,6 +45,17 @@ double deepest(const model::HumanHand& hand, const model::Shape& shape, const He
   return made;
 }
 
+TEST(Holding, WhatIsHeldIsTurnedAndNotDistorted) {
+  Random random(2);
+  for (const model::GraspClass& kind : taxonomy().classes()) {
+    const model::Shape shape = drawn_object(kind, random);
+    const Held held = holding(model::HumanHand(1), kind, shape, {});
+    const Eigen::Matrix3d R = held.X_HO.linear();
+    EXPECT_LT((R * R.transpose() - Eigen::Matrix3d::Identity()).norm(), 1e-9) << kind.name;
+    EXPECT_NEAR(R.determinant(), 1, 1e-9) << kind.name;
+  }
+}
+
 TEST(Holding, FingertipsLieOnWhatTheyHold) {
   Random random(3);
   for (const char* name : {"precision sphere", "tripod", "thumb-4 finger", "thumb-index finger",
