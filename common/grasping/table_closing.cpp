@@ -60,6 +60,12 @@ bool is_from_above(const Pose& X_OG) {
   return X_OG.linear()(2, 2) <= -0.7;
 }
 
+bool clears_table(const model::HandModel& hand, const Body& object, const TableApproach& approach) {
+  const Pose X_OB = approach.X_OG * hand.X_BG().inverse();
+  return above_table(hand, X_OB, approach.preshape, approach.preshape,
+                     -model::half_extents(object.shape).z());
+}
+
 Expected<TableGrasp> close_on_table(const model::HandModel& hand, const Body& object,
                                     const TableApproach& approach) {
   const Pose X_BO = hand.X_BG() * approach.X_OG.inverse();
@@ -68,7 +74,7 @@ Expected<TableGrasp> close_on_table(const model::HandModel& hand, const Body& ob
     return !above_table(hand, X_BO.inverse(), approach.preshape, dof, table);
   };
   const auto refused = [&] { return fail("fingers would reach into the table", object.name); };
-  if (reaches_into_table(approach.preshape)) return refused();
+  if (!clears_table(hand, object, approach)) return refused();
   ClosingOptions options;
   options.volume = false;
   options.fixed_object = true;

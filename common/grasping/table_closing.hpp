@@ -24,6 +24,10 @@ std::vector<Pose> approaches(const model::Shape& shape, const model::Reach& reac
 /// From above, rather than from the side.
 bool is_from_above(const Pose& X_OG);
 
+/// No part of the open hand would be in the table; the palm is where the reach of the hand allows
+/// it to be.
+bool clears_table(const model::HandModel& hand, const Body& object, const TableApproach& approach);
+
 /// Closes the hand on the object where it stands, as if it could not move. The grasp opens to the
 /// preshape. Fails when the hand is inside the object, when the fingers find no two contacts, and
 /// when any part of the hand would reach into the table.

@@ -68,16 +68,18 @@ std::vector<Pose> places_to_stand(bool from_above) {
   return places;
 }
 
-std::vector<TableApproach> attempts_from(const model::HandModel& hand, const Pose& X_OG,
-                                         std::size_t most) {
+std::vector<TableApproach> attempts_from(const model::HandModel& hand, const Body& object,
+                                         const Pose& X_OG, std::size_t most) {
   const std::vector<Pose> everywhere = places_to_stand(is_from_above(X_OG));
   const std::vector<Preshape> preshapes = ways_to_close(hand);
   std::vector<TableApproach> made;
   // Along diagonals: what is likely in both respects first.
   for (std::size_t rank = 0; rank < everywhere.size() + preshapes.size(); ++rank)
     for (std::size_t k = 0; k < preshapes.size() && k <= rank; ++k)
-      if (rank - k < everywhere.size() && made.size() < most)
-        made.push_back({X_OG * everywhere[rank - k], preshapes[k].dof, preshapes[k].resting});
+      if (rank - k < everywhere.size() && made.size() < most) {
+        TableApproach approach{X_OG * everywhere[rank - k], preshapes[k].dof, preshapes[k].resting};
+        if (clears_table(hand, object, approach)) made.push_back(std::move(approach));
+      }
   return made;
 }
 
@@ -135,7 +137,7 @@ Expected<TableGraspSearch> TableGraspSearch::create(const model::HandModel& hand
   for (const Pose& X_OG : approaches(object.shape, hand.reach()))
     made.approaches_.push_back(
         {X_OG,
-         attempts_from(hand, X_OG, static_cast<std::size_t>(options.attempts)),
+         attempts_from(hand, object, X_OG, static_cast<std::size_t>(options.attempts)),
          0,
          {},
          {},

@@ -57,7 +57,10 @@ bool is_gripped(const std::vector<analysis::Contact>& contacts, int hand, bool p
   std::set<std::string_view> links;
   bool other = false;
   for (const analysis::Contact& contact : contacts)
-    contact.hand == hand ? void(links.insert(contact.link)) : void(other = true);
+    if (contact.hand == hand)
+      links.insert(contact.link);
+    else
+      other = true;
   return links.size() > 1 || (pushes && other && !links.empty());
 }
 

@@ -91,6 +91,13 @@ TEST(TableGraspSearch, MoreAttemptsFindNothingWorse) {
   EXPECT_GE(room(6), room(2));
 }
 
+// Guards: all 24 attempts of a side went to open hands that stood in the table; none was found.
+TEST(LowObject, OpenHandsThatStandInTheTableUseUpNoAttempt) {
+  const Body talc{"talc", {model::ShapeKind::cylinder, {0.024, 0.024, 0.105}}, 0.15, "plastic", {},
+                  {}};
+  EXPECT_FALSE(found(test::hand("dlr"), talc, {.enough = 0.3, .judged = 1}).empty());
+}
+
 TEST(TableGraspSearch, EndsAtOnceWhereNothingFits) {
   Body wall = brick();
   wall.shape.size.setConstant(0.6);

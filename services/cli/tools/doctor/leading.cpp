@@ -9,6 +9,11 @@
 #include "common/base/printable.hpp"
 
 namespace prehend::cli {
+namespace {
+
+constexpr std::size_t kept_frames = 1000;  // frames, of which a command may come
+
+}  // namespace
 
 Leading::Leading(dds::Reader<v1::GloveFrame> frames, dds::Reader<v1::GloveFeedback> feedback,
                  dds::Reader<v2::HandCommand> commands)
@@ -25,12 +30,21 @@ Expected<Leading> Leading::create(dds::Participant& participant) {
 }
 
 void Leading::hear() {
-  for (const auto& sample : frames_.take())
-    if (!sample.info.gone) is_left_[sample.data.glove().to_string()] = sample.data.left();
+  for (const auto& sample : frames_.take()) {
+    if (sample.info.gone) continue;
+    is_left_[sample.data.glove().to_string()] = sample.data.left();
+    frame_of_[sample.data.stamp_ns()] = sample.data.glove().to_string();
+  }
+  while (frame_of_.size() > kept_frames) frame_of_.erase(frame_of_.begin());
   for (const auto& sample : feedback_.take())
     if (!sample.info.gone) glove_[sample.data.hand().to_string()] = sample.data.glove().to_string();
-  for (const auto& sample : commands_.take())
-    if (!sample.info.gone) model_[sample.data.hand().to_string()] = sample.data.model().to_string();
+  for (const auto& sample : commands_.take()) {
+    if (sample.info.gone) continue;
+    const std::string hand = sample.data.hand().to_string();
+    model_[hand] = sample.data.model().to_string();
+    const auto led_by = frame_of_.find(sample.data.origin_ns());
+    if (led_by != frame_of_.end()) glove_[hand] = led_by->second;
+  }
 }
 
 Check Leading::judge() const {
@@ -48,7 +62,7 @@ Check Leading::judge() const {
       wrong.push_back(printable(fmt::format("{} is on a {} hand and leads {}, a {}", glove,
                                             worn->second ? "left" : "right", hand, model->second)));
   }
-  if (led.empty()) return {"hands", true, "no glove leads a hand", ""};
+  if (led.empty()) return {"hands", true, "nothing tells that a glove leads a hand", ""};
   if (wrong.empty()) return {"hands", true, fmt::format("{}", fmt::join(led, ", ")), ""};
   return {"hands", false, fmt::format("{}", fmt::join(wrong, "; ")),
           "set glove.hand where the glove runs, or mapping.glove where it leads the wrong hand"};

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <map>
 #include <string>
 
@@ -9,7 +10,9 @@
 
 namespace prehend::cli {
 
-/// Which glove leads which hand, as the topics tell it.
+/// Which glove leads which hand: that whose frame is the origin of its commands, and that which is
+/// told what it feels. The first is not seen where clocks of hosts differ, the second not of hands
+/// that feel nothing.
 class Leading {
  public:
   static Expected<Leading> create(dds::Participant& participant);
@@ -26,9 +29,10 @@ class Leading {
   dds::Reader<v1::GloveFrame> frames_;
   dds::Reader<v1::GloveFeedback> feedback_;
   dds::Reader<v2::HandCommand> commands_;
-  std::map<std::string, bool> is_left_;       // by glove
-  std::map<std::string, std::string> glove_;  // by hand
-  std::map<std::string, std::string> model_;  // by hand
+  std::map<std::int64_t, std::string> frame_of_;  // the glove, by the frame's stamp in ns
+  std::map<std::string, bool> is_left_;           // by glove
+  std::map<std::string, std::string> glove_;      // by hand
+  std::map<std::string, std::string> model_;      // by hand
 };
 
 }  // namespace prehend::cli
