@@ -91,7 +91,7 @@ TEST(TableGraspSearch, MoreAttemptsFindNothingWorse) {
   EXPECT_GE(room(6), room(2));
 }
 
-// Guards: all 24 attempts of a side went to open hands that stood in the table; none was found.
+// Guards: attempts were used up by open hands that stood in the table; no grasp was found.
 TEST(LowObject, OpenHandsThatStandInTheTableUseUpNoAttempt) {
   const Body talc{"talc", {model::ShapeKind::cylinder, {0.024, 0.024, 0.105}}, 0.15, "plastic", {},
                   {}};
