@@ -16,6 +16,7 @@ using Square = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, model::m
                              model::max_arm_joints>;
 
 constexpr double max_dt = 0.1;                    // s
+constexpr double usual_dt = 0.01;                 // s, of steps after this one
 constexpr double trust_m = 0.1, trust_rad = 0.3;  // of the linear step
 constexpr double there_m = 1e-3, there_rad = 5e-3;
 constexpr double calm = 0.8;           // of the acceleration, that slows down before the wish
@@ -45,12 +46,15 @@ double joint_acceleration(const model::ArmModel& arm, Eigen::Index i) {
   return arm.joints[static_cast<std::size_t>(i)].acceleration;
 }
 
-/// How far a joint turns in t s that begin with dt at this velocity and go on braking.
+/// How far a joint turns in t s that begin with dt at this velocity and go on braking, as the usual
+/// steps do: each at one velocity. Joints that brake smoothly would take another way together.
 double turned(double velocity, double acceleration, double dt, double t) {
-  const double first = std::min(t, dt), rest = std::max(t - dt, 0.0);
-  const double braking = std::min(rest, std::abs(velocity) / acceleration);
-  return velocity * (first + braking) -
-         std::copysign(0.5 * acceleration * braking * braking, velocity);
+  const double speed = std::abs(velocity), h = std::min(dt, usual_dt), slower = acceleration * h;
+  const double steps = std::min(std::max(t - dt, 0.0) / h, std::floor(speed / slower));
+  const double whole = std::floor(steps);
+  const double braking = whole * speed - slower * whole * (whole + 1) / 2 +
+                         (steps - whole) * std::max(speed - (whole + 1) * slower, 0.0);
+  return std::copysign(std::min(t, dt) * speed + h * braking, velocity);
 }
 
 /// Velocity of a point of a link over velocities of the joints, along a direction.

@@ -310,9 +310,9 @@ Expected<fdds::DataWriter*> Participant::make_writer(std::string_view topic,
   if (contract.lifespan.count() > 0 && !state_->options.lockstep)
     qos.lifespan().duration = duration(contract.lifespan);
   qos.writer_data_lifecycle().autodispose_unregistered_instances = !raw;
-  // What is kept for good takes what it needs: otherwise every buffer is as large as the largest
+  // What is kept takes what it needs: otherwise every buffer is as large as the largest
   // message. (The end of an instance without its key, as raw topics have it, needs such a one.)
-  if (!raw && contract.writer_depth == 0)
+  if (!raw && (contract.writer_depth == 0 || contract.transient_local))
     qos.endpoint().history_memory_policy = rtps::DYNAMIC_RESERVE_MEMORY_MODE;
   // With the default of 3 s a lost single sample is noticed very late.
   heartbeat_period(qos.reliable_writer_qos().times) = duration(std::chrono::milliseconds(100));

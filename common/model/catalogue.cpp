@@ -80,6 +80,7 @@ Expected<CatalogueObject> read_object(const toml::table& table,
     auto mesh = read_mesh(table, object.shape, beside);
     if (!mesh) return tl::unexpected(mesh.error());
     object.mesh = std::move(*mesh);
+    object.mesh_file = table["mesh"].value_or("");
   }
   object.mass = table["mass"].value_or(0.0);
   if (!(object.mass > 0)) return fail("mass must be positive, in kg");

@@ -26,8 +26,9 @@ struct CatalogueObject {
   Shape shape;  // what bounds it, if it has a mesh
   /// What it is like more exactly, its origin in the middle of the box that bounds it; or none.
   std::shared_ptr<const Mesh> mesh;
-  double mass = 0;       // kg
-  std::string material;  // one of the friction table (see analysis/materials.hpp)
+  std::filesystem::path mesh_file;  // of the mesh, as the catalogue names it: beside itself
+  double mass = 0;                  // kg
+  std::string material;             // one of the friction table (see analysis/materials.hpp)
   Appearance appearance;
 };
 

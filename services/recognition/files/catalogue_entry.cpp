@@ -53,6 +53,28 @@ model::CatalogueObject described_by(const std::string& name, const model::Shape&
   return made;
 }
 
+Expected<void> copy_catalogue(const std::filesystem::path& from, const std::filesystem::path& to) {
+  const auto catalogue = model::Catalogue::load(from);
+  if (!catalogue) return tl::unexpected(catalogue.error());
+  const auto copy = [](const std::filesystem::path& file,
+                       const std::filesystem::path& kept) -> Expected<void> {
+    std::error_code error;
+    if (kept.has_parent_path()) std::filesystem::create_directories(kept.parent_path(), error);
+    std::filesystem::copy_file(file, kept, std::filesystem::copy_options::skip_existing, error);
+    if (error)
+      return fail(error.message(), kept.string(), "it would begin as a copy of " + file.string());
+    return {};
+  };
+  // The catalogue last: one without its meshes cannot be read.
+  for (const model::CatalogueObject& object : catalogue->objects())
+    if (object.mesh && object.mesh_file.is_relative())
+      if (auto copied =
+              copy(from.parent_path() / object.mesh_file, to.parent_path() / object.mesh_file);
+          !copied)
+        return copied;
+  return copy(from, to);
+}
+
 Expected<void> append_to_catalogue(const std::filesystem::path& file,
                                    const model::CatalogueObject& object,
                                    const std::optional<MeshFile>& mesh) {

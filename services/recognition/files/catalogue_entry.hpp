@@ -19,6 +19,9 @@ struct MeshFile {
   double scale = 1;  // metres per unit of the file
 };
 
+/// A copy of a catalogue, with the meshes that lie beside it. What is there already stays.
+Expected<void> copy_catalogue(const std::filesystem::path& from, const std::filesystem::path& to);
+
 /// The object's [[object]] at the end of a catalogue file; whoever reads it meanwhile sees the old
 /// one or the new one. Fails when it is there already or the catalogue could not be read then. The
 /// mesh is copied beside the catalogue.

@@ -173,6 +173,14 @@ TEST_F(Table, AMeshComesWithItsObject) {
   ASSERT_TRUE(wedge && wedge->mesh);
   EXPECT_LT(model::bounds(*wedge->mesh).center().norm(), 1e-9);
   EXPECT_LT((model::bounds(*wedge->mesh).sizes() - Eigen::Vector3d(0.04, 0.04, 0.06)).norm(), 1e-6);
+  // Guards: a copy of one's own could not be read, since its meshes were left behind.
+  const auto own = folder / "own" / "mine.toml";
+  const auto copied = copy_catalogue(catalogue, own);
+  ASSERT_TRUE(copied) << copied.error().message();
+  const auto mine = model::Catalogue::load(own);
+  ASSERT_TRUE(mine) << mine.error().message();
+  EXPECT_EQ(mine->objects().size(), after->objects().size());
+  EXPECT_TRUE(std::filesystem::exists(folder / "own" / "Wedge.obj"));
   // A mesh that is not as large as the shape that is to bound it: somebody's unit is another.
   std::string text = read_file(catalogue).value();
   text.replace(text.find("mesh_scale = 0.001"), 18, "mesh_scale = 0.002");

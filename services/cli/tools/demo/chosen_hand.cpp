@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "common/base/paths.hpp"
 #include "common/model/hand_model.hpp"
 #include "common/stage/first_training.hpp"
 
@@ -12,6 +13,13 @@ namespace {
 bool is_ours(const std::string& hand) {
   const auto names = model::hand_names();
   return std::find(names.begin(), names.end(), hand) != names.end();
+}
+
+/// All that come with us do, but for the human one.
+bool comes_trained(const std::string& hand) {
+  std::error_code none;
+  return is_ours(hand) &&
+         std::filesystem::exists(share_directory() / "trained" / (hand + ".mapping"), none);
 }
 
 }  // namespace
@@ -40,8 +48,8 @@ Expected<void> train_hand(const DemoOptions& options) {
   std::error_code none;
   const bool is_there =
       std::filesystem::exists(model::hand_directory(hand) / "hand.urdf", none);  // else it is told
-  return hand.empty() || is_ours(hand) || !is_there ? Expected<void>()
-                                                    : stage::train_if_needed(hand);
+  return hand.empty() || comes_trained(hand) || !is_there ? Expected<void>()
+                                                          : stage::train_if_needed(hand);
 }
 
 }  // namespace prehend::cli

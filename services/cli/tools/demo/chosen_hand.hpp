@@ -13,8 +13,7 @@ std::string hand_of_robot(const std::string& robot);
 /// by its whole path.
 std::string hand_setting(const std::string& hand);
 
-/// Has a hand that does not come with us trained, where it was not yet: before the demonstration
-/// begins, whose time is short.
+/// Has a hand trained that was not yet: before the demonstration begins, whose time is short.
 Expected<void> train_hand(const DemoOptions& options);
 
 }  // namespace prehend::cli

@@ -30,6 +30,7 @@ Pilot pilot_of(const planning::Robot& robot, std::map<std::string, model::Shape>
   if (how.careful) {
     options.room.clearance += more_room;
     options.room.hand_clearance += more_room;
+    options.contact_clearance += more_room;
     options.arm_contact_clearance += more_room;
     options.room.joint_margin = more_joint;
   }

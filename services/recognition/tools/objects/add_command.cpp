@@ -227,14 +227,22 @@ Expected<void> keep(const std::filesystem::path& folder, const TrainingClass& vi
   return {};
 }
 
-/// A file of the user's own that is not there yet begins as the lab's.
-Expected<std::filesystem::path> own_file(const service::Config& config, const std::string& given,
-                                         const char* key) {
-  const auto labs = config.path(key);
+/// A model or a catalogue of the user's own that is not there yet begins as the lab's.
+Expected<std::filesystem::path> own_model(const service::Config& config, const std::string& given) {
+  const auto labs = config.path("recognition.model");
   if (given.empty()) return labs;
   std::error_code error;
   if (!std::filesystem::exists(given, error)) std::filesystem::copy_file(labs, given, error);
   if (error) return fail(error.message(), given, "it would begin as a copy of " + labs.string());
+  return given;
+}
+
+Expected<std::filesystem::path> own_catalogue(const service::Config& config,
+                                              const std::string& given) {
+  const auto labs = config.path("lab.catalogue");
+  if (given.empty()) return labs;
+  if (std::error_code error; !std::filesystem::exists(given, error))
+    if (auto copied = copy_catalogue(labs, given); !copied) return tl::unexpected(copied.error());
   return given;
 }
 
@@ -247,9 +255,9 @@ int add(AddArguments& arguments) {
                              exit_wrong_use);
   const auto shape = shape_of(arguments);
   if (!shape) return service::complain(shape.error(), exit_wrong_use);
-  const auto model_place = own_file(*config, arguments.model, "recognition.model");
+  const auto model_place = own_model(*config, arguments.model);
   if (!model_place) return service::complain(model_place.error(), exit_broken);
-  const auto catalogue_place = own_file(*config, arguments.catalogue, "lab.catalogue");
+  const auto catalogue_place = own_catalogue(*config, arguments.catalogue);
   if (!catalogue_place) return service::complain(catalogue_place.error(), exit_broken);
   const auto &model_file = *model_place, &catalogue_file = *catalogue_place;
   // What would fail at the end is looked at before anybody turns an object for a minute.
