@@ -122,7 +122,7 @@ class NoThrowPubSubType final : public P {
  public:
   bool deserialize(PayloadArgument payload, void* data) override {
     try {
-      return P::deserialize(payload, data);
+      return is_first_representation(payload) && P::deserialize(payload, data);
     } catch (const std::exception&) {
       return false;
     }

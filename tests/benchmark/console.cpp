@@ -168,7 +168,8 @@ bool subscribe(WebClient& client, const std::vector<std::string>& topics) {
   ordered_json asked{{"op", "subscribe"}, {"subscriptions", ordered_json::array()}};
   const ordered_json all = ordered_json::parse(told->bytes);
   for (const auto& channel : all["channels"])
-    if (std::find(topics.begin(), topics.end(), channel["topic"]) != topics.end())
+    if (std::find(topics.begin(), topics.end(), channel["topic"].get<std::string>()) !=
+        topics.end())
       asked["subscriptions"].push_back({{"id", channel["id"]}, {"channelId", channel["id"]}});
   client.say(asked.dump());
   return true;

@@ -129,10 +129,16 @@ TEST_F(Profiles, TheLaptopNeedsOnlyLoopbackAndNothingLeavesIt) {
   if (!may_make_namespaces()) GTEST_SKIP() << "a network namespace needs root";
   const Answer answer = alone(R"sh(
 $bin/prehend status $lab && exit 10 || [ $? -eq 3 ] || exit 11
-ip link set lo up
+unshare -n sleep 300 & far=$!
+trap 'kill $far' EXIT
+until [ "$(readlink /proc/$far/ns/net)" != "$(readlink /proc/$$/ns/net)" ]; do sleep 0.05; done
+there="nsenter -t $far -n"
+ip link set lo up; $there ip link set lo up
 ip link add outside type veth peer name cable
 ip link set outside addrgenmode none; ip link set cable addrgenmode none
-ip addr add 10.9.0.1/24 dev outside; ip link set outside up; ip link set cable up
+ip link set cable netns $far
+ip addr add 10.9.0.1/24 dev outside; ip link set outside up
+$there ip addr add 10.9.0.2/24 dev cable; $there ip link set cable up
 ip route add default via 10.9.0.2
 sent() { ip -j -s link show outside | grep -o '"tx":{"bytes":[0-9]*'; }
 before=$(sent)
@@ -140,8 +146,12 @@ $bin/prehend-simulation $lab & simulation=$!
 $bin/prehend status --wait simulation --timeout 15 $lab || exit 12
 [ "$(sent)" = "$before" ] || exit 13
 # Who listens on the network hears nothing of it.
-$bin/prehend status --wait simulation --timeout 2 $lab --set lab.network=lan && exit 14
-[ "$(sent)" != "$before" ] || exit 15
+sees() { $there $bin/prehend status --wait simulation --timeout $1 $lab --set lab.network=lan; }
+sees 2 && exit 14
+kill $simulation; wait $simulation
+$bin/prehend-simulation $lab --set lab.network=lan & simulation=$!
+sees 15 || exit 15
+[ "$(sent)" != "$before" ] || exit 16
 kill $simulation; wait $simulation
 )sh",
                               60);

@@ -49,37 +49,14 @@ std::vector<std::uint8_t> whole(const std::vector<transport::NetworkBuffer>& pie
 }
 #endif
 
-/// Sends through a resource of the lower transport, but by our send().
-class Sender final : public rtps::SenderResource {
- public:
-  Sender(PassThroughTransport& through, rtps::SenderResource& lower)
-      : SenderResource(lower.kind()) {
-    const auto send = [&through, &lower](PassThroughTransport::Bytes bytes, std::uint32_t size,
-                                         rtps::LocatorsIterator* begin, rtps::LocatorsIterator* end,
-                                         const std::chrono::steady_clock::time_point& timeout) {
-      return through.send(&lower, bytes, size, begin, end, timeout);
-    };
-#if PREHEND_FAST_DDS == 2
-    send_lambda_ = send;
-#else
-    send_buffers_lambda_ = send;
-#endif
-  }
-};
-
 class Transport final : public PassThroughTransport {
  public:
   Transport(const transport::ChainingTransportDescriptor& descriptor, PacketGuard& guard)
       : PassThroughTransport(descriptor), guard_(guard) {}
-  /// The lower transport looks for its own resources to use them again: it has a list of them, and
-  /// Fast DDS gets one of ours for each, so that send() sees what is sent.
   bool OpenOutputChannel(transport::SendResourceList& senders,
                          const rtps::Locator_t& remote) override {
-    if (!guard_.paces()) return PassThroughTransport::OpenOutputChannel(senders, remote);
-    if (!low_level_transport_->OpenOutputChannel(lower_, remote)) return false;
-    for (; wrapped_ < lower_.size(); ++wrapped_)
-      senders.push_back(std::make_unique<Sender>(*this, *lower_[wrapped_]));
-    return true;
+    if (guard_.paces()) return open_wrapped(senders, remote);
+    return PassThroughTransport::OpenOutputChannel(senders, remote);
   }
   bool send(rtps::SenderResource* lower, Bytes bytes, std::uint32_t size,
             rtps::LocatorsIterator* begin, rtps::LocatorsIterator* end,
@@ -128,8 +105,6 @@ class Transport final : public PassThroughTransport {
   }
 
   PacketGuard& guard_;
-  transport::SendResourceList lower_;
-  std::size_t wrapped_ = 0;  // of these
   std::mutex mutex_;
   EarlyHandshakes early_;
 };

@@ -1,5 +1,10 @@
 #pragma once
 
+#include <chrono>
+#include <cstddef>
+#include <memory>
+#include <vector>
+
 #include "common/dds/release/fastdds.hpp"
 
 namespace prehend::dds {
@@ -34,11 +39,43 @@ class PassThroughTransport : public transport::ChainingTransport {
                const rtps::Locator_t& remote) override {
     next->OnDataReceived(bytes, size, local, remote);
   }
-  /// The lower transport's own resources, not wrapped: it looks for them to use a connection again.
+  /// The lower transport's own resources, not wrapped: send() of this class is not asked.
   bool OpenOutputChannel(transport::SendResourceList& senders,
                          const rtps::Locator_t& remote) override {
     return low_level_transport_->OpenOutputChannel(senders, remote);
   }
+
+ protected:
+  /// The same, but send() sees what is sent. The lower transport looks for its own resources to use
+  /// them again: it has a list of them, and Fast DDS gets one of ours for each.
+  bool open_wrapped(transport::SendResourceList& senders, const rtps::Locator_t& remote) {
+    if (!low_level_transport_->OpenOutputChannel(lower_, remote)) return false;
+    for (; wrapped_ < lower_.size(); ++wrapped_)
+      senders.push_back(std::make_unique<Sender>(*this, *lower_[wrapped_]));
+    return true;
+  }
+
+ private:
+  class Sender final : public rtps::SenderResource {
+   public:
+    Sender(PassThroughTransport& through, rtps::SenderResource& lower)
+        : SenderResource(lower.kind()) {
+      const auto send = [&through, &lower](Bytes bytes, std::uint32_t size,
+                                           rtps::LocatorsIterator* begin,
+                                           rtps::LocatorsIterator* end,
+                                           const std::chrono::steady_clock::time_point& timeout) {
+        return through.send(&lower, bytes, size, begin, end, timeout);
+      };
+#if PREHEND_FAST_DDS == 2
+      send_lambda_ = send;
+#else
+      send_buffers_lambda_ = send;
+#endif
+    }
+  };
+
+  transport::SendResourceList lower_;
+  std::size_t wrapped_ = 0;  // of these
 };
 
 }  // namespace prehend::dds

@@ -13,6 +13,7 @@
 #include <optional>
 #include <stop_token>
 #include <thread>
+#include <vector>
 
 #include "common/dds/guard/pass_through_transport.hpp"
 
@@ -72,10 +73,26 @@ class WanTransport final : public PassThroughTransport {
     if (found) result = *found;
     return found.has_value();
   }
+#if PREHEND_FAST_DDS > 2  // asks by this one, and not for who is on another host
+  bool transform_remote_locator(const rtps::Locator_t& remote, rtps::Locator_t& result, bool,
+                                bool) const override {
+    return transform_remote_locator(remote, result);
+  }
+#endif
   bool OpenOutputChannel(transport::SendResourceList& senders,
                          const rtps::Locator_t& remote) override {
     const auto found = way(remote);
-    return found && PassThroughTransport::OpenOutputChannel(senders, *found);
+    return found && open_wrapped(senders, *found);
+  }
+  bool send(rtps::SenderResource* lower, Bytes bytes, std::uint32_t size,
+            rtps::LocatorsIterator* begin, rtps::LocatorsIterator* end,
+            const std::chrono::steady_clock::time_point& timeout) override {
+    std::vector<rtps::Locator_t> ways;
+    for (; *begin != *end; ++*begin)
+      if (const auto found = way(**begin); found && std::ranges::count(ways, *found) == 0)
+        ways.push_back(*found);
+    rtps::Locators first(ways.cbegin()), last(ways.cend());
+    return PassThroughTransport::send(lower, bytes, size, &first, &last, timeout);
   }
 
  private:

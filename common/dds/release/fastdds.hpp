@@ -87,6 +87,10 @@ inline bool deserialize(fdds::TopicDataType& type, rtps::SerializedPayload_t& pa
                         void* message) {
   return type.deserialize(&payload, message);
 }
+/// Fast CDR 1 knows no other.
+inline bool is_first_representation(const rtps::SerializedPayload_t*) {
+  return true;
+}
 /// Fast CDR 1 throws where a message ends too early.
 inline bool is_whole(fdds::TopicDataType&, const rtps::SerializedPayload_t&, const void*) {
   return true;
@@ -145,16 +149,19 @@ inline bool deserialize(fdds::TopicDataType& type, rtps::SerializedPayload_t& pa
                         void* message) {
   return type.deserialize(payload, message);
 }
+/// Nobody of ours writes the second one. Fast CDR 2 makes room for as many elements as a sequence
+/// of it says to have, before it looks whether they are there: a damaged length takes all memory.
+inline bool is_first_representation(const rtps::SerializedPayload_t& payload) {
+  constexpr rtps::octet first_of_xcdr2 = 6;  // encapsulations that are numbered so or higher
+  return payload.length >= 2 && payload.data[0] == 0 && payload.data[1] < first_of_xcdr2;
+}
 /// Whether a payload brought all of a message that was read from it. Where it ends between two
 /// members, Fast CDR 2 leaves those that are missing as they were, and is content. Its calculated
 /// sizes are bounds, so the message is written again.
 inline bool is_whole(fdds::TopicDataType& type, const rtps::SerializedPayload_t& payload,
                      const void* message) {
-  constexpr rtps::octet first_of_xcdr2 = 6;  // encapsulations that are numbered so or higher
-  const auto written =
-      payload.data[1] < first_of_xcdr2 ? representation : fdds::XCDR2_DATA_REPRESENTATION;
-  rtps::SerializedPayload_t again(type.calculate_serialized_size(message, written));
-  return type.serialize(message, again, written) && again.length <= payload.length;
+  rtps::SerializedPayload_t again(type.calculate_serialized_size(message, representation));
+  return type.serialize(message, again, representation) && again.length <= payload.length;
 }
 inline bool find_key(fdds::TopicDataType& type, const void* message,
                      rtps::InstanceHandle_t& handle) {

@@ -66,12 +66,15 @@ Expected<void> copy_catalogue(const std::filesystem::path& from, const std::file
     return {};
   };
   // The catalogue last: one without its meshes cannot be read.
-  for (const model::CatalogueObject& object : catalogue->objects())
-    if (object.mesh && object.mesh_file.is_relative())
-      if (auto copied =
-              copy(from.parent_path() / object.mesh_file, to.parent_path() / object.mesh_file);
-          !copied)
-        return copied;
+  for (const model::CatalogueObject& object : catalogue->objects()) {
+    const std::filesystem::path mesh = object.mesh_file.lexically_normal();
+    if (!object.mesh || mesh.is_absolute()) continue;
+    if (*mesh.begin() == "..")
+      return fail("the mesh of " + object.name + " lies outside the catalogue's folder",
+                  from.string(), "move " + mesh.filename().string() + " into it");
+    if (auto copied = copy(from.parent_path() / mesh, to.parent_path() / mesh); !copied)
+      return copied;
+  }
   return copy(from, to);
 }
 

@@ -4,6 +4,7 @@
 #include "common/dds/raw.hpp"
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -285,6 +286,31 @@ TEST(Decode, RefusesWhatIsDamaged) {
   // Also between two members: Fast CDR 2 would take what is there, and leave the rest as it was.
   for (std::size_t length = 3; length < sample.payload.size(); ++length)
     EXPECT_TRUE(refused([&](auto& bytes) { bytes.resize(length); })) << length;
+}
+
+long peak_memory() {  // kB
+  rusage used{};
+  getrusage(RUSAGE_SELF, &used);
+  return used.ru_maxrss;
+}
+
+// Guards: in the second representation Fast CDR 2 made room for as many sensors as were said to
+// come, 150 GB for one damaged byte.
+TEST(Decode, ADamagedLengthTakesNoMemory) {
+  v1::GloveFrame message, decoded;
+  message.sensors().resize(2);
+  const auto bytes = encode(glove_frame, message);
+  const long before = peak_memory();
+  for (std::uint8_t kind = 0; kind < 12; ++kind)
+    for (std::size_t at = 4; at + 4 <= bytes.size(); ++at) {
+      RawSample damaged;
+      damaged.payload = bytes;
+      damaged.payload[1] = kind;
+      std::fill_n(damaged.payload.begin() + static_cast<std::ptrdiff_t>(at), 4, 0);
+      damaged.payload[at + 2] = 0x40;  // four million, 300 MB of sensors
+      (void)decode(glove_frame, damaged, decoded);
+    }
+  EXPECT_LT(peak_memory() - before, 100'000);
 }
 
 }  // namespace

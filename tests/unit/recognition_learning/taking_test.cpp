@@ -181,6 +181,12 @@ TEST_F(Table, AMeshComesWithItsObject) {
   ASSERT_TRUE(mine) << mine.error().message();
   EXPECT_EQ(mine->objects().size(), after->objects().size());
   EXPECT_TRUE(std::filesystem::exists(folder / "own" / "Wedge.obj"));
+  std::string beside = read_file(catalogue).value();
+  beside.replace(beside.find("\"Wedge.obj"), 1, "\"../");
+  std::ofstream(folder / "own" / "beside.toml") << beside;
+  const auto outside = copy_catalogue(folder / "own" / "beside.toml", folder / "far" / "mine.toml");
+  ASSERT_FALSE(outside) << "a copy would write outside its folder";
+  EXPECT_THAT(outside.error().message(), testing::HasSubstr("Wedge lies outside"));
   // A mesh that is not as large as the shape that is to bound it: somebody's unit is another.
   std::string text = read_file(catalogue).value();
   text.replace(text.find("mesh_scale = 0.001"), 18, "mesh_scale = 0.002");

@@ -19,6 +19,8 @@ namespace {
 
 constexpr Duration frame_period = std::chrono::microseconds(33'333);
 constexpr int frames_a_picture = 3;
+/// A hand that is heard only once it moves has never been at rest: all have met meanwhile.
+constexpr Duration at_rest = std::chrono::seconds(1);
 
 struct Arguments {
   service::LabArguments lab;
@@ -73,7 +75,7 @@ Expected<Exit> show(const Arguments& arguments) {
   int frame = 0;
   (*shell)->on_tick(frame_period, [&](Time now) {
     if (!begun) begun = now;
-    const double t = to_seconds(now - *begun);
+    const double t = std::max(0.0, to_seconds(now - *begun - at_rest));
     if (t > person->duration()) return (*shell)->stop();
     if (frame++ % frames_a_picture == 0) objects(t, now);
     hand(t, now);
