@@ -98,12 +98,13 @@ inline constexpr Topic<v1::HandStatePubSubType> robot_state{
      .open = true,
      .rate = "100 Hz"}};
 
-inline constexpr Topic<v1::HandTouchPubSubType> robot_touch{{.name = "robot/touch",
-                                                             .qos = {.reliable = false},
-                                                             .writers = Role::simulation,
-                                                             .readers = Role::mapping,
-                                                             .open = true,
-                                                             .rate = "100 Hz"}};
+inline constexpr Topic<v1::HandTouchPubSubType> robot_touch{
+    {.name = "robot/touch",
+     .qos = {.reliable = false},
+     .writers = Role::simulation | Role::robot,
+     .readers = Role::mapping,
+     .open = true,
+     .rate = "100 Hz"}};
 
 inline constexpr Topic<v1::GateStatePubSubType> robot_gate{
     {.name = "robot/gate",

@@ -103,6 +103,7 @@ class Robot : public Rig {
   dds::Writer<v2::HandCommand> commands_ = writer(dds::robot_command);
   dds::Writer<v1::OperatorCommand> orders_ = writer(dds::operator_command);
   dds::Reader<v1::HandState> states_ = reader(dds::robot_state);
+  dds::Reader<v1::HandTouch> touches_ = reader(dds::robot_touch);
   dds::Reader<v1::GateState> gates_ = reader(dds::robot_gate);
   dds::Reader<v1::ServiceStatus> statuses_ = reader(dds::service_status);
   v1::HandState state_;
@@ -354,11 +355,22 @@ TEST_F(Robot, ATwinGoesWithTheRobotButForAJointThatIsStuck) {
   v1::HandState strange;
   strange.hand("stranger");
   strange.model("robonaut");
+  v1::HandTouch felt;
   // Not so far that the robot itself notices.
   ASSERT_TRUE(lead(0.35, 60, [&] {
     strangers.write(strange);
+    for (auto& sample : touches_.take())
+      if (sample.data.hand().to_string() == "hand") felt = sample.data;
     return (exit = twin.exit()) && stranger.exit();
   }));
+  // What holds a finger back is felt at its tip, and at no other.
+  for (std::size_t l = 0; l < felt.pads().size(); ++l) {
+    const int finger = test::hand(model_).links()[l].finger;
+    const auto& pad = felt.pads()[l];
+    EXPECT_EQ(pad.touching(), pad.valid() && finger == 1) << pad.link().to_string();
+    EXPECT_EQ(pad.pressure() > 1, pad.touching()) << pad.pressure();
+  }
+  EXPECT_EQ(felt.pads().size(), test::hand(model_).links().size());
   const std::string refusal = stage::last_lines(stranger.log(), 1);
   EXPECT_NE(
       refusal.find("stands for robonaut, the robot is barrett (set simulation.hand = barrett)"),

@@ -29,7 +29,7 @@ std::string_view to_string(Phase phase);
 struct Reading {
   Time stamp{};
   Eigen::VectorXd dof, velocity;
-  Eigen::VectorXd effort;             // N m or N, estimated
+  Eigen::VectorXd effort;             // N m or N, estimated; empty: it tells none
   std::optional<double> temperature;  // °C, the hottest
 };
 

@@ -130,9 +130,10 @@ void Driver::hear(std::string_view message, Time now) {
   for (std::size_t i = 0; i < motions_.size(); ++i) {
     std::optional<double> velocity;
     if (!state->velocities.empty()) velocity = state->velocities[at[i]];
-    motions_[i].effort = state->efforts.empty() ? 0 : state->efforts[at[i]];
+    if (!state->efforts.empty()) motions_[i].effort = state->efforts[at[i]];
     observe(motions_[i], positions[i], velocity, now);
   }
+  tells_effort_ = !state->efforts.empty();
   silence_.end(now);
   if (!std::exchange(known_, true)) {
     for (Motion& motion : motions_) {
@@ -200,6 +201,7 @@ void Driver::publish(Time now) {
     reading.velocity[i] = motion.velocity;
     reading.effort[i] = motion.effort;
   }
+  if (!tells_effort_) reading.effort.resize(0);
   reading_ = std::move(reading);
 }
 

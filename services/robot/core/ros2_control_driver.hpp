@@ -57,6 +57,7 @@ class Driver final : public robot::Driver {
   Silence silence_;
   Time told_{};
   bool joined_ = false, known_ = false;  // known: it has been heard since it was lost
+  bool tells_effort_ = false;
   bool commanded_ = false;
 };
 

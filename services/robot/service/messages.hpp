@@ -11,4 +11,8 @@ namespace prehend::robot {
 /// drive is; what a drive presses with is said of the joint that leads it.
 v1::HandState to_message(const Reading& reading, const model::HandModel& hand, const Pose& X_WB);
 
+/// What its fingertips feel by their drives' efforts (tip_pressure.hpp); all other links, and all
+/// of a robot that tells no effort, are not valid.
+v1::HandTouch touch_to_message(const Reading& reading, const model::HandModel& hand);
+
 }  // namespace prehend::robot

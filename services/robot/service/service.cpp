@@ -50,6 +50,7 @@ Service::Service(service::Shell& shell, Connection connection)
       driver_(*connection_.driver),
       line_(driver_, connection_.open),
       states_(shell.publish(dds::robot_state)),
+      touches_(shell.publish(dds::robot_touch)),
       hand_name_(shell.config().text("robot.hand_name")),
       homes_(shell.config().flag("robot.home")),
       X_WB_(make_pose(resting_place_W)) {}
@@ -138,6 +139,11 @@ void Service::publish() {
   state.sequence_number(sequence_++);
   state.origin_ns(origin_ns_);
   states_.publish(state);
+  v1::HandTouch touch = touch_to_message(*reading, *connection_.hand);
+  touch.hand(hand_name_);
+  touch.sequence_number(state.sequence_number());
+  touch.origin_ns(origin_ns_);
+  touches_.publish(touch);
 }
 
 }  // namespace prehend::robot

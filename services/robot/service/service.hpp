@@ -35,6 +35,7 @@ class Service {
   Line line_;
   std::unique_ptr<Gatekeeper> gate_;
   service::Shell::Output<v1::HandState> states_;
+  service::Shell::Output<v1::HandTouch> touches_;
   std::string hand_name_;
   bool homes_;
   Phase phase_ = Phase::offline;

@@ -219,7 +219,9 @@ void add_add(tool::Program& program) {
           "--fingers", arguments->fingers,
           "FINGER=LINK,…: which human fingers (thumb, index, …) lead those with these links")
       ->delimiter(',');
-  command->add_option("--candidates", arguments->candidates, "grasps that are tried an object")
+  command
+      ->add_option("--candidates", arguments->candidates,
+                   "grasps tried an object, up to four times with few DoFs")
       ->capture_default_str()
       ->check(CLI::Range(1, 100000));
   arguments->catalogue.add_to(*command);

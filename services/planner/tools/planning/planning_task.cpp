@@ -63,12 +63,14 @@ Expected<grasping::Plan> plan_with_progress(const model::HandModel& hand, const 
 
 Expected<grasping::Plan> plan_in_batches(const model::HandModel& hand, const Body& object,
                                          int candidates, unsigned threads) {
-  constexpr int batch = 12;
+  constexpr int batch = 12, many_dofs = 12, max_factor = 4;
+  const int dofs = std::max(1, static_cast<int>(hand.dofs().size()));
   grasping::PlanOptions options;
   options.tested = options.max_tested = 3;
   options.off_posture = 0.35;
   Expected<grasping::Plan> best = fail("there are no candidates", object.name);
-  for (int left = candidates; left > 0; left -= batch, ++options.seed) {
+  for (int left = candidates * std::clamp(many_dofs / dofs, 1, max_factor); left > 0;
+       left -= batch, ++options.seed) {
     options.candidates = std::min(left, batch);
     auto next = plan_with_progress(hand, object, options, threads);
     const bool better = !best || (next && (next->held() || next->closed > best->closed));
