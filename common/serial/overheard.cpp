@@ -1,6 +1,8 @@
 #include "common/serial/overheard.hpp"
 
 #include <algorithm>
+#include <cctype>
+#include <utility>
 
 #include "common/base/printable.hpp"
 
@@ -68,6 +70,19 @@ std::string advice(Speaker speaker) {
   return "no text and no answer: check the baud rate, then whether it is the port of the device";
 }
 
+/// What is said, and what is quoted.
+std::pair<std::string_view, std::string_view> parted(std::string_view message) {
+  const std::size_t at = message.find(before_quote);
+  if (at == std::string_view::npos) return {message, {}};
+  const std::size_t begin = at + before_quote.size();
+  return {message.substr(0, begin), message.substr(begin, message.find("»", begin) - begin)};
+}
+
+bool has_words(std::string_view quote) {
+  return std::any_of(quote.begin(), quote.end(),
+                     [](char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0; });
+}
+
 }  // namespace
 
 void Overheard::keep(std::string& all, std::string_view bytes, std::size_t size) {
@@ -93,9 +108,10 @@ Error Overheard::unanswered(Error silence) const {
   return silence;
 }
 
-std::string_view without_quote(std::string_view message) {
-  const std::size_t at = message.find(before_quote);
-  return at == std::string_view::npos ? message : message.substr(0, at + before_quote.size());
+bool is_news(std::string_view message, std::string_view before) {
+  const auto [said, quote] = parted(message);
+  const auto [said_before, quote_before] = parted(before);
+  return said != said_before || (has_words(quote) && !has_words(quote_before));
 }
 
 }  // namespace prehend::serial

@@ -34,7 +34,9 @@ class Overheard {
   std::string heard_, said_;
 };
 
-/// The message up to what was quoted, if anything was: news is only what differs in this.
-std::string_view without_quote(std::string_view message);
+/// Whether a message says something else than the one before, what they quote aside: that may be
+/// different each time. A first quote without a letter or digit was the end of some words; those
+/// are news.
+bool is_news(std::string_view message, std::string_view before);
 
 }  // namespace prehend::serial

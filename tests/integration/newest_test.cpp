@@ -150,7 +150,11 @@ TEST_F(Newest, OrdersAllArriveThoughPacketsAreLost) {
   auto reader = end_->reader(dds::operator_command);
   ASSERT_TRUE(reader);
   Writing far(*hosts_, domain_, "orders");
-  ASSERT_TRUE(eventually(10, [&] { return far.is_met(); }));
+  ASSERT_TRUE(eventually(10, [&] {
+    eprosima::fastdds::dds::SubscriptionMatchedStatus there;
+    reader->raw().get_subscription_matched_status(there);
+    return far.is_met() && there.current_count > 0;
+  }));
   for (const char* host : {"here", "there"}) hosts_->lose(host, 0.05);
   std::vector<int> came;
   const auto take = [&] {

@@ -267,7 +267,7 @@ TEST_F(Recording, KeysOnATerminalPauseWriteASnapshotAndQuit) {
   Strings arguments = lab_arguments();
   arguments.insert(arguments.end(), {"--output", file("ring.mcap"), "--snapshot", "30"});
   Terminal terminal(program("prehend-record"), arguments);
-  ASSERT_TRUE(terminal.shows("recording 0 s"));
+  ASSERT_TRUE(terminal.shows("recording ")) << terminal.shown();
   EXPECT_FALSE(terminal.is_a_shells());
   auto reports = writer(dds::grasp_report);
   meet(reports);

@@ -14,8 +14,10 @@ void Persistent::start(Life life, std::function<void(std::string)> complain) {
           const auto done = life(stop);
           if (done) continue;
           std::string line = done.error().message();
-          if (serial::without_quote(line) != serial::without_quote(said_)) complain(line);
-          said_ = std::move(line);
+          if (serial::is_news(line, said_)) {
+            complain(line);
+            said_ = std::move(line);
+          }
           pause(stop, std::chrono::milliseconds(200));
         }
       });

@@ -113,7 +113,7 @@ void Service::watch(Time now) {
   const Phase phase = driver_.phase();
   if (phase == Phase::configured && homes_ && gate_->may_move(now)) driver_.home();
   std::string trouble = line_.trouble().message();
-  if (phase == phase_ && serial::without_quote(trouble) == serial::without_quote(trouble_)) return;
+  if (phase == phase_ && !serial::is_news(trouble, trouble_)) return;
   const bool was_ready = std::exchange(phase_, phase) == Phase::ready;
   trouble_ = std::move(trouble);
   const std::string says = advice(phase, trouble_);

@@ -1,7 +1,7 @@
 // Others' Modbus on a pseudo-terminal: libmodbus carries an emulated gripper's registers for our
 // driver, with what can go wrong with such a gripper; and asks our emulated gripper as its host.
 #include <fcntl.h>
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 #include <modbus/modbus.h>
 #include <termios.h>
 #include <unistd.h>
@@ -144,8 +144,10 @@ TEST_F(RobotiqOnModbus, IsActivatedAndGoesWhereItIsTold) {
   EXPECT_TRUE(goes_to(0.6));
   EXPECT_NEAR(served_.with([](Gripper& gripper) { return gripper.measured(); }), 0.6, 0.01);
   EXPECT_TRUE(goes_to(0.2));
-  // What comes is understood; on a busy machine an answer may come too late.
-  for (const std::string& reason : driver_.take_rejects()) EXPECT_EQ(reason, "no answer");
+  // What comes is understood; on a busy machine an answer may come too late, when something else
+  // has been asked.
+  for (const std::string& reason : driver_.take_rejects())
+    EXPECT_THAT(reason, testing::AnyOf("no answer", "answer to another question"));
 }
 
 TEST_F(RobotiqOnModbus, TellsWhatItHolds) {

@@ -53,9 +53,19 @@ TEST(Overheard, AQuoteIsShortAndStaysOnItsLine) {
 }
 
 TEST(Overheard, ThatItQuotesSomethingElseIsNoNews) {
-  EXPECT_EQ(without_quote(told("one\n").message()), without_quote(told("two\n").message()));
-  EXPECT_NE(without_quote(told("one\n").message()), without_quote(told("").message()));
-  EXPECT_EQ(without_quote("the port has disappeared"), "the port has disappeared");
+  const auto news = [](const std::string& heard, const std::string& before) {
+    return is_news(told(heard).message(), told(before).message());
+  };
+  EXPECT_FALSE(news("one\n", "two\n"));
+  EXPECT_TRUE(news("one\n", ""));
+  EXPECT_TRUE(news("", "one\n"));
+  EXPECT_FALSE(is_news("the port has disappeared", "the port has disappeared"));
+  EXPECT_TRUE(is_news("the port has disappeared", told("one\n").message()));
+  // Guards: on a busy machine the end of a greeting was quoted, «> », and never what it greets
+  // with.
+  EXPECT_TRUE(news("ready\n> ", "> "));
+  EXPECT_FALSE(news("> ", "ready\n> "));
+  EXPECT_FALSE(news("> ", "$ "));
 }
 
 TEST(Overheard, APortRemembersBothSides) {
