@@ -30,13 +30,16 @@ Expected<Stage> Stage::create(const StageOptions& options) {
 
 Stage::Stage(const StageOptions& options, TemporaryFolder folder)
     : options_(options),
-      end_(std::chrono::steady_clock::now() +
-           std::chrono::duration_cast<std::chrono::steady_clock::duration>(
-               seconds(options.timeout))),
       sets_(options.lab.overrides()),
       folder_(std::move(folder)),
       lab_({}, {}, folder_.path()) {
   sets_.push_back("lab.rig=" + own_rig());
+  begin_anew();
+}
+
+void Stage::begin_anew() {
+  end_ = std::chrono::steady_clock::now() +
+         std::chrono::duration_cast<std::chrono::steady_clock::duration>(seconds(options_.timeout));
 }
 
 Expected<service::Config> Stage::config() const {

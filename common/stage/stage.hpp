@@ -20,7 +20,7 @@ using Progress = std::function<void(const std::string&)>;
 
 struct StageOptions {
   service::LabArguments lab;  // its configuration; the rig is one of its own
-  double timeout = 45;        // s from now, for all that is awaited
+  double timeout = 45;        // s from now, or from begin_anew(), for all that is awaited
   bool keep = false;          // the folder with scenes and logs stays
   Progress progress = [](const std::string&) {};
 };
@@ -71,6 +71,8 @@ class Stage {
   /// Until the file is there.
   Expected<void> until_there(const std::string& what, const std::filesystem::path& file,
                              const std::function<Error()>& late);
+  /// What is awaited from now on has the whole time again.
+  void begin_anew();
   bool is_late() const { return std::chrono::steady_clock::now() >= end_; }
 
  private:

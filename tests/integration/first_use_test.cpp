@@ -20,6 +20,9 @@ std::set<std::string> files_in(const fs::path& folder) {
 
 class FirstUse : public Demo {
  protected:
+  FirstUse() { ::setenv("XDG_STATE_HOME", (folder_ / "state").c_str(), 1); }
+  ~FirstUse() override { ::unsetenv("XDG_STATE_HOME"); }
+
   /// A hand of ours as if it were somebody else's.
   fs::path copied(const std::string& hand, const std::string& name) const {
     fs::copy(test::in_sources("common/models/hands/" + hand), folder_ / name);
@@ -49,6 +52,8 @@ TEST_F(FirstUse, AFolderIsTrainedAndHolds) {
   const fs::path hand = copied("barrett", "somebodys");
   EXPECT_EQ(judged(hand)["grasp"]["held"], true);
   EXPECT_TRUE(fs::exists(hand / "hand.mapping"));
+  EXPECT_TRUE(fs::exists(folder_ / "state" / "prehend" / "grasps" / "somebodys"))
+      << "grasps were planned, too";
 }
 
 TEST_F(FirstUse, AUrdfBecomesAHandThatGrasps) {

@@ -47,10 +47,12 @@ std::string targets_of(const Choice& choice) {
   if (!choice.record.empty()) targets += " prehend-record";
   if (!choice.robot.empty()) targets += " prehend-robot prehend-robot-tool";
   if (choice.mode == "planned") targets += " prehend-planner";
-  // A user's hand is trained on first use.
+  // A user's hand is trained on first use, and its grasps are planned.
   const auto ours = model::hand_names();
-  if (!choice.hand.empty() && std::find(ours.begin(), ours.end(), choice.hand) == ours.end())
+  if (!choice.hand.empty() && std::find(ours.begin(), ours.end(), choice.hand) == ours.end()) {
     targets += " prehend-train";
+    if (choice.mode.empty()) targets += " prehend-planner";
+  }
   if (choice.watch) targets += " prehend-console prehend-teacher";
   return targets;
 }

@@ -106,16 +106,14 @@ double open_gap(const model::HandModel& hand, const Scheme& scheme) {
   return gap_at(hand, scheme.open.robot);
 }
 
-/// The nearest while the others close.
+/// When all, or all but the thumb, have begun to close. Later fingers have passed a thumb that
+/// stands out of the palm.
 double gap(const model::HandModel& hand, const Scheme& scheme, bool thumb_too) {
-  double nearest = 1e9;
-  for (const double share : {0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8}) {
-    VectorXd dof = scheme.open.robot;
-    for (const SchemePosture& closed : scheme.closed)
-      if (thumb_too || closed.name != "thumb") dof += share * (closed.robot - scheme.open.robot);
-    nearest = std::min(nearest, gap_at(hand, dof));
-  }
-  return nearest;
+  constexpr double share = 0.2;
+  VectorXd dof = scheme.open.robot;
+  for (const SchemePosture& closed : scheme.closed)
+    if (thumb_too || closed.name != "thumb") dof += share * (closed.robot - scheme.open.robot);
+  return gap_at(hand, dof);
 }
 
 // The sense is right in space, not only by hand.toml: a thumb that closes comes nearer to the

@@ -10,11 +10,6 @@
 namespace prehend::cli {
 namespace {
 
-bool is_ours(const std::string& hand) {
-  const auto names = model::hand_names();
-  return std::find(names.begin(), names.end(), hand) != names.end();
-}
-
 /// All that come with us do, but for the human one.
 bool comes_trained(const std::string& hand) {
   std::error_code none;
@@ -23,6 +18,11 @@ bool comes_trained(const std::string& hand) {
 }
 
 }  // namespace
+
+bool is_ours(const std::string& hand) {
+  const auto names = model::hand_names();
+  return std::find(names.begin(), names.end(), hand) != names.end();
+}
 
 std::string hand_of_robot(const std::string& robot) {
   const std::string device = robot.substr(robot.find(':') + 1);

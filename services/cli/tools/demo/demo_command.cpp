@@ -60,8 +60,10 @@ void add_choices(CLI::App& app) {
 
 void choose(DemoOptions& demo, const std::string& mode) {
   demo.direct = mode == "direct";
-  demo.planned = mode == "planned";
   if (demo.hand.empty()) demo.hand = hand_of_robot(demo.robot);
+  // The networks of a hand that was trained in seconds know less than a search for what is seen.
+  const bool strange = !demo.hand.empty() && !is_ours(demo.hand);
+  demo.planned = mode == "planned" || (mode.empty() && strange);
 }
 
 }  // namespace
@@ -86,8 +88,9 @@ int demo_command(const std::vector<std::string>& arguments) {
       ->allow_extra_args(false);
   add_devices(app, demo);
   app.add_option("--mode", mode,
-                 "direct: the mapping does not use what is recognised; planned: grasps are\n"
-                 "planned for what is seen before the hand reaches, and it follows the nearest")
+                 "direct: the mapping does not use what is recognised; intelligent: it does;\n"
+                 "planned: grasps are planned for what is seen before the hand reaches, and it\n"
+                 "follows the nearest. Without it intelligent; for a hand of your own planned")
       ->check(CLI::IsMember({"direct", "intelligent", "planned"}));
   app.add_option("--timeout", demo.timeout, "s until it ends without a grasp")
       ->check(CLI::Range(1.0, 3600.0));

@@ -174,23 +174,25 @@ Expected<void> GraspPlay::put_up() {
   return start_glove(scene_file, truth);
 }
 
-/// Nor before there are grasps for what they see, or it is known that there are none: then the
-/// hand goes as without a plan.
+/// Nor before there are grasps for what they see, or it is known that there are none, or it takes
+/// too long: then the hand goes with what was found.
 Expected<void> GraspPlay::await_plans() {
   if (!options_.planned || in(options_.without, "recognition")) return {};
+  stage_.begin_anew();
+  std::string searched_for;
   auto planned = stage_.until(
       "planning grasps", [&] { return observer_.planned(); },
       [&] {
-        const std::string names = observer_.unplanned();
-        return names.empty() ? Error{"nothing is seen that grasps could be planned for", "demo",
-                                     "see that the camera shows an object"}
-                             : Error{"grasps are still searched for " + names, "demo",
-                                     "give it longer with --timeout"};
+        searched_for = observer_.unplanned();
+        return Error{"nothing is seen that grasps could be planned for", "demo",
+                     "see that the camera shows an object"};
       });
-  if (planned)
-    for (const auto& [object, reason] : observer_.without_plan())
-      log::info("{}: goes on without a planned grasp: {}", object, reason);
-  return planned;
+  if (!planned && searched_for.empty()) return planned;
+  if (!planned) log::info("{}: goes on while grasps are still searched for", searched_for);
+  for (const auto& [object, reason] : observer_.without_plan())
+    log::info("{}: goes on without a planned grasp: {}", object, reason);
+  stage_.begin_anew();
+  return {};
 }
 
 std::string GraspPlay::missing() const {

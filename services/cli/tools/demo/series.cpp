@@ -67,6 +67,7 @@ int run_series(const DemoOptions& demo, const SeriesOptions& options,
       DemoOptions one = demo;
       one.seed = seed;
       one.direct = demo.direct || compare;
+      one.planned = demo.planned && !one.direct;
       const auto outcome = demonstrate(
           one, [&](const std::string& text) { progress(fmt::format("seed {}: {}", seed, text)); });
       if (!outcome) return service::complain(outcome.error());

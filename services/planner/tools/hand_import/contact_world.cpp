@@ -5,6 +5,8 @@
 #include <numbers>
 #include <set>
 
+#include "services/planner/tools/hand_import/overlap.hpp"
+
 namespace prehend::planner {
 namespace {
 
@@ -129,6 +131,25 @@ std::vector<Touch> ContactWorld::close(VectorXd dof, const Rod& rod) const {
     if (!moves) break;
   }
   return touches;
+}
+
+double ContactWorld::overlap_of_fingers(const VectorXd& dof, double least) const {
+  const auto X_BL = hand_.link_poses(hand_.joint_angles(dof));
+  double deepest = least;
+  // No nearer than from the middle of one, with the ball around it.
+  const auto apart = [](const Part& part, const Pose& X_BS, const Part& from, const Pose& X_BT) {
+    return model::signed_distance(part.shape, X_BS.inverse() * X_BT.translation()) - from.radius;
+  };
+  for (std::size_t i = 0; i < parts_.size(); ++i)
+    for (std::size_t k = i + 1; k < parts_.size(); ++k) {
+      const Part &one = parts_[i], &other = parts_[k];
+      const int finger = finger_[at(one.link)], another = finger_[at(other.link)];
+      if (finger < 0 || another < 0 || finger == another) continue;
+      const Pose X_BS = X_BL[at(one.link)] * one.X_LS, X_BT = X_BL[at(other.link)] * other.X_LS;
+      if (-apart(one, X_BS, other, X_BT) > deepest && -apart(other, X_BT, one, X_BS) > deepest)
+        deepest = std::max(deepest, overlap(one.shape, X_BS, other.shape, X_BT));
+    }
+  return deepest;
 }
 
 Vector3d ContactWorld::nearest_of_palm(const VectorXd& dof, const Vector3d& p_B) const {

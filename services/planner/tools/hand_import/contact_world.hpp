@@ -36,6 +36,9 @@ class ContactWorld {
   double room(const Eigen::VectorXd& dof, const Rod& rod, double most = 0.05) const;
   /// Closes from there until each finger has met the rod or its end, and says what touches.
   std::vector<Touch> close(Eigen::VectorXd dof, const Rod& rod) const;
+  /// How deep parts of different fingers reach into each other, m; negative when all are apart, at
+  /// least `least`.
+  double overlap_of_fingers(const Eigen::VectorXd& dof, double least = -0.005) const;
   /// The point of the palm that is nearest to p_B.
   Eigen::Vector3d nearest_of_palm(const Eigen::VectorXd& dof, const Eigen::Vector3d& p_B) const;
 

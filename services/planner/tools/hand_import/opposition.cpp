@@ -23,7 +23,9 @@ constexpr double enough = 4;        // objects held of six, more than which are 
 constexpr double clearly = 0.5;     // objects more that another place must hold
 constexpr double better = 0.8;      // by which a found place must surpass the known axes
 constexpr double aside = 0.25;      // what a DoF costs that leaves its rest by its whole range
-constexpr double clear = 0.002;     // m, between the open hand and a rod
+constexpr double clear = 0.002;     // m, between the open hand and a rod, and between its fingers
+constexpr double touching = 0.5;    // what fingers cost that are nearer,
+constexpr double crossed = 200;     // and by m
 constexpr double way_in = 0.16;     // m, along which the hand must be able to come
 constexpr double max_aside = 0.06;  // m, that thick rods may lie further out
 constexpr double long_half = 0.06;  // m: what stands or lies on a table is longer than its grip
@@ -51,7 +53,8 @@ class Search {
         fist_(fingers.fist),
         fixed_(fingers.fixed),
         p_LT_(fingers.p_LT),
-        tips_(fingers.last) {}
+        tips_(fingers.last),
+        at_rest_(std::max(-clear, world.overlap_of_fingers(open_))) {}
 
   Opposition run(const Pose& X_BG_known, const OppositionJudge& judge) {
     Trial known{open_, X_BG_known.translation(), X_BG_known.linear().col(1),
@@ -173,7 +176,14 @@ class Search {
       const model::HandDof& dof = world_.hand().dofs()[i];
       if (turns_aside(i)) away += std::abs(trial.dof[k] - open_[k]) / (dof.upper - dof.lower);
     }
-    return sum - aside * away;
+    const double nearer = crossing(trial.dof);
+    return sum - aside * away - (nearer > 0 ? touching + crossed * nearer : 0);
+  }
+
+  /// How much nearer fingers are than they may be, and than they are at rest, m: physics and
+  /// mapping take what touches in the open hand for no obstacle.
+  double crossing(const VectorXd& dof) const {
+    return std::max(0.0, world_.overlap_of_fingers(dof) - at_rest_);
   }
 
   std::vector<Vector3d> tips(const VectorXd& dof) const {
@@ -379,7 +389,7 @@ class Search {
       const double out = random_.uniform(-0.01, 0.03);
       rod.X_BR = trial.X_BG();
       rod.X_BR.translation() += out * trial.out;
-      if (world_.room(trial.dof, rod) < clear) continue;
+      if (world_.room(trial.dof, rod) < clear || crossing(trial.dof) > 0) continue;
       const auto touches = world_.close(trial.dof, rod);
       std::set<int> ends;
       std::size_t others = 0;
@@ -401,6 +411,7 @@ class Search {
   const std::vector<bool>& fixed_;
   const std::vector<Vector3d>& p_LT_;
   const std::vector<int>& tips_;
+  const double at_rest_;  // overlap of fingers, m
   Random random_{1};
 };
 

@@ -12,6 +12,7 @@
 #include "common/base/workers.hpp"
 #include "common/grasping/candidates.hpp"
 #include "services/planner/tools/hand_import/make_hand.hpp"
+#include "services/planner/tools/hand_import/overlap.hpp"
 #include "services/planner/tools/hand_import/trial_grasps.hpp"
 #include "services/planner/tools/planning/planning_task.hpp"
 #include "tests/support/paths/paths.hpp"
@@ -67,6 +68,33 @@ TEST_P(Popular, IsUnderstood) {
                                        (X_BL[i] * part.X_LS).inverse() * hand.X_BG().translation()),
                 0.005)
           << hand.links()[i].name;
+}
+
+/// How deep parts of different fingers reach into each other, m; negative when all are apart.
+double deepest(const model::HandModel& hand, const Eigen::VectorXd& dof) {
+  const auto X_BL = hand.link_poses(hand.joint_angles(dof));
+  const auto& links = hand.links();
+  double most = -1;
+  for (std::size_t i = 0; i < links.size(); ++i)
+    for (std::size_t k = i + 1; k < links.size(); ++k) {
+      if (links[i].finger < 0 || links[k].finger < 0 || links[i].finger == links[k].finger)
+        continue;
+      for (const model::CollisionShape& a : links[i].collision)
+        for (const model::CollisionShape& b : links[k].collision)
+          most = std::max(most,
+                          planner::overlap(a.shape, X_BL[i] * a.X_LS, b.shape, X_BL[k] * b.X_LS));
+    }
+  return most;
+}
+
+// The search laid fingers on each other by which rods were gripped well. For the physics what
+// touches in the open hand is no obstacle, so such fingers closed through each other in a plan,
+// and the mapping, which looks at their other links, did not let them.
+TEST_P(Popular, FingersOfTheOpenHandAreApart) {
+  const auto& hand = made->model;
+  const Eigen::VectorXd& open = hand.postures().at("open");
+  const double at_rest = deepest(hand, hand.clamp(Eigen::VectorXd::Zero(open.size())));
+  EXPECT_LE(deepest(hand, open), std::max(-0.001, at_rest + 1e-6));
 }
 
 TEST_P(Popular, Holds) {
