@@ -4,7 +4,7 @@
 
 namespace prehend::convert {
 
-Expected<model::GraspCandidates> from_message(const v1::GraspCandidates& message,
+Expected<model::GraspCandidates> from_message(const v2::GraspCandidates& message,
                                               const model::HandModel& hand) {
   // The DoF of another kind may be as many.
   if (message.model().to_string() != hand.name().substr(0, 63))
@@ -13,6 +13,9 @@ Expected<model::GraspCandidates> from_message(const v1::GraspCandidates& message
                                  {from_message(message.shape()), from_message(message.size())},
                                  {},
                                  message.object().to_string()};
+  const auto& follow_through = message.follow_through();
+  if (!follow_through.empty() && follow_through.size() != message.candidates().size())
+    return fail("follow-through of other grasp candidates");
   for (const v1::GraspCandidate& from : message.candidates()) {
     auto X_OG = from_message(from.X_OG());
     auto X_OR = from_message(from.X_OR());
@@ -20,6 +23,8 @@ Expected<model::GraspCandidates> from_message(const v1::GraspCandidates& message
     planned.candidates.push_back({*X_OG, *X_OR, from_message(from.preshape()),
                                   from_message(from.dof()), from_message(from.closing()),
                                   from.room()});
+    if (!follow_through.empty())
+      planned.candidates.back().follow_through = follow_through[planned.candidates.size() - 1];
   }
   return planned;
 }

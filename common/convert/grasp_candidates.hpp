@@ -9,7 +9,7 @@ namespace prehend::convert {
 
 /// A message of grasp/candidates as a book of them takes it. Refuses what was planned for another
 /// kind of hand, and poses that are none.
-Expected<model::GraspCandidates> from_message(const v1::GraspCandidates& message,
+Expected<model::GraspCandidates> from_message(const v2::GraspCandidates& message,
                                               const model::HandModel& hand);
 
 }  // namespace prehend::convert

@@ -69,7 +69,7 @@ inline constexpr Topic<v1::ObjectDetectionPubSubType> object_detection{
      .rate = "as camera/image",
      .remark = "disposed when gone"}};
 
-inline constexpr Topic<v1::GraspCandidatesPubSubType> grasp_candidates{
+inline constexpr Topic<v2::GraspCandidatesPubSubType> grasp_candidates{
     {.name = "grasp/candidates",
      .qos = {.transient_local = true},
      .writers = Role::planner,

@@ -21,7 +21,7 @@ std::vector<model::GraspCandidate> planned_candidates(const model::HandModel& ha
   std::vector<model::GraspCandidate> made;
   for (const SureGrasp& found : search->found())
     made.push_back({found.X_OG, found.grasp.X_OG, found.grasp.open, found.grasp.dof,
-                    found.grasp.closing, found.room});
+                    found.grasp.closing, found.room, found.follow_through});
   return made;
 }
 

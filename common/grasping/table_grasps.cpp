@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <optional>
 #include <utility>
 
 #include "common/grasping/mesh_body.hpp"
@@ -16,8 +15,7 @@ namespace {
 using Eigen::AngleAxisd;
 using Eigen::Vector3d;
 
-constexpr double pressed_on = 0.1;      // rad, past where fingers shall stop
-constexpr double follow_through = 0.5;  // rad, that fingers go on when nothing stops them
+constexpr double pressed_on = 0.1;  // rad, past where fingers shall stop
 // Near enough to what is usual that the mapping may correct a person's hand to it.
 constexpr double beside = 0.010, nearer = 0.012, higher = 0.012;  // m
 constexpr double turned = 0.17;                                   // rad
@@ -94,36 +92,60 @@ bool holds(const model::HandModel& hand, const Body& object, const TableGrasp& g
   there.X_OG =
       make_pose({0, 0, -higher}) * grasp.X_OG * displaced(deviation.moved, deviation.turned);
   if (deviation.larger < 1)
-    there.dof = model::past_contact(hand, grasp.open, grasp.dof, grasp.closing, follow_through);
+    there.dof =
+        model::past_contact(hand, grasp.open, grasp.dof, grasp.closing, model::full_follow_through);
   // Drops what it drops at once.
   return held_on_table(hand, other, there, {.lift = 0.05, .hold = 0.3, .max_slip = steady});
 }
 
-/// What came of an attempt.
-struct Outcome {
-  std::optional<TableGrasp> grasp;
-  std::string reason;
-};
+/// How a hand comes to stand in one try and another.
+std::vector<Pose> small_errors() {
+  constexpr double off = 0.0009, askew = 0.01;  // m, rad
+  std::vector<Pose> made;
+  for (const double x : {1, -1})
+    for (const double y : {1, -1})
+      made.push_back(displaced(off * Vector3d(x, y, x * y), askew * Vector3d(y, x * y, x)));
+  return made;
+}
 
-Outcome try_out(const model::HandModel& hand, const Body& object, const TableApproach& approach) {
+/// With fingers that go on as far as they may, whatever stops them.
+bool holds_pressed(const model::HandModel& hand, const Body& object, const TableGrasp& grasp,
+                   const Pose& error) {
+  TableGrasp there = grasp;
+  there.X_OG = grasp.X_OG * error;
+  there.dof =
+      model::past_contact(hand, grasp.open, grasp.dof, grasp.closing, model::full_follow_through);
+  return held_on_table(hand, object, there, {.hold = 1, .shake = true});
+}
+
+/// What an attempt comes to; the error says why it is no grasp.
+Expected<TableGrasp> try_out(const model::HandModel& hand, const Body& object,
+                             const TableApproach& approach) {
   auto closed = close_on_table(hand, object, approach);
-  if (!closed) return {{}, closed.error().what};
+  if (!closed) return closed;
   if (!held_on_table(hand, object, *closed, {.hold = 1, .max_slip = steady, .shake = true}))
-    return {{}, "does not hold"};
+    return fail("does not hold");
   // The mapping's fingers go on until they are stopped.
   TableGrasp harder = *closed;
   harder.dof = model::past_contact(hand, harder.open, harder.dof, harder.closing, pressed_on);
   if (!held_on_table(hand, object, harder, {.lift = 0.05, .hold = 0.3}))
-    return {{}, "does not hold when fingers press on"};
-  return {std::move(*closed), {}};
+    return fail("does not hold when fingers press on");
+  return closed;
 }
 
 }  // namespace
 
-bool TableGraspSearch::Approach::is_done(const SearchOptions& options) const {
-  if (judged >= options.judged || (!best.empty() && best.front().room >= options.enough))
-    return true;
+bool TableGraspSearch::Approach::is_sure(const SearchOptions& options) const {
+  return !best.empty() && best.front().room >= options.enough;
+}
+
+bool TableGraspSearch::Approach::is_searched(const SearchOptions& options) const {
+  if (judged >= options.judged || is_sure(options)) return true;
   return unjudged.empty() && next >= untried.size();
+}
+
+bool TableGraspSearch::Approach::is_done(const SearchOptions& options) const {
+  return is_searched(options) && (pressed || !is_sure(options));
 }
 
 Expected<TableGraspSearch> TableGraspSearch::create(const model::HandModel& hand,
@@ -145,51 +167,80 @@ Expected<TableGraspSearch> TableGraspSearch::create(const model::HandModel& hand
   return made;
 }
 
-bool TableGraspSearch::try_next(const ForEach& for_each) {
-  // Either an attempt, or a small error that a grasp shall stand: each a task of its own, so that
-  // all threads have something to do.
-  struct Task {
-    Approach* approach;
-    std::size_t number;
-    bool judges;
-    Outcome outcome;
-    char held = 0;
-  };
-  const std::vector<Deviation> errors = deviations();
+/// Each a task of its own, so that all threads have something to do.
+struct TableGraspSearch::Task {
+  enum class Kind { attempt, judgement, press };
+  Approach* approach;
+  Kind kind;
+  std::size_t number;  // of the attempt, the deviation or the small error
+  Expected<TableGrasp> closed = TableGrasp{};
+  char held = 0;
+};
+
+std::vector<TableGraspSearch::Task> TableGraspSearch::next_round() {
   std::vector<Task> round;
   for (Approach& approach : approaches_) {
     if (approach.is_done(options_)) continue;
-    const bool judges = !approach.unjudged.empty();
-    for (std::size_t i = 0; judges && i < errors.size(); ++i)
-      round.push_back({&approach, i, true, {}});
-    for (int i = 0; !judges && i < options_.at_once && approach.next < approach.untried.size(); ++i)
-      round.push_back({&approach, approach.next++, false, {}});
+    if (approach.is_searched(options_)) {
+      for (std::size_t i = 0; i < small_errors().size(); ++i)
+        round.push_back({&approach, Task::Kind::press, i});
+    } else if (!approach.unjudged.empty()) {
+      for (std::size_t i = 0; i < deviations().size(); ++i)
+        round.push_back({&approach, Task::Kind::judgement, i});
+    } else {
+      for (int i = 0; i < options_.at_once && approach.next < approach.untried.size(); ++i)
+        round.push_back({&approach, Task::Kind::attempt, approach.next++});
+    }
   }
-  for_each(round.size(), [&](std::size_t i) {
-    Task& task = round[i];
-    const Approach& of = *task.approach;
-    if (task.judges)
-      task.held = holds(hand_, object_, of.unjudged.front().grasp, errors[task.number]);
-    else
-      task.outcome = try_out(hand_, object_, of.untried[task.number]);
-  });
-  std::map<Approach*, std::vector<char>> judged;
+  return round;
+}
+
+void TableGraspSearch::work_on(Task& task) const {
+  const Approach& of = *task.approach;
+  switch (task.kind) {
+    case Task::Kind::attempt:
+      task.closed = try_out(hand_, object_, of.untried[task.number]);
+      return;
+    case Task::Kind::judgement:
+      task.held = holds(hand_, object_, of.unjudged.front().grasp, deviations()[task.number]);
+      return;
+    case Task::Kind::press:
+      task.held = holds_pressed(hand_, object_, of.best.front().grasp, small_errors()[task.number]);
+  }
+}
+
+bool TableGraspSearch::try_next(const ForEach& for_each) {
+  std::vector<Task> round = next_round();
+  for_each(round.size(), [&](std::size_t i) { work_on(round[i]); });
+  std::map<Approach*, std::vector<char>> held;
   for (Task& task : round) {
     Approach& to = *task.approach;
-    if (task.judges) {
-      judged[&to].push_back(task.held);
+    if (task.kind != Task::Kind::attempt) {
+      held[&to].push_back(task.held);
       continue;
     }
     ++attempts_;
-    if (task.outcome.grasp)
-      to.unjudged.push_back(
-          {to.X_OG, std::move(*task.outcome.grasp), 0, static_cast<int>(task.number)});
+    if (task.closed)
+      to.unjudged.push_back({.X_OG = to.X_OG,
+                             .grasp = std::move(*task.closed),
+                             .tried = static_cast<int>(task.number)});
     else
-      ++refused_[task.outcome.reason];
+      ++refused_[task.closed.error().what];
   }
-  for (const auto& [approach, held] : judged) judge(*approach, held);
+  for (const auto& [approach, each] : held) {
+    if (approach->is_searched(options_))
+      press(*approach, each);
+    else
+      judge(*approach, each);
+  }
   return std::any_of(approaches_.begin(), approaches_.end(),
                      [&](const Approach& approach) { return !approach.is_done(options_); });
+}
+
+void TableGraspSearch::press(Approach& approach, const std::vector<char>& held) {
+  approach.pressed = true;
+  const auto count = static_cast<std::size_t>(std::count(held.begin(), held.end(), 1));
+  if (2 * count < held.size()) approach.best.front().follow_through = 0;
 }
 
 void TableGraspSearch::judge(Approach& approach, const std::vector<char>& held) {

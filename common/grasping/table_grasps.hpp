@@ -7,6 +7,7 @@
 #include "common/base/error.hpp"
 #include "common/grasping/planner.hpp"
 #include "common/grasping/table_closing.hpp"
+#include "common/model/past_contact.hpp"
 
 namespace prehend::grasping {
 
@@ -19,6 +20,9 @@ struct SureGrasp {
   /// Share of small errors with which it holds as well, 0 to 1: the hand 3 mm and 2° beside its
   /// place, an object 20 % smaller or larger than was said, or half as heavy again.
   double room = 0;
+  /// How far the mapping's fingers may go on past where they touch until they are stopped, rad: 0
+  /// where it is sure as it is, and lost when they press on.
+  double follow_through = model::full_follow_through;
   int tried = 0;  // which attempt of its approach it was, from 0
 };
 
@@ -34,8 +38,9 @@ struct SearchOptions {
 /// Looks for grasps of an object that stands on a table, from each approach, as the mapping closes
 /// a hand: places, turns and preshapes near what is usual, the likeliest first. Each is closed on
 /// the object, then from the open hand on the table, lifted, held and shaken; those that hold are
-/// judged by small errors. Goes on round by round, so that the first grasps are known soon. The
-/// same for the same hand and object however the work is divided. Keeps a reference to the hand.
+/// judged by small errors; what is sure, once more with fingers that go on. Goes on round by round,
+/// so that the first grasps are known soon. The same for the same hand and object however the work
+/// is divided. Keeps a reference to the hand.
 class TableGraspSearch {
  public:
   /// Fails on objects that cannot be, and on options out of their range.
@@ -43,7 +48,8 @@ class TableGraspSearch {
                                            const SearchOptions& options = {});
 
   /// A round: of every approach that has none yet that is sure enough, judges the grasp that was
-  /// found, or else tries the next. False when there is nothing more to do.
+  /// found, or else tries the next; of one that has, looks whether its fingers may go on. False
+  /// when there is nothing more to do.
   bool try_next(const ForEach& for_each);
 
   /// The surest grasp that was found of each approach, one without room if none is judged yet;
@@ -61,11 +67,18 @@ class TableGraspSearch {
     std::vector<SureGrasp> unjudged;  // these hold; in order
     std::vector<SureGrasp> best;      // none or one
     int judged = 0;
+    bool pressed = false;  // the best was closed with fingers that go on
+    bool is_sure(const SearchOptions& options) const;
+    bool is_searched(const SearchOptions& options) const;
     bool is_done(const SearchOptions& options) const;
   };
+  struct Task;
   TableGraspSearch(const model::HandModel& hand, const Body& object, const SearchOptions& options)
       : hand_(hand), object_(object), options_(options) {}
+  std::vector<Task> next_round();
+  void work_on(Task& task) const;
   void judge(Approach& approach, const std::vector<char>& held);
+  static void press(Approach& approach, const std::vector<char>& held);
 
   const model::HandModel& hand_;
   Body object_;

@@ -26,6 +26,8 @@ Expected<void> check(const GraspCandidate& candidate, const HandModel& hand) {
       return fail("grasp candidate beyond the hand's limits");
   if (!is_finite(candidate.X_OG) || !is_finite(candidate.X_OR) || !(candidate.room >= 0))
     return fail("grasp candidate not finite");
+  if (!(candidate.follow_through >= 0) || candidate.follow_through > full_follow_through)
+    return fail("grasp candidate follows through too far");
   const Pose off = candidate.X_OG.inverse() * candidate.X_OR;
   if (!(off.translation().norm() <= farthest) ||
       !(angle_between(off.linear(), Eigen::Matrix3d::Identity().eval()) <= max_turn))

@@ -11,6 +11,7 @@
 #include "common/base/error.hpp"
 #include "common/base/pose.hpp"
 #include "common/model/hand_model.hpp"
+#include "common/model/past_contact.hpp"
 #include "common/model/shape.hpp"
 
 namespace prehend::model {
@@ -23,6 +24,8 @@ struct GraspCandidate {
   Eigen::VectorXd dof;           // where they touch
   Eigen::VectorXd closing;       // of each: +1, -1, which way it closes, 0 if it rests
   double room = 0;               // share of small errors with which it holds as well
+  /// How far past dof the fingers go on until something stops them, rad.
+  double follow_through = full_follow_through;
 };
 
 /// Of an object, as it was when it was planned for.

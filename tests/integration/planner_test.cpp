@@ -36,8 +36,8 @@ class Planner : public Rig {
     return message;
   }
   /// Shows it as a camera does until something complete is known of it; all that was told.
-  std::vector<v1::GraspCandidates> told_of(const v1::ObjectDetection& object, double limit_s = 60) {
-    std::vector<v1::GraspCandidates> told;
+  std::vector<v2::GraspCandidates> told_of(const v1::ObjectDetection& object, double limit_s = 60) {
+    std::vector<v2::GraspCandidates> told;
     EXPECT_TRUE(eventually(limit_s, [&] {
       v1::ObjectDetection now = object;
       now.sequence_number(++frames_);
@@ -52,7 +52,7 @@ class Planner : public Rig {
   }
 
   const model::Shape cube_{model::ShapeKind::box, {0.04, 0.04, 0.06}};
-  dds::Reader<v1::GraspCandidates> candidates_ = reader(dds::grasp_candidates);
+  dds::Reader<v2::GraspCandidates> candidates_ = reader(dds::grasp_candidates);
   dds::Writer<v1::ObjectDetection> detections_ = writer(dds::object_detection);
   std::uint64_t frames_ = 0;
 };
@@ -61,12 +61,13 @@ TEST_F(Planner, AnswersWhatIsSeenAndForgetsWhatIsGone) {
   const auto planner = start_planner();
   const auto told = told_of(seen(3, cube_));
   ASSERT_FALSE(told.empty());
-  const v1::GraspCandidates& last = told.back();
+  const v2::GraspCandidates& last = told.back();
   EXPECT_EQ(last.hand().to_string(), "hand");
   EXPECT_EQ(last.model().to_string(), "parallel_jaw");
   EXPECT_EQ(last.object().to_string(), "thing");
   EXPECT_GT(last.mass(), 0);
   ASSERT_FALSE(last.candidates().empty()) << last.reason().to_string();
+  EXPECT_EQ(last.follow_through().size(), last.candidates().size());
   double room = 1;
   for (const v1::GraspCandidate& candidate : last.candidates()) {
     EXPECT_EQ(candidate.dof().size(), test::hand("parallel_jaw").dofs().size());
@@ -92,7 +93,7 @@ TEST_F(Planner, RemembersWhatItHasSearched) {
     ASSERT_FALSE(told_of(seen(1, cube_)).empty());
     auto late = reader(dds::grasp_candidates);
     EXPECT_TRUE(
-        hear<v1::GraspCandidates>(late, 10, [](const auto& told) { return told.complete(); }));
+        hear<v2::GraspCandidates>(late, 10, [](const auto& told) { return told.complete(); }));
   }
   const auto again = start_planner();
   const auto told = told_of(seen(2, cube_));
@@ -148,7 +149,7 @@ TEST_F(Planner, SaysOfWhatItDoesNotPlanForThatThereIsNothing) {
   ASSERT_FALSE(told_of(doubtful).empty());
   auto late = reader(dds::grasp_candidates);
   const auto known =
-      hear<v1::GraspCandidates>(late, 10, [](const auto& message) { return message.track() == 4; });
+      hear<v2::GraspCandidates>(late, 10, [](const auto& message) { return message.track() == 4; });
   ASSERT_TRUE(known);
   EXPECT_FALSE(known->candidates().empty());
 }

@@ -3,8 +3,10 @@
 namespace prehend::recording {
 
 std::string_view current_type(std::string_view type) {
-  return type == "prehend::v1::HandCommand" ? "prehend::v2::HandCommand"  // has `effort`
-                                            : type;
+  if (type == "prehend::v1::HandCommand") return "prehend::v2::HandCommand";  // has `effort`
+  if (type == "prehend::v1::GraspCandidates")
+    return "prehend::v2::GraspCandidates";  // has `follow_through`
+  return type;
 }
 
 void make_current(std::vector<std::uint8_t>& payload) {

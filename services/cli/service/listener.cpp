@@ -11,7 +11,7 @@ struct Listener::State {
   dds::Participant participant;
   std::optional<dds::Reader<v1::GloveFrame>> frames;
   std::optional<dds::Reader<v1::ObjectDetection>> detections;
-  std::optional<dds::Reader<v1::GraspCandidates>> candidates;
+  std::optional<dds::Reader<v2::GraspCandidates>> candidates;
   std::optional<dds::Reader<v2::HandCommand>> commands;
   std::optional<dds::Reader<v1::GraspReport>> reports;
   std::optional<dds::Reader<v1::ArmState>> arms;

@@ -69,7 +69,7 @@ void Observer::hear(const v1::GraspReport& report) {
   if (!report_) report_ = report;
 }
 
-void Observer::hear(const v1::GraspCandidates& planned) {
+void Observer::hear(const v2::GraspCandidates& planned) {
   planned_[planned.track()] = planned;
 }
 

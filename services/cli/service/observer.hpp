@@ -34,7 +34,7 @@ class Observer {
   void hear(const v1::ObjectDetection& detection);
   void hear(const v2::HandCommand& command);
   void hear(const v1::GraspReport& report);
-  void hear(const v1::GraspCandidates& planned);
+  void hear(const v2::GraspCandidates& planned);
   void lost_object(std::uint32_t track);
   void hear(const v1::ArmState& state);
   void hear(const v1::ServiceStatus& status);
@@ -73,7 +73,7 @@ class Observer {
   std::map<std::string, v1::ServiceStatus> services_;                  // by key
   std::map<std::string, std::deque<v1::ObjectDetection>> detections_;  // by name, in order of stamp
   std::map<std::uint32_t, v1::ObjectDetection> seen_;                  // by track, newest
-  std::map<std::uint32_t, v1::GraspCandidates> planned_;               // by track
+  std::map<std::uint32_t, v2::GraspCandidates> planned_;               // by track
   std::optional<v2::HandCommand> command_;
   std::optional<v1::GraspReport> report_;
   std::optional<stage::ArmUse> arm_;

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <iostream>
 
-#include "common/model/hand_model.hpp"
 #include "services/cli/tools/demo/carry_command.hpp"
+#include "services/cli/tools/demo/chosen_hand.hpp"
 #include "services/cli/tools/demo/demo_command.hpp"
 #include "services/cli/tools/dispatch.hpp"
 
@@ -46,13 +46,9 @@ std::string targets_of(const Choice& choice) {
   if (choice.task == "hand-over") targets += " prehend-person";
   if (!choice.record.empty()) targets += " prehend-record";
   if (!choice.robot.empty()) targets += " prehend-robot prehend-robot-tool";
-  if (choice.mode == "planned") targets += " prehend-planner";
-  // A user's hand is trained on first use, and its grasps are planned.
-  const auto ours = model::hand_names();
-  if (!choice.hand.empty() && std::find(ours.begin(), ours.end(), choice.hand) == ours.end()) {
-    targets += " prehend-train";
-    if (choice.mode.empty()) targets += " prehend-planner";
-  }
+  // A user's hand is trained on first use.
+  if (!is_ours(choice.hand)) targets += " prehend-train";
+  if (is_planned_for(choice.hand, choice.mode)) targets += " prehend-planner";
   if (choice.watch) targets += " prehend-console prehend-teacher";
   return targets;
 }

@@ -24,7 +24,7 @@ Eigen::ArrayXd FollowThrough::way(const Eigen::VectorXd& dof) const {
 }
 
 Eigen::VectorXd FollowThrough::go_on(const Eigen::VectorXd& dof, bool closed, bool touching,
-                                     Duration elapsed) {
+                                     Duration elapsed, double most) {
   const Eigen::ArrayXd ways = way(dof);
   const double mean = ways.sum() / closing_, longest = ways.maxCoeff();
   if (peak_ && mean < *peak_ - options_.opened) reset();
@@ -32,7 +32,7 @@ Eigen::VectorXd FollowThrough::go_on(const Eigen::VectorXd& dof, bool closed, bo
   if (!closed && !(peak_ && touching)) reset();
   if (closed) peak_ = std::max(peak_.value_or(mean), mean);
   if (!peak_ || longest < 1e-3) return dof;
-  further_ = std::min(options_.most, further_ + options_.speed * to_seconds(elapsed));
+  further_ = std::min(most, further_ + options_.speed * to_seconds(elapsed));
   Eigen::VectorXd result = dof;
   for (Eigen::Index i = 0; i < dof.size(); ++i) {
     const model::HandDof& d = hand_.dofs()[static_cast<std::size_t>(i)];

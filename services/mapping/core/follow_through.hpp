@@ -5,14 +5,13 @@
 
 #include "common/base/time.hpp"
 #include "common/model/hand_model.hpp"
+#include "common/model/past_contact.hpp"
 
 namespace prehend::mapping {
 
 struct FollowThroughOptions {
   /// The finger that has come farthest goes on at this speed, rad/s.
   double speed = 0.6;
-  /// The finger that has come farthest goes on by at most this angle, rad.
-  double most = 0.5;
   /// The operator lets go by opening the closing DoFs by this angle in the mean, rad.
   double opened = 0.1;
 };
@@ -26,8 +25,10 @@ class FollowThrough {
   explicit FollowThrough(const model::HandModel& hand, const FollowThroughOptions& options = {});
 
   /// The posture to go to instead of this one, both DoF values in rad or m, within the limits.
-  /// closed: it reaches into the object; touching: something stops the robot's fingers.
-  Eigen::VectorXd go_on(const Eigen::VectorXd& dof, bool closed, bool touching, Duration elapsed);
+  /// closed: it reaches into the object; touching: something stops the robot's fingers; most: the
+  /// finger that has come farthest goes on by at most this angle, rad.
+  Eigen::VectorXd go_on(const Eigen::VectorXd& dof, bool closed, bool touching, Duration elapsed,
+                        double most = model::full_follow_through);
   /// Forgets the grasp.
   void reset();
 

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "common/model/human_hand.hpp"
+#include "common/model/past_contact.hpp"
 
 namespace prehend::mapping {
 
@@ -265,7 +266,9 @@ Eigen::VectorXd Mapping::follow_through(const Eigen::VectorXd& dof, Duration ela
     return dof;
   }
   const bool closed = closes_on(distances_, dof, command_.X_WB, target->object.detection);
-  return limited(follow_through_.go_on(dof, closed, grip_.touching(), elapsed));
+  const double most =
+      target->planned ? target->planned->follow_through : model::full_follow_through;
+  return limited(follow_through_.go_on(dof, closed, grip_.touching(), elapsed, most));
 }
 
 /// As far as the hand may go in this time.

@@ -96,7 +96,7 @@ class Service::Topics {
                     Handler<v1::HandPosture>([this](auto& s, auto& i) { on_posture(s, i); }));
     shell.subscribe(dds::object_detection,
                     Handler<v1::ObjectDetection>([this](auto& s, auto& i) { on_detection(s, i); }));
-    shell.subscribe(dds::grasp_candidates, Handler<v1::GraspCandidates>(
+    shell.subscribe(dds::grasp_candidates, Handler<v2::GraspCandidates>(
                                                [this](auto& s, auto& i) { on_candidates(s, i); }));
     shell.subscribe(dds::robot_state,
                     Handler<v1::HandState>([this](auto& s, auto& i) { on_state(s, i); }));
@@ -166,7 +166,7 @@ class Service::Topics {
     if (!taken) shell_.status().drop(taken.error().what);
   }
 
-  void on_candidates(const v1::GraspCandidates& message, const dds::SampleInfo& info) {
+  void on_candidates(const v2::GraspCandidates& message, const dds::SampleInfo& info) {
     if (message.hand().to_string() != hand_name_) return;
     if (info.gone) return mapping_.on_candidates_gone(message.track());
     const auto taken =

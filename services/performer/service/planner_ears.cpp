@@ -15,7 +15,7 @@ constexpr std::size_t max_objects = 1000;
 
 PlannerEars::PlannerEars(service::Shell& shell, std::string hand_name)
     : shell_(shell), hand_name_(std::move(hand_name)) {
-  shell.subscribe(dds::grasp_candidates, std::function([this](const v1::GraspCandidates& message,
+  shell.subscribe(dds::grasp_candidates, std::function([this](const v2::GraspCandidates& message,
                                                               const dds::SampleInfo& info) {
                     if (message.hand().to_string() != hand_name_) return;
                     if (info.gone)

@@ -27,7 +27,7 @@ class PlannerEars {
   service::Shell& shell_;
   std::string hand_name_;
   // As they came, by track: of which kind the hand is only the robot says.
-  std::map<std::uint32_t, v1::GraspCandidates> heard_;
+  std::map<std::uint32_t, v2::GraspCandidates> heard_;
 };
 
 }  // namespace prehend::performer

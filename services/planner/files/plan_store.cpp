@@ -7,6 +7,7 @@
 
 #include "common/base/file_text.hpp"
 #include "common/base/log.hpp"
+#include "common/model/past_contact.hpp"
 #include "common/proto/grasp_candidates.pb.h"
 #include "common/proto/pose_numbers.hpp"
 #include "common/proto/sealed_file.hpp"
@@ -20,7 +21,7 @@ using grasping::SureGrasp;
 
 constexpr std::string_view kind = "grasp-candidates";
 /// Changes when the same hand and object come to other grasps.
-constexpr std::string_view searcher = "1";
+constexpr std::string_view searcher = "2";
 
 template <class Numbers, class Repeated>
 void put(const Numbers& numbers, Repeated& to) {
@@ -53,6 +54,7 @@ Expected<SureGrasp> read(const messages::GraspCandidate& from, const model::Hand
                 proto::to_vector(from.closing()), from.epsilon()};
   made.room = from.room();
   made.tried = from.attempt();
+  made.follow_through = from.follow_through();
   for (const Eigen::VectorXd* values : {&made.grasp.open, &made.grasp.dof, &made.grasp.closing})
     if (values->size() != dofs || !values->allFinite())
       return fail("a grasp with another number of DoF");
@@ -62,6 +64,8 @@ Expected<SureGrasp> read(const messages::GraspCandidate& from, const model::Hand
   if (made.grasp.closing.cwiseAbs().maxCoeff() > 1) return fail("a direction that is none");
   // Written so that not-a-number fails.
   if (!(made.room >= 0 && made.room <= 1)) return fail("a room that is no share");
+  if (!(made.follow_through >= 0 && made.follow_through <= model::full_follow_through))
+    return fail("a follow-through that no hand makes");
   return made;
 }
 
@@ -81,6 +85,7 @@ std::string encode(const Plan& plan, const std::string& made_for) {
     to.set_epsilon(grasp.grasp.epsilon);
     to.set_room(grasp.room);
     to.set_attempt(grasp.tried);
+    to.set_follow_through(grasp.follow_through);
   }
   return message.SerializeAsString();
 }

@@ -33,9 +33,9 @@ v1::GraspCandidate to_message(const grasping::SureGrasp& grasp, const model::Han
 
 }  // namespace
 
-v1::GraspCandidates to_message(const TrackPlan& planned, const std::string& hand_name,
+v2::GraspCandidates to_message(const TrackPlan& planned, const std::string& hand_name,
                                const model::HandModel& hand) {
-  v1::GraspCandidates message;
+  v2::GraspCandidates message;
   message.hand(hand_name);
   message.track(planned.seen.track);
   message.stamp_ns(to_ns(planned.seen.stamp));
@@ -47,8 +47,10 @@ v1::GraspCandidates to_message(const TrackPlan& planned, const std::string& hand
   message.complete(planned.plan.complete);
   message.reason(planned.plan.reason.substr(0, 254));
   const std::size_t count = std::min(planned.plan.grasps.size(), max_candidates);
-  for (std::size_t i = 0; i < count; ++i)
+  for (std::size_t i = 0; i < count; ++i) {
     message.candidates().push_back(to_message(planned.plan.grasps[i], hand));
+    message.follow_through().push_back(planned.plan.grasps[i].follow_through);
+  }
   return message;
 }
 

@@ -10,7 +10,7 @@ namespace prehend::planner {
 
 /// A plan for this hand as grasp/candidates, without sequence number. hand_name: key of
 /// robot/command.
-v1::GraspCandidates to_message(const TrackPlan& planned, const std::string& hand_name,
+v2::GraspCandidates to_message(const TrackPlan& planned, const std::string& hand_name,
                                const model::HandModel& hand);
 
 }  // namespace prehend::planner

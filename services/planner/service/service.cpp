@@ -136,7 +136,7 @@ class Service::Topics {
     book_.remove(track);
     refusals_.erase(track);
     if (told_.erase(track) == 0) return;
-    v1::GraspCandidates gone;
+    v2::GraspCandidates gone;
     gone.hand(hand_name_);
     gone.track(track);
     output_.dispose(gone);
@@ -170,7 +170,7 @@ class Service::Topics {
   }
 
   void publish(const TrackPlan& planned) {
-    v1::GraspCandidates message = to_message(planned, hand_name_, *hand_);
+    v2::GraspCandidates message = to_message(planned, hand_name_, *hand_);
     message.sequence_number(sequence_number_++);
     told_.insert(planned.seen.track);
     output_.publish(message);
@@ -187,7 +187,7 @@ class Service::Topics {
   std::unique_ptr<const grasping::CatalogueBodies> catalogue_;
   PlanBook book_;
   std::string hand_name_;
-  service::Shell::Output<v1::GraspCandidates> output_;
+  service::Shell::Output<v2::GraspCandidates> output_;
   std::set<std::uint32_t> told_;
   std::map<std::uint32_t, std::string> refusals_;  // by track, why; empty: it is planned for
   std::uint64_t sequence_number_ = 0;

@@ -258,9 +258,9 @@ v1::ObjectDetection tracked(std::uint32_t track, const std::string& name, std::i
   return message;
 }
 
-v1::GraspCandidates candidates(std::uint32_t track, std::size_t count, bool complete,
+v2::GraspCandidates candidates(std::uint32_t track, std::size_t count, bool complete,
                                std::int64_t stamp, const std::string& reason = "") {
-  v1::GraspCandidates message;
+  v2::GraspCandidates message;
   message.track(track);
   message.candidates().resize(count);
   message.complete(complete);

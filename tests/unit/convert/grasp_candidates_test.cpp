@@ -12,7 +12,7 @@
 namespace prehend::convert {
 namespace {
 
-v1::GraspCandidates message() {
+v2::GraspCandidates message() {
   v1::GraspCandidate grasp;
   grasp.X_OG(to_message(make_pose({0, 0, 0.02})));
   grasp.X_OR(to_message(make_pose({0, 0.01, 0.02})));
@@ -20,13 +20,14 @@ v1::GraspCandidates message() {
   grasp.dof({0.1, 1.2, 1.3, 1.4});
   grasp.closing({0, 1, 1, 1});
   grasp.room(0.75);
-  v1::GraspCandidates made;
+  v2::GraspCandidates made;
   made.track(7);
   made.model("barrett");
   made.object("Cup");
   made.shape(to_message(model::ShapeKind::cylinder));
   made.size(to_message(Eigen::Vector3d(0.04, 0.04, 0.1)));
   made.candidates({grasp});
+  made.follow_through({0.25});
   return made;
 }
 
@@ -45,17 +46,31 @@ TEST(GraspCandidatesMessage, SaysAllThatABookKeeps) {
   EXPECT_EQ(grasp.dof[1], 1.2);
   EXPECT_EQ(grasp.closing[0], 0);
   EXPECT_EQ(grasp.room, 0.75);
+  EXPECT_EQ(grasp.follow_through, 0.25);
+}
+
+// Those of older recordings do not say how far fingers go on.
+TEST(GraspCandidatesMessage, ThatSaysNothingOfFollowThroughMeansAllOfIt) {
+  v2::GraspCandidates older = message();
+  older.follow_through({});
+  const auto made = from_message(older, test::hand("barrett"));
+  ASSERT_TRUE(made) << made.error().message();
+  EXPECT_EQ(made->candidates.front().follow_through, model::full_follow_through);
 }
 
 TEST(GraspCandidatesMessage, OfAnotherHandOrWithoutAPoseIsRefused) {
-  v1::GraspCandidates other = message();
+  v2::GraspCandidates other = message();
   other.model("dlr");
   const auto refused = from_message(other, test::hand("barrett"));
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().what, "grasp candidates of another hand");
-  v1::GraspCandidates broken = message();
+  v2::GraspCandidates broken = message();
   broken.candidates()[0].X_OR().position().x(std::numeric_limits<double>::quiet_NaN());
   EXPECT_FALSE(from_message(broken, test::hand("barrett")));
+  v2::GraspCandidates more = message();
+  more.follow_through({0.1, 0.2});
+  EXPECT_EQ(from_message(more, test::hand("barrett")).error().what,
+            "follow-through of other grasp candidates");
 }
 
 }  // namespace

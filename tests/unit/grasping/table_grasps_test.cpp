@@ -91,6 +91,31 @@ TEST(TableGraspSearch, MoreAttemptsFindNothingWorse) {
   EXPECT_GE(room(6), room(2));
 }
 
+// Guards: what two fingers pinch from above was pushed out by the third, which went on.
+TEST(TableGraspSearch, FingersDoNotGoOnWhereThatLosesWhatIsSure) {
+  const auto& hand = test::hand("barrett");
+  const Body thin{"thin", {model::ShapeKind::cylinder, {0.015, 0.015, 0.145}}, 0.1, "plastic", {},
+                  {}};
+  const auto grasps = found(hand, thin, {});
+  ASSERT_EQ(grasps.size(), 2u);
+  for (const SureGrasp& grasp : grasps) {
+    ASSERT_GE(grasp.room, SearchOptions{}.enough);
+    ASSERT_EQ(grasp.follow_through == 0, is_from_above(grasp.X_OG)) << grasp.follow_through;
+    if (grasp.follow_through > 0) continue;
+    int held = 0, held_pressed = 0;
+    for (const double off : {-0.0012, -0.0006, 0.0006, 0.0012}) {  // m
+      TableGrasp there = grasp.grasp;
+      there.X_OG = there.X_OG * make_pose({off, off, 0});
+      held += held_on_table(hand, thin, there, {.hold = 1, .shake = true});
+      there.dof = model::past_contact(hand, there.open, there.dof, there.closing,
+                                      model::full_follow_through);
+      held_pressed += held_on_table(hand, thin, there, {.hold = 1, .shake = true});
+    }
+    EXPECT_GE(held, 3);
+    EXPECT_LE(held_pressed, 1);
+  }
+}
+
 // Guards: attempts were used up by open hands that stood in the table; no grasp was found.
 TEST(LowObject, OpenHandsThatStandInTheTableUseUpNoAttempt) {
   const Body talc{"talc", {model::ShapeKind::cylinder, {0.024, 0.024, 0.105}}, 0.15, "plastic", {},

@@ -71,7 +71,7 @@ TEST_P(Following, GoesOnUntilTheMostAtItsSpeed) {
     EXPECT_LE(now - before, options.speed * 0.033 + 1e-9);
     before = now;
   }
-  EXPECT_LE(before, options.most + 1e-9);
+  EXPECT_LE(before, model::full_follow_through + 1e-9);
   EXPECT_GT(before, 0.01);
 }
 

@@ -160,7 +160,7 @@ TEST(MappingOfKnownObject, GoesOnWhereFingersReachIntoIt) {
     for (Eigen::Index i = 0; i < answer.size(); ++i)
       further = std::max(further, barrett().dofs()[static_cast<std::size_t>(i)].closing *
                                       (last->dof[i] - answer[i]));
-    EXPECT_LE(further, FollowThroughOptions{}.most + 1e-9) << seed;
+    EXPECT_LE(further, model::full_follow_through + 1e-9) << seed;
     gone += further > 0.1;
     // One finger of the answer reaches into it.
     alone += further > 0.1 && (distances < 0.003).count() == 1;

@@ -83,6 +83,26 @@ TEST_F(PlannedMappingTest, FingersGoFromThePreshapePastTheContactAndThePalmToIts
   EXPECT_NEAR(closed.dof[0], planned.dof[0], 0.02) << "what does not close stays";
 }
 
+// Guards: fingers went on past every plan, and pushed out what two of them had pinched.
+TEST_F(PlannedMappingTest, FingersGoOnAsFarAsThePlanSays) {
+  const auto closed_with = [&](double follow_through) {
+    Mapping mapping = Mapping::create(barrett(), model(), {}).value();
+    model::GraspCandidate planned = planned_grasp(X_OG);
+    planned.follow_through = follow_through;
+    EXPECT_TRUE(mapping.on_candidates({1, can, {planned}}));
+    int ms = 0;
+    begin(mapping, X_WO * X_OG);
+    after(mapping, ms, X_WO * X_OG, 0, 0);
+    return after(mapping, ms, X_WO * X_OG, 0, 1).dof;
+  };
+  const double squeeze = model::full_squeeze;
+  const Eigen::VectorXd none = closed_with(0), some = closed_with(0.2), all = closed_with(0.5);
+  const Eigen::VectorXd contact = planned_grasp(X_OG).dof;
+  for (int i = 1; i < 4; ++i) EXPECT_NEAR(none[i], contact[i] + squeeze, 1e-6) << i;
+  EXPECT_NEAR((some - none).maxCoeff(), 0.2, 1e-6);
+  EXPECT_NEAR((all - none).maxCoeff(), 0.5, 1e-6);
+}
+
 TEST_F(PlannedMappingTest, WithoutCandidatesItAnswersAsBefore) {
   Mapping with = Mapping::create(barrett(), model(), {}).value();
   const MappingModel plain = random_model(21);

@@ -137,6 +137,11 @@ TEST_F(GraspCandidatesTest, NonsenseIsRefusedAndWhatWasKnownStays) {
   wrong = planned_grasp(from_above);
   wrong.X_OR = wrong.X_OR * turned(0.5);
   EXPECT_EQ(refused(wrong), "grasp candidate away from its approach");
+  for (const double far : {nan, -0.1, 0.51}) {
+    wrong = planned_grasp(from_above);
+    wrong.follow_through = far;
+    EXPECT_EQ(refused(wrong), "grasp candidate follows through too far") << far;
+  }
   EXPECT_EQ(book.answer(7, can, from_aside)->room, 0.75);
 }
 

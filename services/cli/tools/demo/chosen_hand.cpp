@@ -21,7 +21,11 @@ bool comes_trained(const std::string& hand) {
 
 bool is_ours(const std::string& hand) {
   const auto names = model::hand_names();
-  return std::find(names.begin(), names.end(), hand) != names.end();
+  return hand.empty() || std::find(names.begin(), names.end(), hand) != names.end();
+}
+
+bool is_planned_for(const std::string& hand, const std::string& mode) {
+  return mode == "planned" || (mode.empty() && !is_ours(hand));
 }
 
 std::string hand_of_robot(const std::string& robot) {
@@ -30,7 +34,7 @@ std::string hand_of_robot(const std::string& robot) {
 }
 
 std::string hand_setting(const std::string& hand) {
-  if (hand.empty() || is_ours(hand)) return hand;
+  if (is_ours(hand)) return hand;
   return std::filesystem::absolute(model::hand_directory(hand)).string();
 }
 

@@ -61,9 +61,7 @@ void add_choices(CLI::App& app) {
 void choose(DemoOptions& demo, const std::string& mode) {
   demo.direct = mode == "direct";
   if (demo.hand.empty()) demo.hand = hand_of_robot(demo.robot);
-  // The networks of a hand that was trained in seconds know less than a search for what is seen.
-  const bool strange = !demo.hand.empty() && !is_ours(demo.hand);
-  demo.planned = mode == "planned" || (mode.empty() && strange);
+  demo.planned = is_planned_for(demo.hand, mode);
 }
 
 }  // namespace

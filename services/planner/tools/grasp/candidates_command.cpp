@@ -67,6 +67,7 @@ nlohmann::ordered_json document_of(const Searched& searched) {
   for (const SureGrasp& grasp : searched.grasps)
     grasps.push_back({{"from_above", grasping::is_from_above(grasp.X_OG)},
                       {"room", grasp.room},
+                      {"follow_through", grasp.follow_through},
                       {"epsilon", grasp.grasp.epsilon},
                       {"attempt", grasp.tried}});
   return {{"object", searched.object},
@@ -85,9 +86,10 @@ void print_searched(const Searched& searched) {
               searched.grasps.size(), searched.approaches, searched.attempts, first,
               searched.seconds);
   for (const SureGrasp& grasp : searched.grasps)
-    to_terminal("  from {:5}  room {:3.0f} %  epsilon {:.3f}  attempt {}\n",
+    to_terminal("  from {:5}  room {:3.0f} %  epsilon {:.3f}  attempt {}{}\n",
                 grasping::is_from_above(grasp.X_OG) ? "above" : "aside", 100 * grasp.room,
-                grasp.grasp.epsilon, grasp.tried);
+                grasp.grasp.epsilon, grasp.tried,
+                grasp.follow_through > 0 ? "" : "  no follow-through");
   for (const auto& [reason, count] : searched.refused) to_terminal("{:5}  {}\n", count, reason);
 }
 

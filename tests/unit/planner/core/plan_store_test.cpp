@@ -28,6 +28,7 @@ Plan plan_for(const model::HandModel& hand) {
   grasp.grasp.epsilon = 0.125;
   grasp.room = 0.75;
   grasp.tried = 4;
+  grasp.follow_through = 0.25;
   plan.grasps = {grasp, grasp};
   return plan;
 }
@@ -63,6 +64,7 @@ TEST_F(PlanStoreTest, RecallsWhatItKeptBitForBit) {
   EXPECT_EQ(is.grasp.epsilon, was.grasp.epsilon);
   EXPECT_EQ(is.room, was.room);
   EXPECT_EQ(is.tried, was.tried);
+  EXPECT_EQ(is.follow_through, was.follow_through);
 }
 
 TEST_F(PlanStoreTest, WhyThereIsNoneIsKeptToo) {
