@@ -121,7 +121,8 @@ void PlanBook::searched(const Work& work, bool more) {
   ++entry->rounds;
   auto grasps = work.search->found();
   const auto same = [](const grasping::SureGrasp& a, const grasping::SureGrasp& b) {
-    return a.tried == b.tried && a.room == b.room && a.X_OG.isApprox(b.X_OG);
+    return a.tried == b.tried && a.room == b.room && a.follow_through == b.follow_through &&
+           a.X_OG.isApprox(b.X_OG);
   };
   Plan& plan = entry->plan;
   if (!more ||

@@ -99,8 +99,9 @@ TEST_F(PlannedMappingTest, FingersGoOnAsFarAsThePlanSays) {
   const Eigen::VectorXd none = closed_with(0), some = closed_with(0.2), all = closed_with(0.5);
   const Eigen::VectorXd contact = planned_grasp(X_OG).dof;
   for (int i = 1; i < 4; ++i) EXPECT_NEAR(none[i], contact[i] + squeeze, 1e-6) << i;
-  EXPECT_NEAR((some - none).maxCoeff(), 0.2, 1e-6);
-  EXPECT_NEAR((all - none).maxCoeff(), 0.5, 1e-6);
+  EXPECT_NEAR((some - none).maxCoeff(), 0.2, 1e-3);
+  EXPECT_GT((all - none).maxCoeff(), 0.4) << "and is still on its way";
+  EXPECT_LE((all - none).maxCoeff(), model::full_follow_through);
 }
 
 TEST_F(PlannedMappingTest, WithoutCandidatesItAnswersAsBefore) {

@@ -71,8 +71,9 @@ TEST_F(PlanBookTest, SearchesUntilAllIsFoundAndTellsWhatIsNew) {
     for (TrackPlan& news : book.news()) told.push_back(std::move(news));
     EXPECT_TRUE(book.news().empty()) << "told once";
   }
+  // An attempt, its judgement, and whether fingers go on.
   EXPECT_GE(rounds, 1);
-  EXPECT_LE(rounds, 2);
+  EXPECT_LE(rounds, 3);
   ASSERT_FALSE(told.empty());
   const Plan& last = told.back().plan;
   EXPECT_TRUE(last.complete);
