@@ -81,19 +81,23 @@ std::vector<TableApproach> attempts_from(const model::HandModel& hand, const Bod
   return made;
 }
 
+/// With fingers that went on past what they touched, as the mapping's do until they are stopped.
+TableGrasp pressed(const model::HandModel& hand, TableGrasp grasp, double further) {
+  grasp.dof = model::past_contact(hand, grasp.open, grasp.dof, grasp.closing, further);
+  return grasp;
+}
+
 bool holds(const model::HandModel& hand, const Body& object, const TableGrasp& grasp,
            const Deviation& deviation) {
   Body other = scaled(object, deviation.larger);
   other.mass *= deviation.heavier;
-  TableGrasp there = grasp;
+  const bool smaller = deviation.larger < 1;
+  TableGrasp there = smaller ? pressed(hand, grasp, model::full_follow_through) : grasp;
   // The hand goes where the object was said to be; the other one stands on the same table.
   const double higher =
       model::half_extents(other.shape).z() - model::half_extents(object.shape).z();
   there.X_OG =
       make_pose({0, 0, -higher}) * grasp.X_OG * displaced(deviation.moved, deviation.turned);
-  if (deviation.larger < 1)
-    there.dof =
-        model::past_contact(hand, grasp.open, grasp.dof, grasp.closing, model::full_follow_through);
   // Drops what it drops at once.
   return held_on_table(hand, other, there, {.lift = 0.05, .hold = 0.3, .max_slip = steady});
 }
@@ -108,13 +112,11 @@ std::vector<Pose> small_errors() {
   return made;
 }
 
-/// With fingers that go on as far as they may, whatever stops them.
+/// With fingers that go on as far as they may.
 bool holds_pressed(const model::HandModel& hand, const Body& object, const TableGrasp& grasp,
                    const Pose& error) {
-  TableGrasp there = grasp;
+  TableGrasp there = pressed(hand, grasp, model::full_follow_through);
   there.X_OG = grasp.X_OG * error;
-  there.dof =
-      model::past_contact(hand, grasp.open, grasp.dof, grasp.closing, model::full_follow_through);
   return held_on_table(hand, object, there, {.hold = 1, .shake = true});
 }
 
@@ -125,9 +127,7 @@ Expected<TableGrasp> try_out(const model::HandModel& hand, const Body& object,
   if (!closed) return closed;
   if (!held_on_table(hand, object, *closed, {.hold = 1, .max_slip = steady, .shake = true}))
     return fail("does not hold");
-  // The mapping's fingers go on until they are stopped.
-  TableGrasp harder = *closed;
-  harder.dof = model::past_contact(hand, harder.open, harder.dof, harder.closing, pressed_on);
+  const TableGrasp harder = pressed(hand, *closed, pressed_on);
   if (!held_on_table(hand, object, harder, {.lift = 0.05, .hold = 0.3}))
     return fail("does not hold when fingers press on");
   return closed;

@@ -61,7 +61,8 @@ class DemonstrationLab : public Rig {
     seen.probability(0.9);
     auto detections = writer(dds::object_detection);
     auto candidates = reader(dds::grasp_candidates);
-    EXPECT_TRUE(eventually(60, [&] {
+    // A search lets all others go first.
+    EXPECT_TRUE(eventually(240, [&] {
       seen.stamp_ns(now_ns());
       detections.write(seen);
       for (const auto& sample : candidates.take())

@@ -210,10 +210,12 @@ export class Lab {
       return asked.stdout;
     };
     const all = JSON.parse(this.environment(container).PREHEND_SIMULATION_HANDS ?? '["hand"]').length;
-    // A busy machine may take longer to meet the hand than `status` listens for.
+    // A busy machine may take longer to meet the lab than `status` listens for, which then says who is missing.
     const stopped = async () => {
       for (let i = 0; ; ++i) {
-        const { hands } = JSON.parse(prehend("status", "--once", "--json"));
+        const asked = ends("exec", container.id, "prehend", "status", "--once", "--json");
+        assert.ok(asked.status === 0 || asked.status === 1, `status: ${asked.stdout}${asked.stderr}`);
+        const { hands } = JSON.parse(asked.stdout);
         if (hands.length === all || i === 10) return hands.map((one) => one.stopped);
         await sleep(1000);
       }

@@ -1,6 +1,7 @@
 // Numbers over the last seconds: joints, fingertips, weight, latency. Each group is a plot, each
 // name a line.
 import uPlot from "uplot";
+import { apart } from "./plot-range.js";
 
 const span = 20;  // s
 const redrawEvery = 200;  // ms
@@ -46,7 +47,10 @@ class Plot {
     const axis = { stroke: ink, grid: { stroke: "#8886", width: 1 }, ticks: { show: false }, font: "11px sans-serif" };
     this.plot ??= new uPlot({
       title: this.title, width, height: 130, legend: { live: false }, cursor: { show: false },
-      scales: { x: { time: false, range: [-span, 0] } },
+      scales: {
+        x: { time: false, range: [-span, 0] },
+        y: { range: (_, least, most) => least == null ? [null, null] : uPlot.rangeNum(...apart(least, most), 0.1, true) },
+      },
       axes: [{ ...axis, size: 24 }, { ...axis, size: 44 }],
       series: [{}, ...this.names.map((label, i) =>
         ({ label, stroke: colours[i % colours.length], width: 1.2, points: { show: false } }))],
