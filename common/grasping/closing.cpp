@@ -112,6 +112,18 @@ HoldResult squeeze_and_hold(World& world, const VectorXd& contact, const Closing
 
 }  // namespace
 
+bool fingers_move_as_one(const model::HandModel& hand) {
+  const auto finger_of = [&](const model::HandJoint& joint) {
+    return hand.links()[static_cast<std::size_t>(joint.child)].finger;
+  };
+  return std::any_of(
+      hand.joints().begin(), hand.joints().end(), [&](const model::HandJoint& joint) {
+        if (joint.geared_to < 0 || finger_of(joint) < 0) return false;
+        const int other = finger_of(hand.joints()[static_cast<std::size_t>(joint.geared_to)]);
+        return other >= 0 && other != finger_of(joint);
+      });
+}
+
 Expected<ClosedGrasp> close_hand(const model::HandModel& hand, const Body& object, const Pose& X_BO,
                                  const Eigen::VectorXd& preshape, const ClosingOptions& options) {
   if (!(options.longest > 0) || !(options.speed > 0) || !(options.squeeze >= 0))

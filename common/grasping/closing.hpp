@@ -40,6 +40,10 @@ struct ClosedGrasp {
   std::optional<HoldResult> hold;
 };
 
+/// True if gears or bars move several fingers at once: the first of them to touch what cannot move
+/// stops all, so that they find their places only on an object that gives way.
+bool fingers_move_as_one(const model::HandModel& hand);
+
 /// Closes the hand on an object that stands at X_BO, from the preshape along the closing direction
 /// of each DoF, in a Bullet world of its own. Deterministic; several threads may call it at once.
 /// Fails when the preshape already penetrates the object, when sizes or values are wrong, or when

@@ -77,7 +77,7 @@ Expected<TableGrasp> close_on_table(const model::HandModel& hand, const Body& ob
   if (!clears_table(hand, object, approach)) return refused();
   ClosingOptions options;
   options.volume = false;
-  options.fixed_object = true;
+  options.fixed_object = !fingers_move_as_one(hand);
   options.longest = max_closing;
   options.resting = approach.resting;
   const auto closed = close_hand(hand, object, X_BO, approach.preshape, options);

@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "common/base/file_text.hpp"
 #include "tests/support/paths/paths.hpp"
 
 namespace prehend::test {
@@ -38,6 +39,15 @@ const model::HandModel& hand(std::string_view name) {
   auto made = model::HandModel::load(folder / name);
   if (!made) throw std::runtime_error(made.error().message());
   return loaded.emplace(name, std::move(*made)).first->second;
+}
+
+model::HandModel coupled_hand(const std::string& name, const std::string& coupling) {
+  std::string toml = read_file(folder / name / "hand.toml").value();
+  for (std::size_t at = 0; (at = toml.find("[[dof]]", at)) != std::string::npos; at += 7)
+    toml.insert(at + 7, "\ncoupling = \"" + coupling + "\"");
+  auto made = model::HandModel::parse(read_file(folder / name / "hand.urdf").value(), toml);
+  if (!made) throw std::runtime_error(made.error().message());
+  return std::move(*made);
 }
 
 }  // namespace prehend::test

@@ -17,4 +17,7 @@ std::vector<std::string> mappable_hands();
 /// One of them, loaded once. Throws when it cannot be loaded.
 const model::HandModel& hand(std::string_view name);
 
+/// One of them with this coupling (of hand.toml) in every DoF. Throws as hand() does.
+model::HandModel coupled_hand(const std::string& name, const std::string& coupling);
+
 }  // namespace prehend::test

@@ -21,7 +21,7 @@ using grasping::SureGrasp;
 
 constexpr std::string_view kind = "grasp-candidates";
 /// Changes when the same hand and object come to other grasps.
-constexpr std::string_view searcher = "2";
+constexpr std::string_view searcher = "3";
 
 template <class Numbers, class Repeated>
 void put(const Numbers& numbers, Repeated& to) {

@@ -46,11 +46,14 @@ client.on("message", ({ data }) => {
   tips = fingertips.map(({ p_hf: { x, y, z } }) => rotate(orientation, [x, y, z]).map((c, k) => c + [o.x, o.y, o.z][k]));
 });
 const distance = (a, b) => Math.hypot(...a.map((x, k) => x - b[k]));
-// Filters have settled: three times in a row nothing has moved for half a second, in which postures came.
+// Filters have settled: three times in a row nothing has moved for half a second, or, where pictures come
+// slowly, for two postures.
 async function settled() {
-  for (let before, had = 0, still = 0, i = 0; i < 80; ++i) {
-    await new Promise((later) => setTimeout(later, 500));
-    const rests = before && heard >= had + 2 && tips.every((tip, f) => distance(tip, before[f]) < 5e-4);
+  const end = Date.now() + 90_000;
+  for (let before, had = 0, still = 0; Date.now() < end;) {
+    do await new Promise((later) => setTimeout(later, 500));
+    while (heard < had + 2 && Date.now() < end);
+    const rests = before && tips.every((tip, f) => distance(tip, before[f]) < 5e-4);
     still = rests ? still + 1 : 0;
     if (still === 3) return tips;
     [before, had] = [tips, heard];

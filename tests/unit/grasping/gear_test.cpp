@@ -3,9 +3,6 @@
 // in each way.
 #include <gtest/gtest.h>
 
-#include <filesystem>
-
-#include "common/base/file_text.hpp"
 #include "common/base/random.hpp"
 #include "common/grasping/world.hpp"
 #include "tests/support/hands.hpp"
@@ -14,19 +11,9 @@ namespace {
 
 using namespace prehend;
 using namespace prehend::grasping;
+using prehend::test::coupled_hand;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
-
-/// A hand that comes with us, coupled in this way.
-model::HandModel coupled(const std::string& name, const std::string& coupling) {
-  const auto folder = model::hand_directory(name);
-  std::string toml = *read_file(folder / "hand.toml");
-  for (std::size_t at = 0; (at = toml.find("[[dof]]", at)) != std::string::npos; at += 7)
-    toml.insert(at + 7, "\ncoupling = \"" + coupling + "\"");
-  auto hand = model::HandModel::parse(*read_file(folder / "hand.urdf"), toml);
-  if (!hand) throw std::runtime_error(hand.error().message());
-  return std::move(*hand);
-}
 
 /// How far a joint is from where what it is geared to would have it, rad or m.
 double slack(const model::HandModel& hand, const VectorXd& joint) {
@@ -48,7 +35,7 @@ class Geared : public testing::TestWithParam<std::tuple<std::string, std::string
 // goes over its contacts does not matter to gears.
 TEST_P(Geared, KeepTogetherWhateverPushes) {
   const auto& [name, coupling] = GetParam();
-  const model::HandModel hand = coupled(name, coupling);
+  const model::HandModel hand = coupled_hand(name, coupling);
   auto world =
       std::move(*World::create(hand, make_pose(Vector3d(0, 0, 1)), hand.postures().at("open"),
                                {.iterations = 4, .table = false}));
@@ -74,7 +61,7 @@ TEST_P(Geared, KeepTogetherWhateverPushes) {
 // What a clone does is what the original would have done, of gears as of drives.
 TEST_P(Geared, TwoClonesStayTheSame) {
   const auto& [name, coupling] = GetParam();
-  const model::HandModel hand = coupled(name, coupling);
+  const model::HandModel hand = coupled_hand(name, coupling);
   auto world = std::move(*World::create(hand, make_pose(Vector3d(0, 0, 1)),
                                         hand.postures().at("open"), {.table = false}));
   VectorXd some = hand.postures().at("open");
@@ -107,10 +94,10 @@ TEST(Coupling, SaysWhatMovesEachJoint) {
     return pairs;
   };
   EXPECT_TRUE(geared(test::hand("dlr")).empty());
-  EXPECT_EQ(geared(coupled("dlr", "fingers")).size(), 4u);
+  EXPECT_EQ(geared(coupled_hand("dlr", "fingers")).size(), 4u);
   // Each jaw is a finger; only what is rigid couples one to the other.
-  EXPECT_TRUE(geared(coupled("parallel_jaw", "fingers")).empty());
-  EXPECT_EQ(geared(coupled("parallel_jaw", "rigid")).size(), 1u);
+  EXPECT_TRUE(geared(coupled_hand("parallel_jaw", "fingers")).empty());
+  EXPECT_EQ(geared(coupled_hand("parallel_jaw", "rigid")).size(), 1u);
 }
 
 }  // namespace

@@ -116,6 +116,19 @@ TEST(TableGraspSearch, FingersDoNotGoOnWhereThatLosesWhatIsSure) {
   }
 }
 
+// Guards: the first of two fingers with one motor stopped the other, and no gripper that strangers
+// brought had a grasp.
+TEST(OneMotor, PushesWhatStandsBetweenTwoFingersIntoTheirMiddle) {
+  const auto hand = test::coupled_hand("parallel_jaw", "rigid");
+  for (const double off : {-0.004, 0.004}) {  // m, of the hand from above the object
+    const Pose X_OG = approaches(bottle().shape, hand.reach()).front() * make_pose({0, off, 0});
+    const auto grasp = close_on_table(hand, bottle(), {X_OG, hand.postures().at("open"), {}});
+    ASSERT_TRUE(grasp) << grasp.error().message();
+    EXPECT_TRUE(held_on_table(hand, bottle(), *grasp, {.hold = 1, .shake = true}));
+  }
+  EXPECT_EQ(found(hand, bottle(), {.judged = 1}).size(), 2u);
+}
+
 // Guards: attempts were used up by open hands that stood in the table; no grasp was found.
 TEST(LowObject, OpenHandsThatStandInTheTableUseUpNoAttempt) {
   const Body talc{"talc", {model::ShapeKind::cylinder, {0.024, 0.024, 0.105}}, 0.15, "plastic", {},

@@ -47,7 +47,7 @@ double held(const model::HandModel& hand, const grasping::Body& body, const Pose
   const Eigen::VectorXd& open = hand.postures().at("open");
   grasping::ClosingOptions options;
   options.volume = false;
-  options.fixed_object = true;
+  options.fixed_object = true;  // of fingers that move as one, too: the frame shall be amid them
   options.longest = 2;
   const auto closed = grasping::close_hand(hand, body, hand.X_BG() * X_OG.inverse(), open, options);
   if (!closed) return 0;
