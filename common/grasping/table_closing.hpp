@@ -29,8 +29,9 @@ bool is_from_above(const Pose& X_OG);
 bool clears_table(const model::HandModel& hand, const Body& object, const TableApproach& approach);
 
 /// Closes the hand on the object where it stands, as if it could not move, unless the fingers move
-/// as one: those push it between them. The grasp opens to the preshape. Fails when the hand is inside the object, when the fingers find no two contacts, and
-/// when any part of the hand would reach into the table.
+/// as one: those push it between them. The grasp opens to the preshape. Fails when the hand is
+/// inside the object, when the fingers find no two contacts, and when any part of the hand would
+/// reach into the table.
 Expected<TableGrasp> close_on_table(const model::HandModel& hand, const Body& object,
                                     const TableApproach& approach);
 

@@ -132,8 +132,8 @@ TEST_F(Check, GraspsArePlannedAgainAsTheyWere) {
   const std::string recording = file("planned.mcap");
   ::setenv("XDG_STATE_HOME", file("knows").c_str(), 1);
   const auto demo = [&](const Strings& more) {
-    Strings arguments{"demo",     "--mode", "planned", "--timeout",
-                      "240",      "--domain", std::to_string(domain_)};
+    Strings arguments{
+        "demo", "--mode", "planned", "--timeout", "240", "--domain", std::to_string(domain_)};
     arguments.insert(arguments.end(), more.begin(), more.end());
     const Answer shown = run("prehend", arguments, 500);
     ASSERT_TRUE(shown.exit_code == 0 || shown.exit_code == 1) << shown.log;

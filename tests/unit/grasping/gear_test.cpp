@@ -11,9 +11,9 @@ namespace {
 
 using namespace prehend;
 using namespace prehend::grasping;
-using prehend::test::coupled_hand;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
+using prehend::test::coupled_hand;
 
 /// How far a joint is from where what it is geared to would have it, rad or m.
 double slack(const model::HandModel& hand, const VectorXd& joint) {

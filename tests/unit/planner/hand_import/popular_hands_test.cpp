@@ -124,8 +124,8 @@ class Gripper : public Popular {};
 
 // A lab closes the hand as the planner finds it, not as `hand add` tried it.
 TEST_P(Gripper, HasAGraspOfWhatStandsOnATable) {
-  const grasping::Body rod{"rod", {model::ShapeKind::cylinder, {0.016, 0.016, 0.14}}, 0.15,
-                           "plastic", {}, {}};
+  const grasping::Body rod{
+      "rod", {model::ShapeKind::cylinder, {0.016, 0.016, 0.14}}, 0.15, "plastic", {}, {}};
   auto search = grasping::TableGraspSearch::create(made->model, rod, {.enough = 0.5});
   ASSERT_TRUE(search) << search.error().message();
   const auto in_threads = [](std::size_t count, const std::function<void(std::size_t)>& work) {
@@ -134,7 +134,8 @@ TEST_P(Gripper, HasAGraspOfWhatStandsOnATable) {
   while (search->found().empty() && search->try_next(in_threads)) {
   }
   std::string why;
-  for (const auto& [reason, count] : search->refused()) why += fmt::format("\n{} {}", count, reason);
+  for (const auto& [reason, count] : search->refused())
+    why += fmt::format("\n{} {}", count, reason);
   EXPECT_FALSE(search->found().empty()) << why;
 }
 
