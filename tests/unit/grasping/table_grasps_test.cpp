@@ -124,6 +124,7 @@ TEST(OneMotor, PushesWhatStandsBetweenTwoFingersIntoTheirMiddle) {
     const Pose X_OG = approaches(bottle().shape, hand.reach()).front() * make_pose({0, off, 0});
     const auto grasp = close_on_table(hand, bottle(), {X_OG, hand.postures().at("open"), {}});
     ASSERT_TRUE(grasp) << grasp.error().message();
+    EXPECT_NEAR(grasp->dof[0], bottle().shape.size.x(), 0.001) << "both touch";
     EXPECT_TRUE(held_on_table(hand, bottle(), *grasp, {.hold = 1, .shake = true}));
   }
   EXPECT_EQ(found(hand, bottle(), {.judged = 1}).size(), 2u);
