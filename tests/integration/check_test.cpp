@@ -127,7 +127,7 @@ TEST_F(Check, EachServiceAloneAnswersAsInCompany) {
 
 // A search takes seconds and goes on beside everything else; in lockstep what is found when follows
 // from the recording, also on a machine that knows the plan already. A search lets all others go
-// first and takes minutes beside other tests; these would be recorded, and played four times.
+// first and takes minutes beside other tests; these would be recorded, and played again each time.
 TEST_F(Check, GraspsArePlannedAgainAsTheyWere) {
   const std::string recording = file("planned.mcap");
   ::setenv("XDG_STATE_HOME", file("knows").c_str(), 1);

@@ -116,8 +116,8 @@ TEST(TableGraspSearch, FingersDoNotGoOnWhereThatLosesWhatIsSure) {
   }
 }
 
-// Guards: the first of two fingers with one motor stopped the other, and no gripper that strangers
-// brought had a grasp.
+// Guards: the first of two fingers with one motor stopped the other at a distance from the object;
+// the published Robotiq had no grasp at all.
 TEST(OneMotor, PushesWhatStandsBetweenTwoFingersIntoTheirMiddle) {
   const auto hand = test::coupled_hand("parallel_jaw", "rigid");
   for (const double off : {-0.004, 0.004}) {  // m, of the hand from above the object

@@ -119,10 +119,11 @@ TEST_P(Popular, Holds) {
   EXPECT_GE(held, all ? std::min(7, admitted) : 1) << "of " << admitted;
 }
 
-/// Two or three fingers. Those of more are made here without the trials of `hand add`.
+/// Two or three fingers. Of the hands with more three, as they are made here, have no grasp of the
+/// rod below: not mended yet.
 class Gripper : public Popular {};
 
-// A lab closes the hand as the planner finds it, not as `hand add` tried it.
+// A lab closes the hand as this search finds it, not as the one of `Holds`.
 TEST_P(Gripper, HasAGraspOfWhatStandsOnATable) {
   const grasping::Body rod{
       "rod", {model::ShapeKind::cylinder, {0.016, 0.016, 0.14}}, 0.15, "plastic", {}, {}};
