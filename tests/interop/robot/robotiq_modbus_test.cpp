@@ -135,7 +135,7 @@ class RobotiqOnModbus : public testing::Test {
 
   Served served_{usual_id};
   // Only silence is to be a lost wire, not a busy machine.
-  Driver driver_{hand(), {.baud = 115200, .lost_after = seconds(2)}, kind_2f85};
+  Driver driver_{hand(), {.baud = 115200, .lost_after = seconds(5)}, kind_2f85};
   Line line_{driver_, serial_channel(served_.path(), 115200)};
 };
 
