@@ -316,7 +316,10 @@ Expected<fdds::DataWriter*> Participant::make_writer(std::string_view topic,
     qos.endpoint().history_memory_policy = rtps::DYNAMIC_RESERVE_MEMORY_MODE;
   // With the default of 3 s a lost single sample is noticed very late.
   heartbeat_period(qos.reliable_writer_qos().times) = duration(std::chrono::milliseconds(100));
-  qos.reliability().max_blocking_time = duration(std::chrono::milliseconds(100));
+  // A writer that is busy fails the next one after so long. Live, who moves a hand does not wait
+  // for it; in lockstep all wait for each other, and what is not sent is awaited for ever.
+  qos.reliability().max_blocking_time =
+      duration(std::chrono::milliseconds(state_->options.lockstep ? 10'000 : 100));
   fdds::DataWriter* writer = state_->publisher->create_datawriter(*handle, qos);
   if (!writer)
     return fail("writer cannot be created", std::string(topic),

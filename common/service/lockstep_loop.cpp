@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "common/base/log.hpp"
 #include "common/dds/topics.hpp"
 
 namespace prehend::service {
@@ -81,7 +82,7 @@ void LockstepLoop::answer(const v2::LabClock& cycle, std::uint32_t waiting,
     entry.count(count);
     progress.published().push_back(entry);
   }
-  writer_.write(progress);
+  if (!writer_.write(progress)) log::warning("no answer could be sent in cycle {}", cycle.cycle());
 }
 
 }  // namespace prehend::service
